@@ -1,5 +1,5 @@
-//! NovaMind console: a terminal program in which you run a simulated AI subscription company for 500 days, with exactly the
-//! information and controls that software agents get in the CEO-Bench benchmark.
+//! NovaMind console: a terminal program in which you run a simulated AI subscription company for 500 days. You get
+//! exactly the information and controls that software agents get in the CEO-Bench benchmark.
 //!
 //! # Crates
 //!
@@ -7,14 +7,14 @@
 //! documentation. `docs/architecture.md` lists the contents and the allowed imports of each crate.
 //!
 //! * [`world::day::step_day`] lists the steps of a day in order, one line per mechanism.
-//! * Mechanisms emit events ([`world::events`]); `database` turns them into rows, `voice` turns some into texts.
-//! * A tool is a specification ([`tools::ToolSpec`]) and a pure plan. A call is planned, its line is written to disk, then it is
-//!   applied, which cannot fail. Memory is never ahead of the trajectory, and the trajectory never ahead of the confirmation.
-//! * `database` and the answers of tools decide what a player may see. Hidden state leaves a session only through a
-//!   [`session::InspectionPermit`], in debug runs and finished runs.
-//! * Parameters are in `configs/`; a scenario overrides some of them.
-//! * Random draws depend on keys, not on generator state ([`world::random`]): the same version, seed and actions give the same
-//!   bits on any number of threads and any machine.
+//! * Mechanisms emit events ([`world::events`]). `database` converts the events to rows, and `voice` words messages and posts.
+//! * A tool is a specification ([`tools::ToolSpec`]) and a pure plan. A call is first planned, then written to disk as a line of
+//!   the trajectory, then applied, and finally confirmed. Applying a call cannot fail.
+//! * `database` and the results of tools determine which information a player may see. Hidden state leaves a session only
+//!   through a [`session::InspectionPermit`], in debug runs and finished runs.
+//! * Parameters are stored in `configs/`. A scenario overrides some parameters.
+//! * Random draws depend on keys, not on generator state ([`world::random`]). The same version, seed and actions produce
+//!   identical results on any number of threads and any machine.
 //!
 //! # A week in ten lines
 //!

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use novamind::cli::{Arguments, run};
 
-/// A day allocates and frees thousands of blocks on several threads. With the default allocator a run of 500 days takes 7 %
+/// A simulated day allocates and frees thousands of blocks on several threads. With the default allocator a run of 500
+/// days takes 7 %
 /// longer and requests twice as many pages from the system.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;

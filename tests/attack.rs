@@ -1,7 +1,7 @@
-//! Hundreds of hostile SQL statements: none reads hidden data, none writes, and each one ends within the limits
+//! Hundreds of hostile SQL statements: no statement reads hidden data or writes, and every statement ends within the limits
 //! (docs/formats/database.md#queries).
 //!
-//! This is a separate program because SQLite limits memory for the whole process.
+//! These tests are a separate program because SQLite limits memory for the whole process.
 
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard};
@@ -16,20 +16,20 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
-/// The time limit is out of reach: endless statements end at the limit of steps.
+/// Limits of hostile statements. Endless statements end at the limit of steps, because the time limit is never reached.
 const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(3600), steps: Some(400_000) };
 
 /// Limits for statements that must complete.
 const AMPLE_LIMITS: QueryLimits = QueryLimits { steps: Some(1_000_000_000), ..LIMITS };
 
-/// Serializes the tests, because the memory that one uses could stop the queries of another.
+/// Serializes the tests, because the memory that one test uses could stop the queries of another test.
 static MEMORY: Mutex<()> = Mutex::new(());
 
 fn memory_lock() -> MutexGuard<'static, ()> {
     MEMORY.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Creates a company of six weeks with rows in as many tables as possible.
+/// Plays a company for six weeks so that as many tables as possible have rows.
 fn played_session(folder: &Path) -> Session {
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { seed: Some(7), days: Some(60), storage, ..NewRun::default() };
@@ -53,7 +53,7 @@ fn played_session(folder: &Path) -> Session {
     session
 }
 
-/// Returns the contents of a database file with its schema.
+/// Returns the schema and the contents of the database in a run folder.
 fn database_contents(folder: &Path) -> Vec<String> {
     let flags = rusqlite::OpenFlags::SQLITE_OPEN_READ_ONLY;
     let connection =
@@ -106,7 +106,7 @@ fn first_cell(rows: &QueryResult) -> String {
     }
 }
 
-/// Returns a description if the outcome of an attack is not the expected one.
+/// Returns a description of the problem if an attack does not have the expected outcome.
 fn outcome_problem(attack: &Attack, outcome: &Result<QueryResult, QueryError>) -> Option<String> {
     let (head, value) = attack.head.split_once(' ').unwrap_or((&attack.head, ""));
     let fits = match (head, outcome) {
@@ -157,7 +157,7 @@ fn hostile_statements_are_rejected_or_bounded() {
     let position = rusqlite::Connection::open(folder.join("world.db")).and_then(|connection| {
         connection.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0))
     });
-    // Internal names and values, which no result and no message may reveal.
+    // Internal names and values that no result and no message may reveal.
     const INSIDE: [&str; 12] = [
         "inner_",
         "customer_rows",
@@ -185,7 +185,7 @@ fn hostile_statements_are_rejected_or_bounded() {
     for stray in ["attack_copy.db", "attack_other.db", "attack_file.txt"] {
         assert!(!Path::new(stray).exists() && !folder.join(stray).exists(), "{stray} was created");
     }
-    // The connection still works.
+    // After the rejected statements, the connection still answers queries.
     let rows = connection.query("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
     assert_eq!(first_cell(&rows), "26");
 }
@@ -237,7 +237,7 @@ fn hidden_columns_and_tables_are_not_reachable() {
     run_attacks(&session.database().open_connection().expect("a connection"), &attacks, &[]);
 }
 
-/// A query with x-ray permission reads the hidden tables, and nothing else that other queries cannot read.
+/// A query with x-ray permission reads the hidden tables. All other data that ordinary queries cannot read stays hidden.
 #[test]
 fn xray_connection_rejects_hostile_statements() {
     let _alone = memory_lock();
@@ -252,7 +252,7 @@ fn xray_connection_rejects_hostile_statements() {
         names.iter().any(|name| sql.to_lowercase().contains(name))
     };
     for attack in attacks() {
-        // The limit of steps does not apply to these queries.
+        // Endless statements are excluded, because the limit of steps does not apply to x-ray queries.
         let is_endless = attack.head.starts_with("stopped");
         let is_answered = attack.head.starts_with("answered");
         if is_endless || (!attack.head.starts_with("refused sql_write") && names_hidden(&attack.sql)) {
@@ -264,7 +264,7 @@ fn xray_connection_rejects_hostile_statements() {
             }
             Ok(rows) => Ok(rows),
         };
-        // This run has another company, so only success is checked.
+        // This run has different data than the other test, so only success is checked.
         let head = if is_answered { "answered".to_owned() } else { attack.head };
         problems.extend(outcome_problem(&Attack { head, sql: attack.sql }, &outcome));
     }

@@ -1,6 +1,7 @@
-//! Rebuilds the program when a file is added to an embedded folder, because the compiler only tracks existing files.
+//! Build script: rebuilds the crate when a file is added to an embedded folder. The compiler tracks only the files
+//! that already exist.
 
-/// Folders that are embedded with all their contents.
+/// Folders whose files are all embedded in the program.
 const BUNDLED_FOLDERS: [&str; 2] = ["assets", "configs"];
 
 fn main() {

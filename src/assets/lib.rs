@@ -1,9 +1,9 @@
-//! Bundled scenarios, lessons, themes, policies and grids: all files of their folders in `configs/`, embedded in the program. A new
-//! file needs no code.
+//! Bundled scenarios, lessons, themes, policies and grids: all files of their folders in `configs/`, embedded in the
+//! program. A new file in such a folder needs no change of the code.
 
 use include_dir::{Dir, include_dir};
 
-/// Name and text of a file.
+/// Name and text of a bundled file.
 pub type BundledFile = (&'static str, &'static str);
 
 static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/scenarios");
@@ -14,27 +14,27 @@ static GRIDS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/grids");
 static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/lessons");
 static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../assets/lessons");
 
-/// Returns the scenarios, by name.
+/// Returns the bundled scenarios, sorted by name.
 pub fn scenarios() -> Vec<BundledFile> {
     bundled_files(&SCENARIOS)
 }
 
-/// Returns the themes, by name.
+/// Returns the bundled themes, sorted by name.
 pub fn themes() -> Vec<BundledFile> {
     bundled_files(&THEMES)
 }
 
-/// Returns the policies, by name.
+/// Returns the bundled policies, sorted by name.
 pub fn policies() -> Vec<BundledFile> {
     bundled_files(&POLICIES)
 }
 
-/// Returns the grids of policies, by name.
+/// Returns the bundled grids of policies, sorted by name.
 pub fn grids() -> Vec<BundledFile> {
     bundled_files(&GRIDS)
 }
 
-/// Returns the lessons, by name, in the order of the course.
+/// Returns name and text of every bundled lesson, in course order.
 pub fn lessons() -> Vec<BundledFile> {
     let mut lessons = bundled_files(&LESSONS);
     let place = |name: &str| LESSON_ORDER.iter().position(|text| *text == name).unwrap_or(LESSON_ORDER.len());
@@ -42,12 +42,12 @@ pub fn lessons() -> Vec<BundledFile> {
     lessons
 }
 
-/// Returns the texts of a lesson.
+/// Returns the Markdown texts of a bundled lesson.
 pub fn lesson_texts(name: &str) -> Option<&'static str> {
     LESSON_TEXTS.get_file(format!("{name}.md"))?.contents_utf8()
 }
 
-/// The lessons in the order of the course.
+/// Names of the lessons in course order.
 const LESSON_ORDER: [&str; 12] = [
     "price-follows-quality",
     "price-of-the-quarter",

@@ -1,6 +1,6 @@
-//! Formats of numbers and arguments, shared by all screens, reports and messages.
+//! Number formats and the argument parser that all screens, reports and messages share.
 //!
-//! Rounding is half to even on the exact binary value everywhere.
+//! All functions round half to even, on the exact binary value.
 
 pub mod arguments;
 
@@ -8,11 +8,12 @@ use std::borrow::Cow;
 
 use serde_json::{Number, Value, json};
 
-/// Largest number written in full, because no tool accepts a larger amount. Larger ones use powers of ten.
+/// Largest number that is written in full, because no tool accepts a larger amount. Larger numbers are written with an
+/// exponent.
 const MAX_WITHOUT_EXPONENT: f64 = 1e15;
 
-/// Formats a number with thousands separators and fixed decimals, for example `1,234,567.5`; above 1e15 in powers of
-/// ten, `1.5e15`. Zero has no sign.
+/// Formats a number with thousands separators and a fixed number of decimals, for example `1,234,567.5`. Numbers above
+/// 1e15 have an exponent: `1.5e15`. Zero has no sign.
 pub fn grouped_number(value: f64, decimals: usize) -> String {
     if value.abs() > MAX_WITHOUT_EXPONENT && value.is_finite() {
         return exponent_notation(value);
@@ -22,7 +23,7 @@ pub fn grouped_number(value: f64, decimals: usize) -> String {
     insert_thousands_separators(if is_zero { text.trim_start_matches('-') } else { &text })
 }
 
-/// Rounds to `decimals`, half to even on the exact binary value.
+/// Rounds a value to a number of decimals, half to even on the exact binary value.
 pub fn round_to(value: f64, decimals: u32) -> f64 {
     format!("{value:.*}", decimals as usize).parse().expect("a formatted number parses")
 }
@@ -45,7 +46,7 @@ fn insert_thousands_separators(text: &str) -> String {
     }
 }
 
-/// Formats at most four digits and the power of ten: `1.234e15`.
+/// Formats a number with at most four digits and an exponent: `1.234e15`.
 fn exponent_notation(value: f64) -> String {
     let text = format!("{value:.3e}");
     match text.split_once('e') {
@@ -86,12 +87,12 @@ pub fn price(value: f64) -> String {
     }
 }
 
-/// Formats a price to the cent: `$12`, `$22.50`.
+/// Formats a price rounded to the cent: `$12`, `$22.50`.
 pub fn price_to_cents(value: f64) -> String {
     if value.fract() == 0.0 { dollars(value) } else { cents(value) }
 }
 
-/// Formats dollars with the sign before the dollar sign; amounts that round to zero have no sign.
+/// Formats an amount with a minus sign before the dollar sign. Amounts that round to zero have no sign.
 fn dollars_with_decimals(value: f64, decimals: usize) -> String {
     let text = grouped_number(value.abs(), decimals);
     let nothing = text.chars().all(|letter| matches!(letter, '0' | '.'));
@@ -99,8 +100,8 @@ fn dollars_with_decimals(value: f64, decimals: usize) -> String {
     format!("{sign}${text}")
 }
 
-/// Formats dollars like the weekly dashboard of the released simulator: negative `$-1,234`, all digits, negative
-/// zeros with a sign.
+/// Formats dollars like the weekly dashboard of the released simulator: a minus sign after the dollar sign
+/// (`$-1,234`), no exponents, and a sign for negative zero.
 pub fn released_dollars(value: f64) -> String {
     format!("${}", insert_thousands_separators(&format!("{value:.0}")))
 }
@@ -113,13 +114,13 @@ pub fn signed_dollars(value: f64) -> String {
 
 /// Formats a share as a percentage: `0.1234` with one decimal is `12.3%`.
 pub fn percent(share: f64, decimals: usize) -> String {
-    // Percentages have no separators.
+    // Percentages have no thousands separators.
     format!("{}%", grouped_number(share * 100.0, decimals).replace(',', ""))
 }
 
-/// Formats a number in three significant digits with a suffix: `1.23M`, `45.6k`, `789`.
+/// Formats a number with three significant digits and a suffix: `1.23M`, `45.6k`, `789`.
 pub fn compact_number(value: f64) -> String {
-    // Zero has no sign.
+    // Adding 0.0 removes the sign of a negative zero.
     let value = value + 0.0;
     let size = value.abs();
     if size > MAX_WITHOUT_EXPONENT && value.is_finite() {
@@ -165,7 +166,7 @@ pub fn parse_number(text: &str) -> Option<f64> {
     digits.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite())
 }
 
-/// Returns a number as JSON: whole numbers without a decimal point, others in their shortest exact form.
+/// Converts a number to JSON: whole numbers have no decimal point, other numbers their shortest exact form.
 pub fn json_number(value: f64) -> Value {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     if value.fract() == 0.0 && value.abs() < EXACT {
@@ -175,7 +176,7 @@ pub fn json_number(value: f64) -> Value {
     }
 }
 
-/// Formats a number with a decimal point or an exponent, like cells of JSON tables: `4.0`, `0.25`, `1e+16`.
+/// Formats a number with a decimal point or an exponent, as in the cells of JSON tables: `4.0`, `0.25`, `1e+16`.
 pub fn decimal_literal(value: f64) -> String {
     let text = format!("{value:?}");
     match text.split_once('e') {
@@ -187,7 +188,7 @@ pub fn decimal_literal(value: f64) -> String {
     }
 }
 
-/// Formats JSON in one line with a blank after every colon and comma, and numbers as in [`decimal_literal`].
+/// Formats JSON on one line with a space after every colon and comma. Numbers are formatted by [`decimal_literal`].
 pub fn spaced_json(value: &Value) -> String {
     let list = |parts: Vec<String>| parts.join(", ");
     match value {
@@ -201,7 +202,7 @@ pub fn spaced_json(value: &Value) -> String {
     }
 }
 
-/// Rewrites all numbers of a JSON value as in [`json_number`].
+/// Rewrites all numbers of a JSON value in the form of [`json_number`].
 pub fn normalize_json_numbers(value: Value) -> Value {
     match value {
         Value::Number(number) if number.is_f64() => number.as_f64().map_or(Value::Null, json_number),
@@ -213,8 +214,8 @@ pub fn normalize_json_numbers(value: Value) -> Value {
     }
 }
 
-/// Returns whether a character, printed as is, would move the cursor, change colors or reverse the direction of
-/// writing. Line ends and tabs do not count.
+/// Returns whether printing a character could move the cursor, change colors or reverse the text direction. Returns
+/// `false` for line breaks and tabs.
 pub fn is_control_or_bidi(letter: char) -> bool {
     (letter.is_control() && !['\n', '\t'].contains(&letter))
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{feff}')
@@ -222,7 +223,7 @@ pub fn is_control_or_bidi(letter: char) -> bool {
         || ('\u{2066}'..='\u{2069}').contains(&letter)
 }
 
-/// Escapes text for HTML content and attributes. Removes characters that XML forbids.
+/// Escapes text for HTML content and attributes, and removes characters that XML forbids.
 pub fn escape_html(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -240,7 +241,8 @@ pub fn escape_html(text: &str) -> String {
     safe
 }
 
-/// Makes text safe for a terminal: control and bidirectional formatting characters are escaped; line ends and tabs are kept.
+/// Makes text safe for a terminal: escapes control characters and bidirectional formatting characters. Line breaks and
+/// tabs are kept.
 pub fn escape_control_characters(text: &str) -> Cow<'_, str> {
     if !text.contains(is_control_or_bidi) {
         return Cow::Borrowed(text);
@@ -251,17 +253,17 @@ pub fn escape_control_characters(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(written).collect())
 }
 
-/// Capitalizes the first letter.
+/// Capitalizes the first letter of a text.
 pub fn capitalize(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Makes text safe for a CSV cell: printable, and with `'` before anything a spreadsheet would read as a formula.
-/// Numbers are unchanged.
+/// Makes text safe for a CSV cell: escapes unprintable characters, and adds `'` before text that a spreadsheet would
+/// treat as a formula. Numbers are unchanged.
 pub fn escape_csv_cell(text: &str) -> Cow<'_, str> {
     let text = escape_control_characters(text);
-    // Spreadsheets ignore blanks before a formula.
+    // Spreadsheets ignore whitespace before a formula.
     let first = text.chars().find(|letter| !letter.is_whitespace());
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte))
         && text.parse::<f64>().is_ok();

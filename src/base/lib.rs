@@ -1,5 +1,5 @@
-//! Helpers for all crates, independent of the simulation: notation of numbers, statistics of small samples, and
-//! search for similar names.
+//! Helpers for all crates, independent of the simulation: number formatting, statistics of small samples, and
+//! suggestions of similar names.
 
 pub mod formatting;
 mod similar_names;

@@ -1,10 +1,10 @@
-//! Suggestions of similar names.
+//! Suggestions for a mistyped name.
 
-/// Returns up to three of the known names that are most similar to `name`, best first.
+/// Returns up to three known names that are similar to `name`, most similar first.
 pub fn similar_names<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_lowercase();
     let length = name.chars().count();
-    // Skips names of very different length, because comparing long names is slow.
+    // Skip names of a very different length, because comparing long names is slow.
     let may_be_near =
         |candidate: &&str| length.abs_diff(candidate.chars().count()) <= candidate.len().max(name.len()) / 2;
     let mut scored: Vec<(usize, &str)> = known

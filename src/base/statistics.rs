@@ -1,34 +1,34 @@
 //! Statistics of small samples: mean, spread, quantiles, and their uncertainty.
 //!
-//! Intervals are percentile bootstraps: the numbers are resampled with replacement, [`RESAMPLES`] times, from a
-//! stream whose seed depends only on their count. Equal numbers give equal intervals on every machine.
+//! Intervals are percentile bootstraps: the sample is resampled with replacement [`RESAMPLES`] times. The random seed
+//! depends only on the sample size, so equal samples give equal intervals on every machine.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Number of resamples for an interval.
+/// Number of bootstrap resamples per interval.
 pub const RESAMPLES: usize = 2_000;
 
-/// Share of resamples in an interval.
+/// Confidence level of the intervals: the share of resamples inside an interval.
 pub const CONFIDENCE_LEVEL: f64 = 0.95;
 
-/// Minimum sample size for an interval. With fewer values, all signs agree by chance more often than 1 - [`CONFIDENCE_LEVEL`] (with
-/// six: 2 in 64), and resampling shows little more than their range.
+/// Minimum sample size for an interval. With fewer values, all values have the same sign by chance more often than 1 -
+/// [`CONFIDENCE_LEVEL`] (with six values: 2 in 64).
 pub const MIN_SAMPLE_SIZE: usize = 6;
 
-/// Mean and sample standard deviation of a set of numbers.
+/// Size, mean and standard deviation of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SampleStatistics {
-    /// Number of values.
+    /// Sample size.
     pub count: usize,
-    /// Mean.
+    /// Mean of the sample.
     pub mean: f64,
-    /// Sample standard deviation (n - 1); 0 with fewer than two values.
+    /// Sample standard deviation with divisor n - 1, or 0 for fewer than two values.
     pub std: f64,
 }
 
 impl SampleStatistics {
-    /// Computes the statistics of values in any order.
+    /// Computes the statistics of a sample. The values can be in any order.
     pub fn from_values(values: &[f64]) -> SampleStatistics {
         let (count, mean) = (values.len(), mean(values));
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
@@ -37,26 +37,26 @@ impl SampleStatistics {
     }
 }
 
-/// Returns the mean; 0 without values.
+/// Returns the mean of the values, or 0 if there are none.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Returns a quantile of values in any order, interpolated linearly; `None` without values.
+/// Returns a linearly interpolated quantile of values in any order, or `None` if there are none.
 pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     quantile_of_sorted(&sorted, share)
 }
 
-/// Returns a quantile of sorted values, interpolated linearly; `None` without values.
+/// Returns a linearly interpolated quantile of sorted values, or `None` if there are none.
 pub fn quantile_of_sorted(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
     Some(below + (above - below) * place.fract())
 }
 
-/// Returns the median of values in any order; `None` without values.
+/// Returns the median of values in any order, or `None` if there are none.
 pub fn median(values: &[f64]) -> Option<f64> {
     quantile(values, 0.5)
 }
@@ -64,16 +64,16 @@ pub fn median(values: &[f64]) -> Option<f64> {
 /// Quartiles of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quartiles {
-    /// First quartile.
+    /// First quartile of the sample.
     pub lower: f64,
-    /// Median.
+    /// Median of the sample.
     pub median: f64,
-    /// Third quartile.
+    /// Third quartile of the sample.
     pub upper: f64,
 }
 
 impl Quartiles {
-    /// Computes the quartiles of values in any order; `None` without values.
+    /// Computes the quartiles of values in any order, or returns `None` if there are none.
     pub fn from_values(values: &[f64]) -> Option<Quartiles> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -82,22 +82,22 @@ impl Quartiles {
     }
 }
 
-/// An interval, both ends included.
+/// A closed interval of values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Lower end.
+    /// Lower bound of the interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper bound of the interval.
     pub high: f64,
 }
 
 impl Interval {
-    /// Returns the interval of the mean; `None` for fewer than [`MIN_SAMPLE_SIZE`] values.
+    /// Returns the 95 % interval of the mean, or `None` for fewer than [`MIN_SAMPLE_SIZE`] values.
     pub fn for_mean(values: &[f64]) -> Option<Interval> {
         bootstrap_interval(values, |drawn| Some(mean(drawn)))
     }
 
-    /// Returns the interval of the median; `None` for fewer than [`MIN_SAMPLE_SIZE`] values.
+    /// Returns the 95 % interval of the median, or `None` for fewer than [`MIN_SAMPLE_SIZE`] values.
     pub fn for_median(values: &[f64]) -> Option<Interval> {
         bootstrap_interval(values, |drawn| {
             drawn.sort_by(f64::total_cmp);
@@ -106,10 +106,10 @@ impl Interval {
     }
 }
 
-/// Returns the percentile bootstrap interval of a statistic: [`CONFIDENCE_LEVEL`] of [`RESAMPLES`] resamples. `None` if the
-/// statistic has no value, or for fewer than [`MIN_SAMPLE_SIZE`] values.
+/// Returns the percentile bootstrap interval of a statistic, which contains [`CONFIDENCE_LEVEL`] of [`RESAMPLES`]
+/// resamples. Returns `None` if the statistic has no value, or for fewer than [`MIN_SAMPLE_SIZE`] values.
 ///
-/// The statistic may reorder the values.
+/// The `statistic` function may reorder the values that it receives.
 pub fn bootstrap_interval(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
     let count = u32::try_from(values.len()).ok().filter(|_| values.len() >= MIN_SAMPLE_SIZE)?;
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
@@ -124,21 +124,21 @@ pub fn bootstrap_interval(values: &[f64], statistic: impl Fn(&mut [f64]) -> Opti
     Some(Interval { low: at((1.0 - CONFIDENCE_LEVEL) / 2.0)?, high: at((1.0 + CONFIDENCE_LEVEL) / 2.0)? })
 }
 
-/// Paired difference of two samples on the same seeds.
+/// Paired difference between two samples that were measured on the same seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairedDifference {
-    /// Mean of the differences.
+    /// Mean of the paired differences.
     pub mean: f64,
-    /// Interval of the mean; `None` for fewer than [`MIN_SAMPLE_SIZE`] pairs.
+    /// Interval of the mean, or `None` for fewer than [`MIN_SAMPLE_SIZE`] pairs.
     pub interval: Option<Interval>,
-    /// Number of pairs in which the first value is larger.
+    /// Number of pairs in which the first value is larger than the second.
     pub first_greater: u32,
-    /// Number of compared pairs.
+    /// Number of pairs that were compared.
     pub pair_count: u32,
 }
 
 impl PairedDifference {
-    /// Computes the difference of pairs. Skips pairs with a missing value; `None` without pairs.
+    /// Computes the statistics of the differences. Skips pairs with a NaN, and returns `None` if no pair remains.
     pub fn from_pairs(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
         let differences = pairs.into_iter().map(|(value, other)| value - other);
         let differences: Vec<f64> = differences.filter(|difference| !difference.is_nan()).collect();

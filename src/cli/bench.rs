@@ -23,10 +23,10 @@ pub struct Options {
     /// Number of repetitions; the median is reported
     #[arg(long, default_value = "5", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     runs: u32,
-    /// Measure only this case; can be repeated
+    /// Measure only this benchmark; can be repeated
     #[arg(long, value_name = "NAME", value_parser = all_cases().map(|case| case.name).collect::<Vec<_>>())]
     only: Vec<String>,
-    /// Run one repetition, and skip cases that take minutes
+    /// Run one repetition, and skip benchmarks that take minutes
     #[arg(long, conflicts_with = "runs")]
     quick: bool,
     /// Folder for the measured runs [default: the system's temporary folder]
@@ -35,7 +35,7 @@ pub struct Options {
     /// Print as JSON
     #[arg(long)]
     json: bool,
-    /// Measure one case in this process and print its samples.
+    /// Measure one benchmark in this process and print its samples.
     #[arg(long, hide = true)]
     measure: bool,
 }
@@ -101,7 +101,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if options.json { print(&(to_json(&rows, calibration) + "\n")) } else { Ok(()) }
 }
 
-/// A temporary folder that is removed when it is dropped.
+/// A temporary folder that is removed when the value is dropped.
 struct ScratchFolder(PathBuf);
 
 impl ScratchFolder {
@@ -120,7 +120,7 @@ impl Drop for ScratchFolder {
     }
 }
 
-/// Measures in this process and prints the samples of each case for the parent process.
+/// Runs the benchmarks in this process and prints their samples for the parent process.
 fn measure_in_process(cases: &[&Case], bench: &BenchContext) -> Result<(), Failure> {
     for case in cases {
         let samples = (case.measure)(bench).map_err(|error| Failure::failed(error.to_string()))?;
@@ -129,7 +129,7 @@ fn measure_in_process(cases: &[&Case], bench: &BenchContext) -> Result<(), Failu
     Ok(())
 }
 
-/// Measures a case in child processes, because peak memory is a figure of the whole process.
+/// Runs a benchmark in child processes, because peak memory is measured for a whole process.
 fn measure(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
     let (processes, each) = if case.needs_new_process { (repetitions, 1) } else { (1, repetitions) };
     let mut all: Samples = vec![Vec::new(); case.figures.len()];
@@ -195,7 +195,7 @@ fn format_row(row: &Row, calibration: f64) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// Formats a value with its sign, to about three digits.
+/// Formats a value with its unit, to about three digits.
 fn format_value(value: f64, unit: Unit) -> String {
     let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
     format!("{} {}", grouped_number(value, decimals), unit.symbol())

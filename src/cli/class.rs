@@ -37,7 +37,7 @@ enum ClassCommand {
         /// Name of the lesson, or path of its file
         #[arg(required_unless_present = "from", conflicts_with = "from")]
         lesson: Option<String>,
-        /// Hand out a run instead, or `latest` for the newest; each student continues a branch of it
+        /// Hand out this run instead, `latest` for the newest; each student continues a branch of the run
         #[arg(long, value_name = "RUN")]
         from: Option<String>,
         /// Number of students, from 1 to 999
@@ -59,22 +59,22 @@ enum ClassCommand {
     Show {
         /// Folder of the class
         folder: PathBuf,
-        /// Student whose curve is highlighted [default: the first in the ranking]
+        /// Student whose curve is highlighted [default: the student ranked first]
         #[arg(long, value_name = "LABEL")]
         student: Option<String>,
-        /// Decision in the scatter plot, for example "price A" [default: the one in which students differ most]
+        /// Decision in the scatter plot, for example "price A" [default: the decision in which students differ most]
         #[arg(long, value_name = "NAME")]
         decision: Option<String>,
         /// Figure in the scatter plot, for example subscribers [default: cash]
         #[arg(long, value_name = "NAME")]
         figure: Option<String>,
-        /// Show ranks instead of labels, and nothing that identifies a student
+        /// Show ranks instead of labels, so that no student can be identified
         #[arg(long)]
         hide_names: bool,
-        /// Write a page for a projector to this file, without scripts
+        /// Write the results for a projector to this file, a web page without scripts
         #[arg(long, value_name = "FILE")]
         html: Option<PathBuf>,
-        /// Print text at a terminal instead of opening the screen
+        /// Print text instead of opening the screen
         #[arg(long, conflicts_with = "html")]
         text: bool,
     },

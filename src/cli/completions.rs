@@ -6,7 +6,7 @@ use super::{Arguments, Failure, print};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Shell
+    /// Shell that runs the script
     shell: clap_complete::Shell,
 }
 

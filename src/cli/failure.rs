@@ -1,4 +1,4 @@
-//! Failures of commands and their exit codes.
+//! Command failures and their exit codes.
 
 use std::fmt;
 
@@ -6,57 +6,57 @@ use crate::lab;
 use crate::record::error::RunError;
 use crate::tools::Rejection;
 
-/// The reason why a command failed, with its exit code. An empty message prints nothing.
+/// The reason why a command failed, with its exit code. An empty message is not printed.
 #[derive(Debug)]
 pub struct Failure {
-    /// Exit code.
+    /// Exit code of the command.
     pub code: u8,
     message: String,
 }
 
 impl Failure {
-    /// The operation failed: exit code 1.
+    /// Returns a failure with exit code 1: the operation failed.
     pub fn failed(message: impl Into<String>) -> Failure {
         Failure { code: 1, message: message.into() }
     }
 
-    /// The command line is wrong: exit code 2.
+    /// Returns a failure with exit code 2: the command line is wrong.
     pub fn usage(message: impl Into<String>) -> Failure {
         Failure { code: 2, message: message.into() }
     }
 
-    /// A run, file or configuration cannot be read: exit code 3.
+    /// Returns a failure with exit code 3: a run, file or configuration cannot be read.
     pub fn unreadable(message: impl Into<String>) -> Failure {
         Failure { code: 3, message: message.into() }
     }
 
-    /// A run ended in bankruptcy and `--fail-on-bankruptcy` was given: exit code 4.
+    /// Returns a failure with exit code 4: a run ended in bankruptcy and `--fail-on-bankruptcy` was given.
     pub fn bankrupt() -> Failure {
         Failure { code: 4, message: String::new() }
     }
 
-    /// A signal ended the command: exit code 128 plus its number.
+    /// Returns a failure with exit code 128 plus the number of the signal that ended the command.
     pub fn signal(number: i32) -> Failure {
         Failure { code: 128u8.saturating_add(number as u8), message: String::new() }
     }
 
-    /// The reader of standard output has gone away: exit code 0, no message.
+    /// Returns a failure with exit code 0 and no message: the reader of standard output closed the pipe.
     pub fn silent() -> Failure {
         Failure { code: 0, message: String::new() }
     }
 
-    /// A failure with an exit code that is specific to the command.
+    /// Returns a failure with a command-specific exit code.
     #[cfg(feature = "server")]
     pub fn with_code(code: u8, message: impl Into<String>) -> Failure {
         Failure { code, message: message.into() }
     }
 
-    /// Prefixes the message with its subject.
+    /// Prefixes the message with a subject, such as a file name.
     pub fn with_subject(self, subject: &str) -> Failure {
         Failure { message: format!("{subject}: {}", self.message), ..self }
     }
 
-    /// An exit code without a message.
+    /// Returns a failure with an exit code and no message.
     pub fn code_only(code: u8) -> Failure {
         Failure { code, message: String::new() }
     }
@@ -110,7 +110,7 @@ impl From<lab::experiment::ExperimentError> for Failure {
         match error {
             Run { error, .. } => Failure { message, ..(*error).into() },
             Store { .. } => Failure::failed(message),
-            // The exit code of a shell after ctrl-c.
+            // Shells use exit code 130 after ctrl-c.
             Stopped { .. } => Failure { code: 130, message },
         }
     }

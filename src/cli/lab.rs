@@ -68,7 +68,7 @@ enum LabCommand {
     Behaviour(behaviour::Options),
     /// Play two policies on the same seed and check that they get the same random draws
     Consistency(consistency::Options),
-    /// Print all figures of a run day by day, hidden ones included; for debug runs and finished runs
+    /// Print all figures of a run day by day, including hidden figures; for debug runs and finished runs
     Metrics(metrics::Options),
     /// Play the strong policies and the baseline with the seed and parameters of a finished run
     Opponents(opponents::Options),
@@ -76,7 +76,7 @@ enum LabCommand {
     Study(study::Options),
     /// Merge the shards of a study
     Merge(study::MergeOptions),
-    /// Show the differences between two runs on a day: parts of the state, figures, customers
+    /// Show the differences between two runs on a day: state, figures and customers
     Diff(difference::Options),
 }
 
@@ -90,7 +90,7 @@ struct GoldenOptions {
     /// Seeds, at least 24; suspicious figures are rerun on the same number of subsequent seeds
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
-    /// Only this policy; can be repeated
+    /// Compare only this policy; can be repeated
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
     /// Figures to leave out; a name ending in * matches every name with that prefix
@@ -99,14 +99,14 @@ struct GoldenOptions {
     /// Number of seeds to play in parallel
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
-    /// Print every compared cell
+    /// Print every compared cell instead of the ten worst
     #[arg(long)]
     all: bool,
 }
 
-/// Lowest accepted share of |z| < 3 in one policy.
+/// Lowest accepted share of cells with |z| < 3 for one policy.
 const MIN_POLICY_SHARE: f64 = 0.95;
-/// Lowest accepted share of |z| < 3 over all policies.
+/// Lowest accepted share of cells with |z| < 3 for all policies together.
 const MIN_TOTAL_SHARE: f64 = 0.97;
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
@@ -150,7 +150,7 @@ fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> 
     for name in &names {
         let mut reference = read_reference(&golden.folder, name)?;
         reference.cells.retain(|(figure, group, _), _| !is_excluded(&golden.without, figure, group));
-        // A policy that cannot be played does not hide the results of the others.
+        // If a policy cannot be played, report the failure and continue with the next policy.
         let policy = match find_policy(golden, context, name) {
             Ok(policy) => policy,
             Err(failure) => {
@@ -231,8 +231,8 @@ fn figures(
     all
 }
 
-/// Reruns suspicious figures on the subsequent seeds. Returns (figure, first median, second median) of those that deviate in the
-/// same direction again.
+/// Reruns suspicious figures on the subsequent seeds. Returns (figure, first median, second median) for each figure
+/// that deviates in the same direction again.
 fn confirm_bias(
     comparison: &GoldenComparison,
     policy: &Policy,

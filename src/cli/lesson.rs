@@ -32,11 +32,11 @@ enum LessonCommand {
         /// Name of the lesson, or path of its file
         lesson: String,
     },
-    /// Copy the two files of a lesson under another name, to edit it into your own
+    /// Copy the two files of a lesson under another name, as the start of a new lesson
     Copy {
         /// Name of the lesson, or path of its file
         lesson: String,
-        /// A name, for your folder of lessons, or the path of a file that ends in .toml
+        /// Name in your folder of lessons, or path of a file that ends in .toml
         to: String,
     },
     /// Play a lesson
@@ -47,9 +47,9 @@ enum LessonCommand {
         #[command(flatten)]
         play: Box<super::play::Options>,
     },
-    /// Compare a finished part of a lesson with the reference play and the play that meets the pitfall
+    /// Compare a finished part of a lesson with the reference play and the play that triggers the pitfall
     Debrief {
-        /// Run, or `latest` for the newest
+        /// Id of the run, or `latest` for the newest run
         run: String,
         /// Write the debrief to this file as a web page
         #[arg(long, value_name = "FILE", conflicts_with = "markdown")]
@@ -132,7 +132,7 @@ fn list_lessons(configuration: &Configuration) -> Result<(), Failure> {
                 let plan = &lesson.plan;
                 text += &format!("{name:<24}  {:>3} min  {}\n", plan.minutes, plan.title);
             }
-            // One invalid file does not hide the others.
+            // An invalid file is reported after the list of the other lessons.
             Err(error) => unreadable.push(error.to_string()),
         }
     }
@@ -161,7 +161,7 @@ fn write_debrief(
     print(&format!("written: {}\n", path.display()))
 }
 
-/// Returns a lesson with its notes for the instructor.
+/// Formats the task, goals and hints of a lesson, its debrief, and the notes for the instructor.
 fn describe_lesson(lesson: &Lesson) -> String {
     let plan = &lesson.plan;
     let mut text = format!("{}\n{} minutes. {}\n", plan.title, plan.minutes, plan.learning_goal);
@@ -233,7 +233,7 @@ fn describe_check(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> 
     text
 }
 
-/// Returns the values of a goal in the plays, by seed.
+/// Formats the values that the plays reached for a goal, in the order of the plays.
 fn goal_values(plays: &[PlayResult], at: usize) -> String {
     let written = plays.iter().filter_map(|play| play.goals.get(at)).map(|goal| {
         let value = goal.value.map_or_else(|| "-".to_owned(), compact_number);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Failure;
 
-/// Free bytes that a session of a large company needs with its database.
+/// Free disk space in bytes that a session of a large company needs, including the database.
 const MIN_FREE_BYTES: u64 = 2 << 30;
 /// Columns and rows of the smallest supported window.
 const MIN_WINDOW_SIZE: (u16, u16) = (60, 16);
@@ -69,12 +69,12 @@ impl CheckItem {
 pub fn report_failures(items: &[CheckItem]) -> Result<(), Failure> {
     match items.iter().filter(|item| matches!(item.outcome, CheckOutcome::Failed(_))).count() {
         0 => Ok(()),
-        1 => Err(Failure::failed("1 point is wrong: this machine is not ready")),
-        failed => Err(Failure::failed(format!("{failed} points are wrong: this machine is not ready"))),
+        1 => Err(Failure::failed("1 check failed: this machine is not ready")),
+        failed => Err(Failure::failed(format!("{failed} checks failed: this machine is not ready"))),
     }
 }
 
-/// Checks that the wall clock runs evenly and is not earlier than the build of this program.
+/// Checks that the wall clock runs evenly and is not earlier than the build date of this program.
 pub fn check_clock() -> Result<String, String> {
     let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     const BUILT_AFTER: u64 = 1_760_000_000;
@@ -90,7 +90,7 @@ pub fn check_clock() -> Result<String, String> {
     Ok("runs evenly".to_owned())
 }
 
-/// Checks that the folder of runs can be written. Creates it if it does not exist, as the first session does.
+/// Checks that the folder of runs can be written. Creates a missing folder, as the first session does.
 pub fn check_writable(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
@@ -98,7 +98,7 @@ pub fn check_writable(folder: &Path) -> Result<(), String> {
     tried.map_err(|error| format!("{}: {error}", folder.display()))
 }
 
-/// Checks the free space by writing, because quotas may allow less than the file system reports.
+/// Checks the free space that the system reports.
 pub fn check_free_space(folder: &Path) -> Result<String, String> {
     let output = std::process::Command::new("df").args(["-Pk".as_ref(), folder.as_os_str()]).output().ok();
     let text = output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
@@ -106,7 +106,7 @@ pub fn check_free_space(folder: &Path) -> Result<String, String> {
     match free.map(|kilobytes| kilobytes * 1024) {
         None => Ok("this system does not report free space".to_owned()),
         Some(free) if free < MIN_FREE_BYTES => {
-            Err(format!("{} MB are free; a long session may need {}", free >> 20, MIN_FREE_BYTES >> 20))
+            Err(format!("{} MB are free; a long session may need {} MB", free >> 20, MIN_FREE_BYTES >> 20))
         }
         Some(free) => Ok(format!("{} GB free", free >> 30)),
     }

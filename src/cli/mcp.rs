@@ -14,7 +14,7 @@ pub struct Options {
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let session = options.which.open(context).map_err(|failure| {
-        // Clients show either standard error or the protocol error, rarely both.
+        // Report the failure twice, because most clients show only standard error or only the protocol error.
         eprintln!("novamind: {failure}");
         reject_mcp_client(&failure.to_string());
         Failure::code_only(failure.code)

@@ -60,10 +60,10 @@ pub struct Arguments {
     /// Folder of the runs [default: the platform's data folder]
     #[arg(long, global = true, env = "NOVAMIND_RUNS", value_name = "DIR")]
     runs_dir: Option<PathBuf>,
-    /// Label of the player: their runs are in a separate folder, carry this label, and are the only ones shown
+    /// Label of the player: the player's runs are recorded under this label in a separate folder, and no other runs are shown
     #[arg(long = "as", global = true, env = "NOVAMIND_PARTICIPANT", value_name = "LABEL")]
     whose: Option<String>,
-    /// Folder of a study: participants play by its protocol; all other commands need its code
+    /// Folder of a study: participants play by its protocol; all other commands need the experimenter's code
     #[arg(long, global = true, env = "NOVAMIND_STUDY", value_name = "DIR")]
     study: Option<PathBuf>,
     /// The experimenter's code of the study
@@ -103,7 +103,7 @@ enum Command {
     Study(study::Options),
     /// Run experiments with policies, and compare runs with each other and with published figures
     Lab(lab::Options),
-    /// Play a run from a shell, one command at a time, or run an agent on several runs with `batch`
+    /// Play a run with single shell commands, or run an agent on several runs with `batch`
     #[cfg(feature = "server")]
     Agent(agent::Options),
     /// Serve a run to programs over HTTP
@@ -154,10 +154,10 @@ impl Command {
     }
 }
 
-/// Values that every command may need.
+/// Configuration and global options for all commands.
 #[derive(Clone)]
 pub struct Context {
-    /// Configuration of the user.
+    /// The user's configuration folder, scenarios and settings.
     pub configuration: Configuration,
     /// Folder of the runs, from the command line or the platform's default.
     runs: Option<PathBuf>,
@@ -165,7 +165,7 @@ pub struct Context {
     pub participant: Option<String>,
     /// Whether the folder of runs was given on the command line.
     has_explicit_runs_folder: bool,
-    /// Folder of the study whose keys are used: the one given, or the working directory if it is a study.
+    /// Folder of the study whose keys are used: the given folder, or the working directory if it contains a study.
     pub study_folder: Option<PathBuf>,
     /// Whether the command has the experimenter's code of the study.
     pub is_experimenter: bool,
@@ -180,7 +180,7 @@ impl Context {
         words.join(" ")
     }
 
-    /// Returns the command that continues a study; participants enter their label again.
+    /// Returns the command that continues a study. Participants enter their label again.
     pub fn study_command(&self, study: &Path) -> String {
         let mut words = self.command_prefix();
         words.push(format!("--study {}", shell_quoted(study)));
@@ -207,7 +207,7 @@ impl Context {
         }
     }
 
-    /// Returns this context with the language model of a settings file. Returns it unchanged if `file` is `None`.
+    /// Returns this context with the language model of a settings file. Returns the context unchanged if `file` is `None`.
     ///
     /// # Errors
     /// The file cannot be read or is invalid. The error names the line and the key.
@@ -222,7 +222,7 @@ impl Context {
     /// Checks that `--participant` and `--as` do not name different people.
     ///
     /// # Errors
-    /// They differ.
+    /// The labels differ.
     pub fn check_participant(&self, named: Option<&str>) -> Result<(), Failure> {
         match (&self.participant, named) {
             (Some(whose), Some(named)) if whose != named => Err(Failure::usage(format!(
@@ -232,10 +232,10 @@ impl Context {
         }
     }
 
-    /// Returns the named folders of runs, or the folder of this machine if none is named.
+    /// Returns the named folders of runs, or this machine's folder of runs if `named` is empty.
     ///
     /// # Errors
-    /// A named folder does not exist; otherwise as [`Context::runs_folder`].
+    /// A named folder does not exist, or [`Context::runs_folder`] fails.
     fn machine_folders(&self, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         if let Some(missing) = named.iter().find(|folder| !folder.is_dir()) {
             let problem = format!("{} is not a folder; nothing was read", missing.display());
@@ -264,10 +264,10 @@ impl Context {
         }
     }
 
-    /// Checks that the results of a run may be shown. Some studies show them to the experimenter only.
+    /// Checks that the results of a run may be shown. Some studies show results only to the experimenter.
     ///
     /// # Errors
-    /// The results are hidden and no code was given, or the manifest cannot be read.
+    /// The study hides the results and no code was given, or the manifest cannot be read.
     pub fn check_view_allowed(&self, folder: &Path) -> Result<(), Failure> {
         self.check_results_allowed(&read_manifest(folder)?)
     }
@@ -291,10 +291,10 @@ impl Context {
         Ok(record_external_read(folder, command, detail)?)
     }
 
-    /// Checks that a run is not an unfinished run of a study, which can only be played or watched within the study.
+    /// Checks that a run is not an unfinished run of a study. Such a run can be played or watched only within its study.
     ///
     /// # Errors
-    /// It is one and no code was given, or the manifest cannot be read.
+    /// The run is an unfinished run of a study and no code was given, or the manifest cannot be read.
     pub fn check_play_allowed(&self, folder: &Path) -> Result<(), Failure> {
         let manifest = read_manifest(folder)?;
         let Some(study) = manifest.study.as_ref().filter(|_| !self.is_experimenter) else { return Ok(()) };
@@ -310,14 +310,16 @@ impl Context {
     /// Returns the folder that contains the runs of all participants.
     ///
     /// # Errors
-    /// The platform has no data folder and none was given.
+    /// The platform has no data folder and no folder was given.
     fn runs_root(&self) -> Result<PathBuf, Failure> {
         self.runs.clone().ok_or_else(|| {
-            Failure::usage("this system has no data folder; give one with --runs-dir or NOVAMIND_RUNS")
+            Failure::usage(
+                "this system has no data folder; give a folder of runs with --runs-dir or NOVAMIND_RUNS",
+            )
         })
     }
 
-    /// Returns the folder of cached experiment results. It is hidden in the folder of runs, where no list shows it.
+    /// Returns the folder of cached experiment results, a hidden folder in the folder of runs.
     ///
     /// # Errors
     /// As [`Context::runs_folder`].
@@ -325,10 +327,10 @@ impl Context {
         Ok(self.runs_root()?.join(".lab"))
     }
 
-    /// Returns the folder of the runs, of the participant if one was given.
+    /// Returns the folder of the participant's runs, or of all runs if no participant was given.
     ///
     /// # Errors
-    /// The platform has no data folder and none was given, or the label is invalid.
+    /// The platform has no data folder and no folder was given, or the label is invalid.
     pub fn runs_folder(&self) -> Result<PathBuf, Failure> {
         let base = self.runs_root()?;
         match &self.participant {
@@ -350,13 +352,14 @@ fn study_in_current_folder() -> Option<PathBuf> {
     Path::new(STUDY_FILE).is_file().then(|| PathBuf::from("."))
 }
 
-/// Turns a write beyond the file size limit into an error like that of a full disk. Unhandled, the signal would end the program.
+/// Ignores the signal that a write beyond the file size limit raises. The write then fails with an error instead of
+/// ending the program.
 fn ignore_file_size_signal() {
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
-/// Passes `--code` on to the tool that an agent calls if no study is given, because tools have arguments of that name, too.
+/// Passes `--code` on to the tool that an agent calls if no study is given, because some tools have a `code` argument.
 #[cfg(feature = "server")]
 fn pass_code_to_tool(mut arguments: Arguments) -> Arguments {
     let text = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));
@@ -368,10 +371,10 @@ fn pass_code_to_tool(mut arguments: Arguments) -> Arguments {
     arguments
 }
 
-/// Runs a command.
+/// Executes the command in the arguments.
 ///
 /// # Errors
-/// The command failed. The error holds the exit code.
+/// The command failed. The error contains the exit code.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if let Some(command) = &arguments.command
         && arguments.play != play::Options::default()
@@ -448,7 +451,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Writes to standard output. If the reader has gone away, the failure is quiet.
+/// Writes to standard output. If the reader closed the pipe, the failure has no message.
 ///
 /// # Errors
 /// Standard output cannot be written.
@@ -457,7 +460,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::silent()),
-        Err(error) => Err(Failure::failed(format!("standard output: {error}"))),
+        Err(error) => Err(Failure::failed(format!("cannot write to standard output: {error}"))),
         Ok(()) => Ok(()),
     }
 }

@@ -1,4 +1,4 @@
-//! Options of a new run, shared by all commands that create one.
+//! Options of a new run, shared by all commands that create a run.
 
 use clap::Args;
 
@@ -24,7 +24,7 @@ pub struct NewRunOptions {
     /// Scenario of the new run; baseline runs use `default`
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Mode of the new run [default: sandbox; for programs baseline, if days, cash and scenario are those of a baseline run]
+    /// Mode of the new run [default: sandbox; for programs, baseline if days, cash and scenario match a baseline run]
     #[arg(long, value_name = "baseline|sandbox|debug", value_parser = parse_mode)]
     mode: Option<Mode>,
     /// Label of the player
@@ -56,7 +56,7 @@ fn parse_fault(text: &str) -> Result<Fault, String> {
 }
 
 impl NewRunOptions {
-    /// Returns whether any of these options is given.
+    /// Returns whether any option of a new run was given.
     pub fn is_specified(&self) -> bool {
         NewRunOptions { consent: false, ..self.clone() } != NewRunOptions::default()
     }
@@ -67,7 +67,7 @@ impl NewRunOptions {
         self.scenario.is_some()
     }
 
-    /// Returns the options with a default label for the player.
+    /// Returns the options with `label` as the player's label if no label was given.
     #[cfg(feature = "server")]
     pub fn with_participant(&self, label: &str) -> NewRunOptions {
         NewRunOptions {
@@ -76,10 +76,10 @@ impl NewRunOptions {
         }
     }
 
-    /// Returns the run of a program, and a remark if days, cash or scenario make it a sandbox run.
+    /// Returns the settings of a run that a program plays, and a remark if days, cash or scenario make the run a sandbox run.
     ///
     /// # Errors
-    /// As [`NewRunOptions::new_run_options`].
+    /// The errors of [`NewRunOptions::new_run`], or the terms of a baseline run cannot be read.
     #[cfg(feature = "server")]
     pub fn program_run(&self, context: &Context) -> Result<(NewRun, Option<String>), Failure> {
         let sandbox = self.new_run(Mode::Sandbox, context)?;
@@ -95,10 +95,10 @@ impl NewRunOptions {
         Ok((sandbox, Some(remark)))
     }
 
-    /// Returns the settings of the run. `mode` is the default.
+    /// Returns the settings of the new run. `mode` is used if no mode was given.
     ///
     /// # Errors
-    /// The labels differ, a baseline run has other terms, or there is no folder of runs.
+    /// The labels differ, the options contradict the terms of a baseline run, or there is no folder of runs.
     pub fn new_run(&self, mode: Mode, context: &Context) -> Result<NewRun, Failure> {
         let standard = NewRun::default();
         context.check_participant(self.participant.as_deref())?;

@@ -1,5 +1,5 @@
-//! Output files of commands: written completely or not at all. Devices and pipes are written to and never replaced. An existing
-//! file with a different beginning is never replaced either, because it may be a run, a policy or a study.
+//! Writes output files of commands completely or leaves them unchanged. Devices and pipes are written to and never replaced. A
+//! file that begins differently is never replaced either, because it may be a run, a policy or a study.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
@@ -14,7 +14,7 @@ const SIGNATURE_BYTES: u64 = 8;
 const OTHER_FILE_MESSAGE: &str =
     "the file exists and was not written by this command: choose another name, or delete it";
 
-/// Writes a text to a file.
+/// Writes `text` to a file.
 ///
 /// # Errors
 /// The file cannot be written. An existing file stays unchanged.
@@ -22,7 +22,7 @@ pub fn write_text(place: &Path, text: &str) -> Result<(), Failure> {
     write_file(place, None, |out| out.write_all(text.as_bytes()))
 }
 
-/// Writes a file. `safe` names data that is not lost if writing fails.
+/// Writes an output file. `safe` is appended to the error message and names the data that is not lost.
 ///
 /// # Errors
 /// The file cannot be written. An existing file stays unchanged.
@@ -43,7 +43,7 @@ pub fn write_file(
     })
 }
 
-/// Writes a temporary file next to the target and renames it when it is complete.
+/// Writes a temporary file next to the target, and renames the complete file to the target.
 fn replace_file(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let draft = place.with_file_name(format!(".{name}.draft"));
@@ -60,7 +60,7 @@ fn replace_file(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Re
 /// Checks that an existing file begins with the first bytes of `expected`.
 ///
 /// # Errors
-/// It begins differently or cannot be read.
+/// The file begins differently or cannot be read.
 pub fn check_signature(place: &Path, expected: &str) -> Result<(), Failure> {
     let is_file = std::fs::metadata(place).is_ok_and(|found| found.is_file());
     let there = if is_file { read_signature(place) } else { Ok(Vec::new()) };

@@ -1,4 +1,4 @@
-//! `novamind pictures`: the screens of a run as text or SVG, drawn by the console.
+//! `novamind pictures`: draws the screens of a run with the console, as text or SVG.
 
 use std::path::{Path, PathBuf};
 
@@ -19,28 +19,28 @@ use crate::worker::request::RecordSource;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run: its id or a prefix of it, or `latest` for the newest
+    /// Id of the run or a prefix of the id, or `latest` for the newest run
     #[arg(default_value = "latest")]
     run: String,
-    /// Only these screens, by name: overview, cash, customers, …
+    /// Draw only these screens, by name: overview, cash, customers, …
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     screens: Vec<String>,
     /// Keys to press instead of showing screens, as in keys.toml, separated by spaces
     #[arg(long, conflicts_with = "screens")]
     keys: Option<String>,
-    /// Replay the run, and show it as it was after this week
+    /// Replay the run and draw its state after this week
     #[arg(long, value_name = "WEEK")]
     replay: Option<u32>,
     /// Columns and rows of the window
     #[arg(long, default_value = "120x40", value_parser = parse_size)]
     size: (u16, u16),
-    /// Theme
+    /// Color theme
     #[arg(long, default_value = "dark")]
     theme: String,
     /// Draw with ASCII characters only
     #[arg(long)]
     ascii: bool,
-    /// Output format
+    /// Output format of the pictures
     #[arg(long, value_enum, default_value_t = PictureFormat::Text)]
     format: PictureFormat,
     /// Folder for one file per screen [default: standard output]
@@ -54,7 +54,7 @@ enum PictureFormat {
     Svg,
 }
 
-/// Largest number of columns or rows; larger values are mistakes.
+/// Maximum number of columns or rows, because a larger value is probably a typing error.
 const MAX_WINDOW_SIZE: u16 = 500;
 
 pub(super) fn parse_size(text: &str) -> Result<(u16, u16), String> {
@@ -107,7 +107,7 @@ fn picture_places(options: &Options, keys: &KeyBindings) -> Result<Vec<(String, 
     let wanted = |screen: &ScreenId| {
         options.screens.is_empty() || options.screens.iter().any(|name| name == screen.record_name())
     };
-    // Letters and digits would be typed into a statement; esc leaves the editor first.
+    // Esc leaves the SQL editor, in which the key of a screen would be typed as text.
     let place = |screen: ScreenId| {
         let key = keys.label(screen.action()).unwrap_or_default();
         (screen.record_name().to_owned(), format!("esc {key}"))

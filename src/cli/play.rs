@@ -30,7 +30,7 @@ use novamind_study::Study;
 
 #[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct Options {
-    /// Open a run; `latest` is the newest unfinished one
+    /// Open a run; `latest` is the newest unfinished run
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted", "lesson"])]
     run: Option<String>,
     /// Follow a run read-only while someone else plays it
@@ -62,10 +62,10 @@ pub struct Options {
     /// Play line by line
     #[arg(long)]
     plain: bool,
-    /// With --plain: answer with one JSON object per line
+    /// With --plain: print the output as one JSON object per line
     #[arg(long)]
     json: bool,
-    /// With --plain: print each input line before its answer
+    /// With --plain: print each input line before its output
     #[arg(long)]
     echo: bool,
     /// With --plain: stop at the first rejected or invalid line
@@ -161,7 +161,7 @@ fn open_run(options: &Options, context: &Context) -> Result<Session, Failure> {
     }
 }
 
-/// Creates a run. At a terminal, a participant is asked for consent if it is needed.
+/// Creates a run to play. At a terminal, asks the participant for consent if the configuration requires consent.
 fn create_run(new: NewRun, context: &Context) -> Result<Session, Failure> {
     match Session::create(new.clone(), &context.configuration) {
         Err(RunError::ConsentNeeded(text)) if std::io::stdin().is_terminal() => {
@@ -215,7 +215,8 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     show_console(options, start, context)
 }
 
-/// Returns the theme: the one given, otherwise none if the terminal disables color, otherwise the one last chosen.
+/// Returns the given theme. If no theme was given, returns `mono` if the terminal disables color, otherwise the last
+/// chosen theme.
 fn select_theme(
     options: &Options,
     no_colour: bool,
@@ -224,7 +225,7 @@ fn select_theme(
 ) -> Result<Theme, Failure> {
     let asked = options.theme.as_deref().or(no_colour.then_some("mono"));
     let remembered = chosen.theme.as_deref().filter(|_| asked.is_none());
-    // A chosen theme that no longer exists must not prevent playing.
+    // The console also opens if the last chosen theme no longer exists.
     if let Some(theme) = remembered.and_then(|name| themes::find_theme(name, configuration).ok()) {
         return Ok(theme);
     }
@@ -236,7 +237,7 @@ pub fn show_console(options: &Options, start: Option<Effect>, context: &Context)
     show_console_with_resume_command(options, start, context, context.resume_command())
 }
 
-/// Opens the console and prints `again`, the command that continues later.
+/// Opens the console. After the console closes, prints `again`, the command that continues the run.
 fn show_console_with_resume_command(
     options: &Options,
     start: Option<Effect>,
@@ -258,7 +259,7 @@ fn show_console_with_resume_command(
         opponents: play_opponents,
     };
     let (code, farewell) = crate::console::run_console(settings, start)
-        .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;
+        .map_err(|error| Failure::failed(format!("cannot use the terminal: {error}")))?;
     if let Some(text) = farewell {
         println!("{text}");
     }

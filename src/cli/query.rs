@@ -22,27 +22,27 @@ use crate::session::{
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest` for the newest
+    /// Id of the run, or `latest` for the newest run
     run: String,
-    /// One read-only statement, or the name of a query of the library
+    /// One read-only statement, or the name of a query in the library
     // A statement may begin with a comment, and so with hyphens.
     #[arg(allow_hyphen_values = true)]
     sql: String,
     /// Include the hidden tables; for debug runs and finished runs. The inspection is recorded
     #[arg(long)]
     xray: bool,
-    /// Day that hidden.customers shows [default: the last one]
+    /// Day of the table hidden.customers [default: the last day]
     #[arg(long, value_name = "DAY", requires = "xray")]
     day: Option<u32>,
-    /// Format of the result
+    /// Output format of the query result
     #[arg(long, value_enum, default_value = "table")]
     format: RowFormat,
 }
 
-/// Format of a result.
+/// Output format of a query result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum RowFormat {
-    /// Aligned columns
+    /// Table with aligned columns
     Table,
     /// Comma-separated values
     Csv,
@@ -69,7 +69,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Returns the statement. A single name, which is never a statement, selects a query of the library.
+/// Returns the statement to run. A single word is never a statement, so it selects a query from the library.
 fn resolve_statement(given: &str, context: &Context) -> Result<String, Failure> {
     let is_name =
         given.contains('-') && given.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
@@ -86,7 +86,7 @@ fn resolve_statement(given: &str, context: &Context) -> Result<String, Failure> 
     }
 }
 
-/// Queries with the hidden tables. The run is opened for writing because the inspection is recorded.
+/// Runs a query that may read the hidden tables. Opens the run for writing because the inspection is recorded.
 fn query_hidden_tables(folder: &Path, options: &Options, context: &Context) -> Result<QueryResult, Failure> {
     context.check_view_allowed(folder)?;
     let mut session = Session::open_sealed(folder, Access::Write, true, context.seal_key()?)?;
@@ -97,8 +97,8 @@ fn query_hidden_tables(folder: &Path, options: &Options, context: &Context) -> R
     Ok(rows)
 }
 
-/// Queries the database of the run, which is completed on disk first if necessary. If the run is being played or its folder is
-/// read-only, the database is built in memory from the trajectory.
+/// Queries the database of the run, which is completed on disk first if necessary. If the run is being played or the
+/// folder is read-only, the database is built in memory from the trajectory.
 fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Failure> {
     if let Some(rows) = query_database_file(folder, sql, key)? {
         return Ok(rows);
@@ -124,15 +124,15 @@ fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Fai
     Ok(session.query(sql)?)
 }
 
-/// Queries the database file. Returns `None` if it is incomplete.
+/// Queries the database file. Returns `None` if the file is incomplete.
 fn query_database_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<QueryResult>, Failure> {
-    // Both read long files, so each has its own thread.
+    // The trajectory and the database are long files, so two threads read them.
     let (trajectory, opened) = std::thread::scope(|scope| {
         let opened = scope.spawn(|| open_database_file(folder, key));
         (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())
     });
     let (trajectory, opened) = (trajectory?, opened.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-    // Only lines that change the company count; queries and views do not.
+    // The database must contain every line that changes the company. Lines of queries and views do not count.
     let last = trajectory.lines.iter().rev().find(|line| changes_database(line));
     if let (Ok((connection, position)), Some(last)) = (opened, last)
         && position.seq >= last.seq

@@ -17,7 +17,7 @@ use crate::worker::request::{RecordSource, Request};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, `latest` for the newest, or the path of a run folder or trajectory
+    /// Id of the run, `latest` for the newest run, or the path of a run folder or trajectory
     run: String,
     /// Simulate the run again and compare every recorded state
     #[arg(long)]
@@ -25,7 +25,7 @@ pub struct Options {
     /// Start after this week; with --cast: record this week, or the weeks A..B
     #[arg(long, value_name = "N|A..B", conflicts_with = "verify", value_parser = parse_weeks)]
     week: Option<(u32, Option<u32>)>,
-    /// Open the X-ray screen, at the end of the record unless --week is given; for debug runs and finished runs
+    /// Open the x-ray screen, at the end of the record unless --week is given; for debug runs and finished runs
     #[arg(long, conflicts_with = "verify")]
     xray: bool,
     /// Write the replay to this file as an asciicast instead of showing it
@@ -99,13 +99,13 @@ fn check_inspection(recorded: &RecordSource, context: &Context) -> Result<(), Fa
     Ok(open_for_inspection(&folder, context.seal_key()?).map(drop)?)
 }
 
-/// Returns the run folder that a path names or that contains it.
+/// Returns the path if it is a run folder, otherwise the run folder that contains the file.
 fn containing_run_folder(path: &Path) -> Option<PathBuf> {
     let is_run = |folder: &&Path| folder.join("run.toml").is_file();
     Some(path).filter(is_run).or_else(|| path.parent().filter(is_run)).map(Path::to_owned)
 }
 
-/// Records that a run was read.
+/// Records in the run that the run was read.
 fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
         RecordSource::Run(id) => find_run_to_read(&context.runs_folder()?, id)?,
@@ -114,14 +114,14 @@ fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Resu
             None => return Ok(()),
         },
     };
-    // Verification shows nothing of the run.
+    // Verification reveals no data of the run, so no permission is needed.
     if detail == "verify" {
         return Ok(record_external_read(&folder, "replay", detail)?);
     }
     context.authorize_view(&folder, "replay", detail)
 }
 
-/// Returns a record by path if there is such a file or folder, otherwise by run id.
+/// Returns the record at a path if the path exists, otherwise the record of the run with this id.
 fn find_recorded(name: &str) -> RecordSource {
     let path = PathBuf::from(name);
     if path.exists() { RecordSource::File(path) } else { RecordSource::Run(name.to_owned()) }

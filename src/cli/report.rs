@@ -1,4 +1,4 @@
-//! `novamind report`: a report on a run as Markdown or HTML, a card, or a report on how it was played.
+//! `novamind report`: reports on the result of a run or on how the run was played, or draws a card.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use crate::session::{Session, read_afterwards};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest` for the newest
+    /// Id of the run, or `latest` for the newest run
     run: String,
     /// Report on how the run was played: time, breaks, screens, queries and tools by week
     #[arg(long)]
@@ -32,12 +32,12 @@ pub struct Options {
     out: Option<PathBuf>,
 }
 
-/// Format of a report.
+/// Output format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ReportFormat {
     /// Text with headings and tables
     Markdown,
-    /// One web page with charts, without scripts or other files
+    /// One self-contained web page with charts and without scripts
     Html,
     /// One JSON object; only with --session
     Json,

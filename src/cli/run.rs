@@ -1,4 +1,4 @@
-//! `novamind run`: runs a policy over one or many seeds.
+//! `novamind run`: plays a policy on one or many seeds.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -23,7 +23,7 @@ pub struct Options {
     /// Seed, or a range including both ends: 1..24
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
     seed: SeedRange,
-    /// Last day of the run; affects the mechanics [default: that of the policy or scenario, otherwise 500]
+    /// Last day of the run; affects the mechanics [default: the policy's or scenario's last day, otherwise 500]
     #[arg(long, value_name = "N")]
     days: Option<u32>,
     /// Stop after this day; the horizon does not change
@@ -35,7 +35,7 @@ pub struct Options {
     /// Starting cash in dollars
     #[arg(long, value_name = "X")]
     cash: Option<f64>,
-    /// Scenario
+    /// Name of the scenario
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
     /// Set a parameter; can be repeated
@@ -47,10 +47,10 @@ pub struct Options {
     /// Write the figures of every day to this file as CSV
     #[arg(long, value_name = "FILE.csv")]
     metrics: Option<PathBuf>,
-    /// Days whose figures are written [default: all]
+    /// Days whose figures are written [default: all days]
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', requires = "metrics")]
     metrics_days: Option<Vec<u32>>,
-    /// Keep the runs with their databases
+    /// Save the runs with their databases
     #[arg(long)]
     save: bool,
     /// Exit with code 4 if a run ends in bankruptcy
@@ -63,9 +63,9 @@ pub struct Options {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
-    /// On
+    /// Demand surges on
     On,
-    /// Off
+    /// Demand surges off
     Off,
 }
 
@@ -113,7 +113,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Seed, outcome and figures of a run.
+/// Seed, outcome and collected figures of a run.
 type PlayedSeed = (u64, Result<PolicyRunOutcome, RunError>, Collector);
 
 /// Plays all seeds on a thread pool. Results arrive in any order.
@@ -134,7 +134,7 @@ fn play_seeds(
                 let run_spec = RunSpec { seed, ..spec.clone() };
                 let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::disabled() };
                 let outcome = play(&policy, &run_spec, &configuration, &mut collector);
-                // The receiver is gone after an earlier seed has failed.
+                // Sending fails only if the receiver was dropped because an earlier seed failed.
                 let _ = done.send((seed, outcome, collector));
             });
         });
@@ -142,7 +142,7 @@ fn play_seeds(
     Ok(results)
 }
 
-/// Writes results in the order of their seeds, each as soon as all earlier ones are written.
+/// Writes the results in seed order. Each result is written as soon as all results of lower seeds are written.
 ///
 /// # Errors
 /// A result cannot be written, or a seed has no result because its thread panicked.
@@ -168,7 +168,7 @@ fn write_in_order(
     }
 }
 
-/// Destinations of the results.
+/// Output files of the results.
 struct ResultWriter<'a> {
     metrics: Option<BufWriter<File>>,
     options: &'a Options,
@@ -223,7 +223,7 @@ fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[MetricValue])
     Ok(())
 }
 
-/// Upper limit of `--jobs`, above the number of processors of any machine.
+/// Upper limit of `--jobs`, higher than the number of processors in any supported machine.
 const MAX_JOBS: usize = 1024;
 
 /// Creates a pool of worker threads.
@@ -239,7 +239,8 @@ pub fn thread_pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
         .map_err(|error| Failure::failed(format!("cannot start threads: {error}")))
 }
 
-/// Returns a progress bar on standard error if that is a terminal. It appears after half a second.
+/// Returns a progress bar that appears on standard error after half a second. The progress bar is hidden if standard
+/// error is not a terminal.
 pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
     use std::io::IsTerminal;
     if length < 2 || !std::io::stderr().is_terminal() {

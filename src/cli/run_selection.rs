@@ -1,4 +1,4 @@
-//! Options that select the run that a program plays.
+//! Options that select the run of a program.
 
 use std::path::PathBuf;
 
@@ -10,10 +10,10 @@ use crate::record::error::RunError;
 use crate::record::folder::runs::find_run;
 use crate::session::Session;
 
-/// The run that a program plays: an existing one or a new one.
+/// Options that select an existing run or create a new run for a program.
 #[derive(Debug, Args, Clone)]
 pub struct RunSelection {
-    /// Continue a run; `latest` is the newest unfinished one [default: start a new run]
+    /// Continue a run; `latest` is the newest unfinished run [default: start a new run]
     #[arg(long, value_name = "ID", conflicts_with_all = ["new", "seed", "days", "cash", "scenario", "mode", "participant", "set", "planted"])]
     run: Option<String>,
     /// Use the language model of this settings file as the voice of the run

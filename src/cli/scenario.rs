@@ -16,7 +16,7 @@ enum ScenarioCommand {
     List,
     /// Show the effective parameters of a scenario as TOML
     Show {
-        /// Scenario
+        /// Name of the scenario
         name: String,
     },
 }
@@ -29,7 +29,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             for name in configuration.scenario_names() {
                 match configuration.load_scenario(&name) {
                     Ok(scenario) => text += &format!("{name:<24}  {}\n", scenario.description),
-                    // One invalid file does not hide the others.
+                    // An invalid file is reported after the list of the other scenarios.
                     Err(error) => unreadable.push(error.to_string()),
                 }
             }

@@ -16,10 +16,10 @@ pub struct Options {
     /// Port on 127.0.0.1 [default: any free port]
     #[arg(long, value_name = "N")]
     port: Option<u16>,
-    /// Require the token in this file from every request; the file is created if it does not exist
+    /// Require every request to include the token in this file; a missing file is created
     #[arg(long, value_name = "FILE")]
     token: Option<PathBuf>,
-    /// Write the Python client to this folder; serves nothing unless a run is given, too
+    /// Write the Python client to this folder; without options that select a run, no server is started
     #[arg(long, value_name = "DIR")]
     client: Option<PathBuf>,
 }

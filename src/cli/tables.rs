@@ -27,7 +27,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 let near =
                     novamind_base::similar_names(name, tables().iter().map(|table| table.name.as_str()));
                 let help = if near.is_empty() {
-                    "`novamind tables` lists them".to_owned()
+                    "`novamind tables` lists all tables".to_owned()
                 } else {
                     format!("did you mean {}?", near.join(" or "))
                 };

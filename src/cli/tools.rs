@@ -29,7 +29,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             let tool = find(name).or_else(|| catalogue::find_code(name)).ok_or_else(|| {
                 Failure::usage(match catalogue::similar_tools(name) {
                     near if near.is_empty() => {
-                        format!("there is no tool {name}; `novamind tools` lists them")
+                        format!("there is no tool {name}; `novamind tools` lists all tools")
                     }
                     near => format!("there is no tool {name}; did you mean {}?", near.join(" or ")),
                 })

@@ -6,11 +6,11 @@ use novamind_tui::widgets::ListAction;
 /// A part of the console in which key bindings apply. A focused place has several scopes, the innermost first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scope {
-    /// Everywhere in a run.
+    /// All places in a run.
     Global,
     /// The start menu.
     Menu,
-    /// A collected class.
+    /// The results of a collected class.
     Class,
     /// Lists and tables.
     List,
@@ -22,13 +22,13 @@ pub enum Scope {
     Editor,
     /// The SQL editor.
     Query,
-    /// Query results.
+    /// The results of SQL queries.
     Result,
-    /// Result charts.
+    /// The chart of a query result.
     Chart,
     /// The export menu of a result.
     Export,
-    /// Negotiations.
+    /// Negotiations with enterprises.
     Inbox,
     /// The next-week dialog.
     NextWeek,
@@ -44,19 +44,19 @@ pub enum Scope {
     Market,
     /// Playback of a recorded run.
     Playback,
-    /// Pages of a study for its participant.
+    /// Study pages that a participant answers.
     Study,
-    /// The decisions list of a what-if.
+    /// The list of decisions in a what-if.
     Decisions,
-    /// The figures of a what-if.
+    /// The figures of the branches in a what-if.
     Branches,
     /// The participation curve of a group.
     Curve,
-    /// The page of a lesson.
+    /// The lesson page.
     Lesson,
-    /// The x-ray: hidden state of the run.
+    /// The X-ray screen, which shows hidden state of the run.
     Xray,
-    /// The offer to restore drafts.
+    /// The dialog that offers to restore drafts.
     Drafts,
     /// The screen shown while the clock is stopped.
     Paused,
@@ -94,7 +94,7 @@ impl Scope {
         Scope::Paused,
     ];
 
-    /// Returns the name in the key file.
+    /// Returns the name of the scope in the key file.
     pub fn id(self) -> &'static str {
         match self {
             Scope::Global => "global",
@@ -127,7 +127,7 @@ impl Scope {
         }
     }
 
-    /// Returns the heading in the manual.
+    /// Returns the heading of the scope in the manual.
     pub fn title(self) -> &'static str {
         match self {
             Scope::Global => "Everywhere in a run",
@@ -160,14 +160,14 @@ impl Scope {
         }
     }
 
-    /// Returns whether printable characters are input here.
+    /// Returns whether printable characters are text input in this scope.
     pub fn is_text(self) -> bool {
         matches!(self, Scope::Field | Scope::Editor)
     }
 }
 
 impl Action {
-    /// Returns the action of a command, or `None` if no action has its number.
+    /// Returns the action with the number of a command, or `None` if no action has that number.
     pub fn from_command(command: CommandId) -> Option<Action> {
         ACTIONS.get(usize::from(command.0)).map(|entry| entry.action)
     }
@@ -205,15 +205,15 @@ impl From<Action> for Option<ListAction> {
 /// One row of the action table.
 #[derive(Debug)]
 pub struct ActionEntry {
-    /// The action.
+    /// The action that this row describes.
     pub action: Action,
-    /// Name in the key file.
+    /// Name of the action in the key file.
     pub name: &'static str,
-    /// The scope in which it is available.
+    /// The scope in which the action is available.
     pub scope: Scope,
-    /// Label for the footer and the palette.
+    /// Label of the action in the footer and the palette.
     pub title: &'static str,
-    /// Description for help, manual and palette.
+    /// Description of the action in the help, the manual and the palette.
     pub doc: &'static str,
 }
 
@@ -247,7 +247,7 @@ actions! {
         Sql "sql" "SQL" "Query the database."
         Journal "journal" "Journal" "Show past actions and forecast scores."
         Xray "xray" "X-ray" "Show the hidden state of the run. For debug runs and finished runs."
-        Breakpoints "breakpoints" "breakpoints" "Show the breakpoints on the X-ray screen: set one, run to it, or see the history of its condition. For debug runs and finished runs."
+        Breakpoints "breakpoints" "breakpoints" "Show the breakpoints on the X-ray screen: set a breakpoint, run to it, or see the history of its condition. For debug runs and finished runs."
         HiddenValues "hidden-values" "true values" "Show or hide true values on the Customers and Market screens; each day shown is recorded as an inspection. For debug runs and finished runs."
         NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast cash, and run the week."
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by name."
@@ -264,9 +264,9 @@ actions! {
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
         Explain "explain" "explain" "Explain the selected figure or field."
-        Why "why" "why" "Show how much each cause contributed to the change of the selected figure: the week is simulated again without it. Not in an unfinished baseline run."
+        Why "why" "why" "Show how much each cause contributed to the change of the selected figure, by simulating the week without that cause. Not in an unfinished baseline run."
         Branches "branches" "what if" "Simulate the run again with other decisions, from a week you choose. The run itself does not change. Not in an unfinished baseline run."
-        Curves "curves" "participation curve" "Show the quality that a group requires at each price. Drag prices and qualities of plans to see how leads respond; nothing is set."
+        Curves "curves" "participation curve" "Show the quality that a group requires at each price. Drag prices and qualities of plans to see how leads respond; the settings do not change."
         Glossary "glossary" "glossary" "Look up any term."
         Lesson "lesson" "lesson" "In a lesson: show or hide the task next to the screen; in a small window, open it as a page."
         LessonPage "lesson-page" "task" "In a lesson: open the whole task as a page, with its question, hints and goals."
@@ -292,17 +292,17 @@ actions! {
         First "first" "first" "Move to the first row."
         Last "last" "last" "Move to the last row."
         Open "open" "open" "Open the selected item."
-        Close "close" "close" "Close, clear the filter, or go back to where you came from."
-        Filter "filter" "filter" "Show only the rows that contain a text."
-        Sort "sort" "sort" "Sort by the selected column; again to reverse, a third time to stop sorting."
+        Close "close" "close" "Close the open item, clear the filter, or go back to the previous place."
+        Filter "filter" "filter" "Show only the rows that contain a text you type."
+        Sort "sort" "sort" "Sort by the selected column; press again to reverse, a third time to stop sorting."
     }
     Form {
         Apply "apply" "apply" "Submit the form."
         EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
-        CopyDown "same-down" "copy down" "Copy the value to the cells below; right after you accept a value, that value."
+        CopyDown "same-down" "copy down" "Copy the value to the cells below. Right after you accept a value, the accepted value is copied."
         ClearCell "clear-cell" "0" "Clear the cell."
         ResetForm "reset-form" "reset" "Discard the draft and show the current values; press again to restore the draft."
-        CopyCall "copy-call" "copy call" "Copy the equivalent call."
+        CopyCall "copy-call" "copy call" "Copy the tool call that the form would send."
         SaveCalls "save-calls" "calls to file" "Write this week's calls and the drafts to calls.txt in the run folder."
     }
     Query {
@@ -331,8 +331,8 @@ actions! {
     Chart {
         ChartX "chart-x" "x axis" "Use another column for the x axis."
         ChartY "chart-y" "y axis" "Plot another numeric column."
-        MoreSeries "more-series" "add series" "Add a series."
-        FewerSeries "fewer-series" "remove series" "Remove a series."
+        MoreSeries "more-series" "add series" "Add a series to the chart."
+        FewerSeries "fewer-series" "remove series" "Remove a series from the chart."
         ChartKind "chart-kind" "lines or bars" "Switch between lines and bars."
         CloseChart "close-chart" "table" "Return to the table."
     }
@@ -347,13 +347,13 @@ actions! {
         SendOffer "send-offer" "send" "Send the offer to the marked enterprises, or to the selected one."
         MatchAskedPrice "take-their-price" "match their price" "Offer the price that the enterprise asks for the plan it named."
         Mark "mark" "mark" "Mark or unmark the thread for a bulk offer."
-        MarkAll "mark-all" "mark all" "Mark every thread shown; again to unmark them."
+        MarkAll "mark-all" "mark all" "Mark every thread in the list; press again to unmark them."
         OfferPlan "plan" "plan" "Choose another plan for this line of the offer."
-        OfferBasis "basis" "basis" "Price as a percentage of the list price, as a percentage of the asked price, or in dollars."
+        OfferBasis "basis" "basis" "Enter the price as a percentage of the list price, as a percentage of the asked price, or in dollars."
         OfferPrice "price" "price" "Enter the price of this line of the offer."
         NextThreadView "other-threads" "other threads" "Switch between threads that wait for you, threads that wait for the enterprise, and closed threads."
         InboxRules "rules" "rules" "Answer waiting threads with rules that you type; nothing is sent until you confirm."
-        InboxOutcomes "outcomes" "outcomes" "Switch between the outcomes of threads by first offer and week, and the threads."
+        InboxOutcomes "outcomes" "outcomes" "Switch between the threads and their outcomes by first offer and week."
         RejectOffer "reject" "reject" "End the threads without a deal, after confirmation."
         InboxGroup "group" "group" "Show the group of the enterprise."
         InboxSql "thread-sql" "SQL" "Query the thread in SQL."
@@ -361,18 +361,18 @@ actions! {
     NextWeek {
         NextStep "next-step" "next step" "Go to the next step; on the last one, run the week."
         PreviousStep "previous-step" "previous step" "Go back to the previous step."
-        FillNaiveForecasts "fill-naively" "fill with projection" "Fill empty forecasts with the projection; the record marks them. On the review, fill in everything (not in baseline runs)."
+        FillNaiveForecasts "fill-naively" "fill with projection" "Fill empty forecasts with the projection; the record marks these forecasts. In the review, fill in everything (not in baseline runs)."
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
         LeaveEditor "leave-editor" "leave" "Leave the editor; the text is kept."
     }
     Field {
-        Commit "commit" "accept" "Accept what you typed; in a form, move down."
-        CommitDown "commit-down" "accept, down" "Accept what you typed and move down."
-        CommitNext "commit-next" "accept, next" "Accept what you typed and move to the next field."
-        CommitPrevious "commit-previous" "accept, previous" "Accept what you typed and move to the previous field."
-        Discard "discard" "cancel" "Discard what you typed."
+        Commit "commit" "accept" "Accept the typed value; in a form, move down."
+        CommitDown "commit-down" "accept, down" "Accept the typed value and move down."
+        CommitNext "commit-next" "accept, next" "Accept the typed value and move to the next field."
+        CommitPrevious "commit-previous" "accept, previous" "Accept the typed value and move to the previous field."
+        Discard "discard" "cancel" "Discard the typed value."
     }
     Notes {
         EditNotes "edit-memo" "edit notes" "Edit the notes of the run."
@@ -385,8 +385,8 @@ actions! {
         SendPost "send-post" "publish" "Publish the post, after confirmation."
         ClearReply "unreply" "not a reply" "Turn the reply into a new post."
         NextKind "next-kind" "kind" "Filter by author: customers, press, comments, your posts, then all."
-        EarlierWeek "earlier-week" "earlier week" "Show one week only: the latest, then earlier ones."
-        LaterWeek "later-week" "later week" "Show a later week; after the latest, all weeks."
+        EarlierWeek "earlier-week" "earlier week" "Show only the posts of one week: first the latest week, then earlier weeks."
+        LaterWeek "later-week" "later week" "Show a later week; after the latest week, show all weeks."
     }
     Market {
         FindGroup "find-group" "find a group" "Pay for a market research attempt, after confirmation."
@@ -396,7 +396,7 @@ actions! {
         GroupCurve "group-curve" "curve" "Show the participation curve of the selected group with the plans."
     }
     Curve {
-        NextPlan "next-plan" "plan" "Drag the next plan, or all plans together. Left and right change the price, up and down the quality."
+        NextPlan "next-plan" "plan" "Select the next plan, or all plans together, to drag. Left and right change the price, up and down the quality."
         NextCurve "next-curve" "next group" "Show the curve of the next known group."
         PreviousCurve "previous-curve" "previous group" "Show the curve of the previous known group."
         ResetCurve "reset-curve" "reset" "Reset the plans to their current values."
@@ -404,12 +404,12 @@ actions! {
     Xray {
         TypeTarget "type" "type" "Type a group or customer number with an optional day, for example S2 84 or 1372 304; or a day, a part, or a breakpoint condition."
         SeekDay "seek-day" "day …" "Go to a day by number."
-        DayWeekBefore "week-before" "week earlier" "Show the day a week earlier; left shows the previous day."
-        DayWeekAfter "week-after" "week later" "Show the day a week later, at most the last day; right shows the next day."
-        HoldFactor "hold" "fix" "Fix the selected factor of the leads at a value and show the expected leads, or release it."
+        DayWeekBefore "week-before" "week earlier" "Show the state one week earlier; left shows the previous day."
+        DayWeekAfter "week-after" "week later" "Show the state one week later, at most the last day; right shows the next day."
+        HoldFactor "hold" "fix" "Fix the selected factor of the leads at a value and show the expected leads, or release the factor."
         TypeCommand "ask" "command" "Type a plain-mode command: find, who, diff or set. set changes a parameter of a debug run, after confirmation."
         RunDays "run-days" "run" "Type how many days of a debug run to simulate; it stops on the first day on which a breakpoint becomes true."
-        BreakpointHistory "look-back" "history" "Show since when the condition of each breakpoint has been true or false."
+        BreakpointHistory "look-back" "history" "Show the days on which the condition of each breakpoint became true or false."
         RemoveBreakpoint "remove-breakpoint" "remove" "Remove the selected breakpoint."
     }
     Dialog {
@@ -430,12 +430,12 @@ actions! {
         DeleteRun "delete-run" "delete" "Delete the run and everything in its folder, after confirmation."
     }
     Class {
-        ClassDecision "class-decision" "decision" "Plot another decision on the x axis: the mean over the weeks in which the student decided."
-        ClassFigure "class-figure" "figure" "Plot another figure on the y axis: its value in the last week."
+        ClassDecision "class-decision" "decision" "Plot another decision on the x axis, as the mean over the weeks in which the student decided."
+        ClassFigure "class-figure" "figure" "Plot another figure on the y axis, as its value in the last week."
         ClassView "class-view" "lower pane" "In a small window, choose the pane below the curves: the decision against the figure, guesses, or pitfalls."
         ClassQuestion "class-question" "question" "Show the guesses of the next question of the lesson."
         ClassPart "class-part" "part" "Show the next part of the lesson."
-        HideNames "hide-names" "names" "Show ranks in place of the names of students, or show the names."
+        HideNames "hide-names" "names" "Show ranks instead of the names of students, or show the names again."
     }
     FinalPage {
         ToMenu "to-menu" "start menu" "Go to the start menu."
@@ -451,8 +451,8 @@ actions! {
         AnswerQuestion "answer" "guess" "Answer the question of the step."
         NextHint "next-hint" "hint" "Show the next hint of the step; the record notes it."
         TryAgain "try-again" "try again" "Try the step again from its start, in a new run, after confirmation."
-        NextPart "next-part" "next part" "Start the next part of the lesson after this one has ended."
-        Debrief "debrief" "debrief" "Compare a finished part with the good and the bad play."
+        NextPart "next-part" "next part" "Start the next part of the lesson after this part has ended."
+        Debrief "debrief" "debrief" "Compare a finished part with the reference play and the bad play."
         LessonWeek "lesson-week" "next week" "Close the page and run the next week."
         SkipAnswers "week-unanswered" "week only" "Run the week without answering the waiting messages."
     }
@@ -496,7 +496,7 @@ actions! {
         Experimenter "experimenter" "experimenter" "Enter the experimenter's code to open the start menu."
     }
     Drafts {
-        RestoreDrafts "restore-texts" "restore" "Restore the drafts where you typed them."
+        RestoreDrafts "restore-texts" "restore" "Restore the drafts in the fields where you typed them."
         DiscardDrafts "drop-texts" "discard" "Discard the drafts."
     }
     Paused {
@@ -506,12 +506,12 @@ actions! {
 }
 
 impl Action {
-    /// Returns its row of the table.
+    /// Returns the row of the action in [`ACTIONS`].
     pub fn entry(self) -> &'static ActionEntry {
-        ACTIONS.iter().find(|entry| entry.action == self).expect("the table holds every action")
+        ACTIONS.iter().find(|entry| entry.action == self).expect("the table contains every action")
     }
 
-    /// Returns the action with a name in a scope.
+    /// Returns the action that has a name in a scope.
     pub fn by_name(scope: Scope, name: &str) -> Option<Action> {
         ACTIONS.iter().find(|entry| entry.scope == scope && entry.name == name).map(|entry| entry.action)
     }

@@ -1,6 +1,6 @@
 //! State of the console: messages become actions, actions change the state and produce orders for the worker.
 //!
-//! Nothing here blocks, reads a file or draws. Slow work is an [`Order`]; its result returns as a message.
+//! The state never blocks, reads a file or draws. Slow work is returned as an [`Order`], and its result arrives as a message.
 
 mod activity_log;
 mod breadcrumbs;
@@ -67,19 +67,19 @@ pub use settings::Settings;
 
 const MAX_SCREEN_HISTORY: usize = 50;
 
-/// Work outside the console state.
+/// Work that the application requests from the main loop and the worker threads.
 pub enum Order {
     /// Work for the session thread.
     Job(Job),
-    /// A question of a page, and whether days are being simulated: queries do not wait for the simulation.
+    /// A question that a page asks, and whether days are being simulated. Queries do not wait for the simulation.
     Ask(OutgoingQuestion, bool),
     /// Stop the user's query and other running work of the user.
     CancelQuery,
     /// Copy text to the clipboard of the terminal.
     Copy(String),
-    /// Write files.
+    /// Write files with these paths and contents.
     Write(Vec<(PathBuf, Vec<u8>)>),
-    /// Save a query: its name, its title, the statement.
+    /// Save a named query. The strings are its name, title and statement.
     SaveQuery(Configuration, [String; 3]),
     /// Redraw the whole window.
     Redraw,
@@ -92,9 +92,9 @@ pub enum Order {
 /// A status message in the footer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StatusMessage {
-    /// The text.
+    /// The text of the message.
     pub text: String,
-    /// Whether it reports an error or a rejection.
+    /// Whether the message reports an error or a rejection.
     pub is_error: bool,
 }
 
@@ -103,16 +103,16 @@ pub struct StatusMessage {
 pub struct SimulationProgress {
     /// The day before the first simulated day.
     pub from: u32,
-    /// Last day.
+    /// The last day to simulate.
     pub to: u32,
     /// The day that was simulated last.
     pub current: u32,
-    /// Figures of that day, if it was simulated for the first time.
+    /// Figures of the current day, if that day was simulated for the first time.
     pub figures: Option<SimulatedDay>,
 }
 
 impl SimulationProgress {
-    /// Returns the progress before the first day.
+    /// Returns the progress before the first day is simulated.
     pub fn new(from: u32, to: u32) -> SimulationProgress {
         SimulationProgress { from, to, current: from, figures: None }
     }
@@ -122,7 +122,7 @@ impl SimulationProgress {
 pub enum Stage {
     /// The start menu.
     Menu(Box<StartMenu>),
-    /// A run.
+    /// An open run.
     Run(Box<Run>),
     /// A page of a study.
     Study(Box<StudyPage>),
@@ -130,13 +130,13 @@ pub enum Stage {
 
 /// A run that is open in the console.
 pub struct Run {
-    /// The company as displayed.
+    /// The displayed state of the company.
     pub company: Arc<DisplayedCompany>,
     /// The current screen.
     pub screen: ScreenId,
-    /// Screens shown before, the latest last.
+    /// Screens shown before the current screen, the latest last.
     pub back_history: Vec<ScreenId>,
-    /// Places from which the current one was opened, the latest last.
+    /// Places from which the current place was opened, the latest last.
     breadcrumbs: Vec<breadcrumbs::Breadcrumb>,
     /// Screens that were left with `back`, the latest last.
     pub forward_history: Vec<ScreenId>,
@@ -146,7 +146,7 @@ pub struct Run {
     previous_screen: Option<ScreenId>,
     /// The open object: its screen, kind and name.
     selected: Option<(ScreenId, &'static str, String)>,
-    /// All screens.
+    /// All screens of the run.
     pub screens: Screens,
     /// The next-week dialog.
     pub next_week: NextWeekDialog,
@@ -163,12 +163,12 @@ pub struct Run {
     overlay: overlay::HiddenValuesOverlay,
     /// Time left until each time limit.
     pub time_left: Vec<TimeLeft>,
-    /// Why the database is behind, if it is.
+    /// Reason why the database is behind the run, if it is behind.
     pub database_error: Option<String>,
 }
 
 impl Run {
-    /// Both screens count as viewed.
+    /// Shows a screen, and marks the items of the previous and the new screen as seen.
     fn set_screen(&mut self, screen: ScreenId) {
         self.screens.get_mut(self.screen).mark_seen();
         self.screen = screen;
@@ -177,11 +177,11 @@ impl Run {
     }
 }
 
-/// The console.
+/// State of the console.
 pub struct App {
-    /// Colors.
+    /// Colors of the console.
     pub theme: Theme,
-    /// Keys.
+    /// Key bindings.
     pub keys: KeyBindings,
     /// Characters that charts are drawn with.
     pub glyphs: Glyphs,
@@ -197,16 +197,16 @@ pub struct App {
     pub layers: Layers,
     /// The screen shown while the clock is stopped.
     pub pause_screen: Option<PauseScreen>,
-    /// Measures active time.
+    /// Stopwatch that measures active time.
     pub stopwatch: Stopwatch,
     presence: PresenceWatch,
     typing_log: TypingLog,
     edit_source: EditSource,
     explained_term: Option<String>,
-    /// Checks the experimenter's code; `None` outside a study with a code.
+    /// Check of the experimenter's code, or `None` outside of a study with a code.
     pub code_check: Option<CodeCheck>,
     drafts: drafts::DraftState,
-    /// The status message.
+    /// The status message in the footer.
     pub status: Option<StatusMessage>,
     /// Work that the user waits for.
     pub busy: Option<BusyState>,
@@ -276,7 +276,7 @@ impl App {
         self.follow(vec![effect]);
     }
 
-    /// Handles a message. Outside work is collected for [`App::take_orders`].
+    /// Handles a message. Orders that result from the message are collected for [`App::take_orders`].
     pub fn handle_message(&mut self, message: Message) {
         match message {
             Message::Input(event) => self.handle_input(event),
@@ -299,12 +299,12 @@ impl App {
         self.record_user_state();
     }
 
-    /// Returns the orders since the last call.
+    /// Removes and returns all collected orders.
     pub fn take_orders(&mut self) -> Vec<Order> {
         std::mem::take(&mut self.orders)
     }
 
-    /// Returns the orders for the session thread; other orders stay.
+    /// Removes and returns the orders for the session thread. Other orders stay collected.
     pub fn take_jobs(&mut self) -> Vec<Job> {
         let (jobs, others) = self.take_orders().into_iter().partition(|order| matches!(order, Order::Job(_)));
         self.orders = others;
@@ -320,7 +320,7 @@ impl App {
         }
     }
 
-    /// Returns whether the user waits for a query, a script or a week, whose elapsed time is displayed.
+    /// Returns whether the user waits for a query, a script or a week. The footer shows the elapsed time.
     pub fn is_waiting(&self) -> bool {
         self.busy.is_some() || self.run().is_some_and(|run| run.screens.sql.is_running())
     }

@@ -1,4 +1,4 @@
-//! Response times of the console: the real application and its threads, drawn to a discarded terminal.
+//! Response times of the console, measured with the real application and its threads. The output of the terminal is discarded.
 
 use std::io::{self, Sink};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -13,9 +13,9 @@ use super::headless::{Headless, key_event};
 use novamind_worker::message::Message;
 
 const WINDOW_SIZE: (u16, u16) = (200, 60);
-/// Keys pressed while a week runs: every screen, and navigation in it.
+/// Keys pressed while a week runs: keys that show each screen and navigate in it.
 const WEEK_KEYS: [&str; 12] = ["1", "down", "2", "up", "3", "down", "4", "tab", "8", "down", "0", "up"];
-/// Interval between the keys: faster than typing, about the repeat rate of a held key.
+/// Interval between key presses, about the repeat rate of a held key.
 const KEY_INTERVAL: Duration = Duration::from_millis(12);
 /// Keys of the next-week dialog: continue, a rationale, continue, fill in the forecasts, run.
 const NEXT_WEEK_KEYS: [&str; 8] = ["n", "enter", "t", "r", "y", "enter", "f", "enter"];
@@ -56,7 +56,7 @@ pub fn measure_keys_during_weeks(settings: Settings, run: &str, weeks: usize) ->
     Ok(seconds)
 }
 
-/// A headless console whose frames are written to a discarded terminal, so that writing is part of the time.
+/// A headless console whose frames are written to a terminal that discards its output, so that writing counts as response time.
 struct MeasuredConsole {
     headless: Headless,
     terminal: Terminal<CrosstermBackend<Sink>>,
@@ -103,7 +103,7 @@ impl MeasuredConsole {
         while self.elapsed_weeks() < week {
             let mut keys = 0;
             let mut next = Some(self.headless.receive()?);
-            // Draws once after all messages that have arrived, as the console does.
+            // Draws one frame after handling all messages that have arrived, as the console does.
             while let Some(message) = next {
                 keys += usize::from(matches!(message, Message::Input(_)));
                 self.headless.app.handle_message(message);

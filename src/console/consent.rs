@@ -20,7 +20,7 @@ const MAX_TEXT_WIDTH: u16 = 100;
 /// Shown if the user agrees before the end of the text was on the screen.
 pub const UNREAD_ERROR: &str = "scroll to the end of the text first";
 
-/// A consent text, and whether its end was reached.
+/// A consent text, and whether its end was on the screen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConsentText {
     text: String,
@@ -43,19 +43,19 @@ impl ConsentText {
         }
     }
 
-    /// Returns how the user agrees, or `None` if the end of the text was not on the screen yet.
+    /// Returns the consent of the user, or `None` if the end of the text was not on the screen yet.
     pub fn consent(&self) -> Option<ConsentGiven> {
         let read_ms = monotonic_time().saturating_sub(self.shown_at).as_millis() as u64;
         let consent_given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
         self.is_read.get().then_some(consent_given)
     }
 
-    /// Scrolls the text. Returns whether the action was a scroll action.
+    /// Scrolls the consent text. Returns whether the action was a scroll action.
     pub fn handle_scroll(&mut self, action: Action) -> bool {
         self.scroll.handle_action(action, self.visible_rows.get().max(1))
     }
 
-    /// Draws the text and the choices below it. `agree` and `decline` are their labels with keys.
+    /// Draws the text and the choices below it. `agree` and `decline` are the labels of the choices with keys.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, title: &str, agree: &str, decline: &str) {
         canvas.clear(area, Role::Text);
         let width = area.width.saturating_sub(4).clamp(1, MAX_TEXT_WIDTH);

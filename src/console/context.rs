@@ -8,10 +8,10 @@ use novamind_worker::company::DisplayedCompany;
 /// Placeholder of charts and tables before the first week.
 pub const NO_DATA: &str = "no data yet: run a week (n)";
 
-/// The list of screens, in the order of their keys.
+/// Defines the screens in the order of their keys.
 macro_rules! screen_ids {
     ($($(#[$doc:meta])* $Screen:ident,)*) => {
-        /// A screen.
+        /// Identifier of a screen.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum ScreenId { $($(#[$doc])* $Screen,)* }
 
@@ -34,49 +34,49 @@ screen_ids! {
     Cash,
     /// The customer groups.
     Customers,
-    /// Quality, capacity, issues, R&D.
+    /// Quality, capacity, issues and R&D.
     Product,
     /// The social feed and the company's posts.
     Social,
     /// Negotiations with enterprises.
     Inbox,
-    /// Groups, studies, the economy.
+    /// Groups, studies and the economy.
     Market,
-    /// Forms of all tools.
+    /// Forms for all tools.
     Tools,
-    /// The database.
+    /// Queries of the database.
     Sql,
     /// Past actions and forecast scores.
     Journal,
-    /// Hidden state, if permitted.
+    /// Hidden state, if the run permits inspections.
     Xray,
 }
 
 impl ScreenId {
-    /// Returns the name in the trajectory.
+    /// Returns the name of the screen in the trajectory.
     pub fn record_name(self) -> &'static str {
         self.action().entry().name
     }
 
-    /// Returns whether the screen is available: the x-ray requires permission to view hidden state.
+    /// Returns whether the screen is available. The X-ray screen requires permission to view hidden state.
     pub fn is_available_in(self, company: &DisplayedCompany) -> bool {
         self != ScreenId::Xray || company.can_inspect
     }
 }
 
-/// Context that a screen reads.
+/// Values that a screen reads to draw and to handle actions.
 #[derive(Clone, Copy)]
 pub struct ScreenContext<'a> {
-    /// The company.
+    /// The displayed company.
     pub company: &'a DisplayedCompany,
-    /// Keys, for labels.
+    /// Key bindings, for labels.
     pub keys: &'a KeyBindings,
-    /// Rows that the focused list showed last, for paging.
+    /// Number of rows that the focused list showed in the last frame, for paging.
     pub page_rows: u16,
 }
 
 impl ScreenContext<'_> {
-    /// Returns an action with its key, for borders: `ctrl-s apply`.
+    /// Returns the key and the title of an action for a border: `ctrl-s apply`.
     pub fn hint(&self, action: Action) -> String {
         match self.keys.label(action) {
             Some(key) => format!("{key} {}", action.entry().title),
@@ -84,7 +84,7 @@ impl ScreenContext<'_> {
         }
     }
 
-    /// Returns several actions with their keys.
+    /// Returns the keys and the titles of several actions.
     pub fn hints(&self, actions: &[Action]) -> String {
         actions.iter().map(|action| self.hint(*action)).collect::<Vec<_>>().join(" · ")
     }
@@ -93,25 +93,25 @@ impl ScreenContext<'_> {
 /// A figure that can be explained and traced to its source rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
-    /// Its title: `cancellations of S1`.
+    /// Title of the figure, for example `cancellations of S1`.
     pub title: String,
-    /// Term that explains it: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`), or a
+    /// Term that explains the figure: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`), or a
     /// column (`ledger.amount`).
     pub term: &'static str,
-    /// Query for the source rows, if it has any.
+    /// Query for the source rows, if the figure has source rows.
     pub sql: Option<String>,
-    /// The weekly quantity that it shows and its week, if its change can be explained.
+    /// The weekly quantity that the figure shows and the week, if the change of the figure can be explained.
     pub week_quantity: Option<(WeekQuantity, u32)>,
 }
 
 impl Figure {
-    /// Returns the figure with a weekly quantity, if it has one.
+    /// Returns the figure with a weekly quantity, or unchanged if `quantity` is `None`.
     pub fn with_week_quantity(self, quantity: Option<WeekQuantity>, week: u32) -> Figure {
         Figure { week_quantity: quantity.map(|quantity| (quantity, week)), ..self }
     }
 }
 
-/// Keys of a pane, for the help.
+/// Scopes and actions of a pane, for the help.
 pub struct PaneKeys {
     /// Title of the pane.
     pub title: String,

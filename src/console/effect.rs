@@ -14,7 +14,7 @@ use novamind_worker::readings::Reading;
 use novamind_worker::request::{RecordSource, Request};
 
 impl Effect {
-    /// Returns whether it would change the run.
+    /// Returns whether the effect would change the run.
     pub fn changes_run(&self) -> bool {
         match self {
             Effect::Request(request) => request.changes_run(),
@@ -26,7 +26,7 @@ impl Effect {
         }
     }
 
-    /// Returns the effect of a tool call.
+    /// Returns the effect that requests a tool call.
     pub fn call(tool: ToolId, arguments: Value) -> Effect {
         Effect::Request(Request::Call { tool, arguments })
     }
@@ -43,9 +43,9 @@ pub enum Effect {
     Project(RecordSource),
     /// Seek in the playback.
     Go(SeekTarget),
-    /// Send a question to the worker; the page that asks keeps the pending answer.
+    /// Send a question of a page to the worker. The page keeps the pending answer.
     Ask(OutgoingQuestion),
-    /// A draft of the screen was sent; its place in the record.
+    /// Record that the draft at a place of the screen was sent.
     SentText(&'static str),
     /// Show the causes of the change of a weekly figure.
     AskWhy(Figure),
@@ -53,7 +53,7 @@ pub enum Effect {
     ShowRows(Figure),
     /// Close all dialogs.
     CloseDialogs,
-    /// Show the participation curve of a group, by default of the first known one.
+    /// Show the participation curve of a group. The default is the first known group.
     ShowCurve(Option<Group>),
     /// Show the opponents page.
     ShowOpponents,
@@ -71,65 +71,65 @@ pub enum Effect {
     Copy(String),
     /// Show a text with a title.
     ShowText(String, String),
-    /// Write a file into the run folder: name and contents. If the name exists, the next free number is used.
+    /// Write a file with a name and contents into the run folder. If the name exists, the next free number is used.
     Write(String, Vec<u8>),
     /// Show a status message.
     Say(String),
     /// Show an error message.
     Complain(String),
-    /// Clear the breadcrumbs before the effects that follow.
+    /// Clear the breadcrumbs before the following effects are executed.
     BeginPath,
     /// Show a screen.
     Show(ScreenId),
     /// Show the form of a tool.
     ShowTool(ToolId),
-    /// Show the form of a tool at the first cell for a group, a plan or similar.
+    /// Show the form of a tool and focus the first cell for a key, for example a group or a plan.
     ShowCell(ToolId, String),
-    /// Show the form of a tool with arguments filled in; `Null` fills in none.
+    /// Show the form of a tool with arguments filled in.
     Prefill {
-        /// Tool.
+        /// The tool whose form is shown.
         tool: ToolId,
-        /// Arguments.
+        /// Arguments to fill in. `Null` fills in none.
         arguments: Value,
     },
-    /// Show a thread in the inbox by number.
+    /// Show the thread with a number in the inbox.
     ShowThread(u32),
     /// Show a group on a screen.
     ShowGroup(ScreenId, Group),
     /// Copy a statement to the SQL editor.
     EditSql(String),
-    /// Copy a statement to the SQL editor and run it.
+    /// Copy a statement to the SQL editor and run the statement.
     RunSql(String),
     /// Save a statement as a named query.
     SaveQuery {
-        /// Name of its file.
+        /// Name of the query's file.
         name: String,
-        /// Title, if the statement has none.
+        /// Title that is used if the statement contains no title.
         title: String,
-        /// Statement.
+        /// The SQL statement.
         sql: String,
     },
     /// Ask for confirmation of an irreversible call.
     ConfirmCall {
-        /// Tool.
+        /// The tool to call.
         tool: ToolId,
-        /// Arguments.
+        /// Arguments of the call.
         arguments: Value,
-        /// Description of the consequences.
+        /// Description of the consequences, shown to the user.
         text: String,
     },
     /// Ask for confirmation of irreversible calls.
     ConfirmCalls {
-        /// Tools and arguments, in order.
+        /// Tools and arguments of the calls, in execution order.
         calls: Vec<(ToolId, Value)>,
-        /// Description of the consequences.
+        /// Description of the consequences, shown to the user.
         text: String,
     },
     /// Ask for confirmation before a step of the lesson, counted from 0, is retried.
     TryStepAgain(usize),
     /// Open the debrief.
     ShowDebrief,
-    /// Explain a subject.
+    /// Open the explanation of a subject.
     Explain(Subject),
     /// Open the practice run with the tour.
     StartTour,
@@ -137,7 +137,7 @@ pub enum Effect {
     Receive(Box<Study>),
     /// Restore the offered drafts (`true`) or discard them.
     SettleOffer(bool),
-    /// Stop the clock, with a reason if one was asked.
+    /// Stop the clock, with a reason if the study requires one.
     StopClock(Option<String>),
     /// Save and quit, discarding input in progress.
     LeaveNow,

@@ -24,7 +24,7 @@ pub fn write_in_background(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>
     });
 }
 
-/// Saves a query of the user in the background and reports the new library.
+/// Saves a user's query in the background and reports the new query library.
 pub fn save_query_in_background(
     configuration: Configuration,
     [name, title, sql]: [String; 3],
@@ -47,7 +47,7 @@ fn format_paths(paths: &[PathBuf]) -> String {
     format!("written: {}", words.join(", "))
 }
 
-/// Writes a new file. If the name exists, its number is increased until it is free.
+/// Writes a new file. If the name exists, the number in the name is increased until the name is free.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -62,7 +62,7 @@ fn write_to_free_name(path: &Path, contents: &[u8]) -> io::Result<PathBuf> {
     }
 }
 
-/// Returns the next name: `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after `note.txt`.
+/// Returns the file name with the next number: `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after `note.txt`.
 fn next_name(path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
     let numbered = stem.rsplit_once('-').and_then(|(name, number)| Some((name, number.parse::<u32>().ok()?)));

@@ -1,4 +1,4 @@
-//! Chart of past cash and the forecasts of a day.
+//! Chart of past cash and of the forecasts made on one day.
 
 use ratatui::layout::Rect;
 
@@ -9,13 +9,14 @@ use novamind_tui::widgets::AxisUnit;
 use novamind_tui::widgets::chart::{Band, Curve, Plot, XAxis, YAxis, zero_if_near};
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the forecasts with a horizon of at most half of the past, so that the chart keeps space for the past.
+/// Returns the forecasts whose horizon is at most half of the days that have passed, so that the chart keeps space for
+/// past cash.
 pub fn within_fan_horizon(company: &DisplayedCompany, forecasts: &[Forecast]) -> Vec<Forecast> {
     let reach = (company.observation.day / 2).max(7);
     forecasts.iter().copied().filter(|forecast| forecast.horizon_days <= reach).collect()
 }
 
-/// Draws cash and the forecasts made on a day.
+/// Draws past cash and the forecasts made on a day.
 pub fn draw_fan(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -30,7 +31,7 @@ pub fn draw_fan(
     let ends = forecasts.iter().map(|forecast| (day(forecast), forecast.lower, forecast.upper));
     let band = Band { bounds: std::iter::once((first.0, start, start)).chain(ends).collect(), name: "95 %" };
     let reach = forecasts.last().map_or(0, |forecast| forecast.horizon_days) as usize;
-    // Limits the past so that the future keeps space.
+    // The past is limited so that the forecasts keep space.
     let from = (filed as usize).saturating_sub(3 * reach.max(28));
     let cash = company.cash_by_day.iter().enumerate().skip(from);
     let cash: Vec<(f64, f64)> = cash.map(|(day, cash)| (day as f64, *cash)).collect();

@@ -1,4 +1,4 @@
-//! The frame: header, screen and footer.
+//! The frame of the console: header, screen and footer.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -20,22 +20,22 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::sparkline::bar;
 use novamind_worker::company::DisplayedCompany;
 
-/// Minimum window size: columns, rows.
+/// Minimum window size in columns and rows.
 pub const MIN_WINDOW: (u16, u16) = (60, 16);
 
-/// Data of a drawn frame.
+/// Data of a drawn frame that the application needs to handle input.
 pub struct DrawnFrame {
-    /// Clickable areas.
+    /// Clickable areas of the frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Position of the cursor.
     pub cursor: Option<Position>,
-    /// Rows that the focused list showed.
+    /// Number of rows that the focused list showed.
     pub page_rows: u16,
     /// Columns and rows of the window.
     pub window: (u16, u16),
 }
 
-/// Draws a frame.
+/// Draws a frame of the console into a buffer.
 pub fn draw_frame(app: &App, buffer: &mut Buffer) -> DrawnFrame {
     let area = buffer.area;
     let mut canvas = Canvas::new(buffer, &app.theme);
@@ -140,7 +140,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         );
     }
     if let Some(viewer) = &run.playback {
-        // A list in the side pane does not determine the page size.
+        // A list in the side pane must not change the page size.
         let page = canvas.page_rows;
         if decisions_width > 0 {
             let decisions_area = Rect { x: screen.right(), width: decisions_width, ..body };
@@ -174,14 +174,14 @@ fn is_stale(run: &Run) -> bool {
 }
 
 fn draw_database_warning(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
-    let here = if is_stale(run) { "Panes marked stale show older figures; it" } else { "It" };
+    let here = if is_stale(run) { "Panes marked stale show older figures; the update" } else { "The update" };
     let problem = run.database_error.as_deref().unwrap_or_default();
     let text = format!(" ! The database is behind: {problem}. {here} is retried every few seconds.");
     canvas.clear(row, Role::Bad);
     canvas.draw_text(row, &text, Role::Bad);
 }
 
-/// Draws the time limit notice above everything else. Returns the rows that it takes.
+/// Draws the time limit notice at the top of the window. Returns the number of rows used.
 fn draw_time_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
     let Some(text) = app.limit_notice() else { return 0 };
     let lines = wrap(&text, usize::from(area.width.saturating_sub(4)));
@@ -198,7 +198,7 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
     let seen = &company.observation;
     let change = seen.cash_change;
     let runway = match seen.whole_runway_weeks() {
-        // ASCII has no unambiguous symbol for it.
+        // ASCII has no unambiguous symbol for infinity.
         None if app.glyphs == Glyphs::Ascii => "endless".to_owned(),
         None => "∞".to_owned(),
         Some(weeks) => format!("{weeks} wk"),
@@ -239,7 +239,7 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
     // If the result is hidden, the header ends with the day.
     let shown = if hides_result { 3 } else { pieces.len() };
     for (piece, role) in pieces.into_iter().take(shown) {
-        // A truncated figure would be wrong.
+        // A figure that does not fit is omitted, because a truncated figure would be wrong.
         let taken = piece.width() as u16;
         if taken + 1 > left.width {
             break;
@@ -250,7 +250,7 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
     canvas.draw_aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
 }
 
-/// Returns the least time left to any limit.
+/// Returns a label with the shortest time left until any time limit.
 fn time_left_label(app: &App) -> String {
     let running = app.run().filter(|run| run.company.is_running());
     let left = running.map_or(&[][..], |run| run.time_left.as_slice());
@@ -258,11 +258,11 @@ fn time_left_label(app: &App) -> String {
     minutes.map_or(String::new(), |minutes| format!("{} min left · ", minutes.max(0)))
 }
 
-/// Formats a tab from key, title and badge of a screen, and whether it is the current one.
+/// Formats a tab from the key, title and badge of a screen, and a flag for the current screen.
 type TabFormat = fn(&str, &str, &str, bool) -> String;
 
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
-    // The first format in which every tab fits, or else the last one. In the narrowest windows only the current
+    // The first format in which every tab fits is used, otherwise the last format. In the narrowest windows only the current
     // screen has its name.
     let ways: [TabFormat; 6] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
@@ -278,7 +278,7 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     ];
     let is_shown = |screen: &ScreenId| screen.is_available_in(&run.company);
     let all: Vec<ScreenId> = ScreenId::ALL.into_iter().filter(is_shown).collect();
-    // The x-ray tab is shortened before the others.
+    // If no format fits all tabs, the X-ray tab is omitted, unless the X-ray screen is shown.
     let others = |screen: &ScreenId| *screen != ScreenId::Xray || run.screen == ScreenId::Xray;
     let fewer: Vec<ScreenId> = all.iter().copied().filter(others).collect();
     let texts = |screens: &[ScreenId], way: &TabFormat| {
@@ -338,7 +338,7 @@ fn tab_badge(run: &Run, screen: ScreenId) -> String {
 
 fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.status) {
-        // An action was rejected because a script runs.
+        // The error explains that an action was rejected because a script is running.
         (Some(busy), Some(note)) if busy.is_script() && note.is_error => {
             Some((format!("! {}", note.text), Role::Bad))
         }
@@ -350,13 +350,13 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
     };
-    // Two spaces before a message, one after it.
+    // A message has two spaces before it and one space after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
     let mut actions = footer_actions(app).into_iter().peekable();
     while let Some(action) = actions.next() {
         let Some(mut key) = app.keys.label(action) else { continue };
-        // An arrow key is labeled with its action; both arrows together are labeled as choosing.
+        // One arrow key is labeled with the title of its action. A pair of arrow keys is labeled "choose".
         let mut title = Some(action_title(app, action)).filter(|title| *title != key).unwrap_or_default();
         if action == Action::Left && actions.next_if_eq(&Action::Right).is_some() {
             key = format!("{key} {}", app.keys.label(Action::Right).unwrap_or_default());
@@ -379,7 +379,7 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
 }
 
 /// Returns the title of an action in the current state. After the end of a run, the next-week key opens the final
-/// page; after a lesson, the next part or the debrief.
+/// page. After the end of a lesson, the key opens the next part or the debrief.
 fn action_title(app: &App, action: Action) -> &'static str {
     match app.run() {
         Some(run) if action == Action::NextWeek && !run.company.is_running() => match &run.company.lesson {
@@ -391,7 +391,7 @@ fn action_title(app: &App, action: Action) -> &'static str {
     }
 }
 
-/// Returns the actions for the footer: those of the focused place, then general ones.
+/// Returns the actions for the footer: the actions of the focused place, followed by general actions.
 fn footer_actions(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
     if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {
@@ -421,7 +421,8 @@ fn footer_actions(app: &App) -> Vec<Action> {
     actions
 }
 
-/// Describes running work and its progress, with figures in wide windows. A script shows the key that stops it.
+/// Describes running work and its progress, with figures in wide windows. While a script runs, the text names the key
+/// that stops the script.
 fn progress_text(busy: &BusyState, width: u16, stop: &str) -> String {
     let seconds = busy.started_at.elapsed().as_secs_f64();
     let Some(days) = busy.progress else {
@@ -458,10 +459,10 @@ mod tests {
         assert!(text.contains(" cash $1.23M · subs 12.3k "), "{text}");
         assert!(text.width() < 76, "{text}");
         assert!(!progress_text(&busy(days), 60, "esc").contains("cash"));
-        // Figures appear after the first day.
+        // Figures are shown once the first day is simulated.
         let begun = progress_text(&busy(SimulationProgress::new(70, 77)), 120, "esc");
         assert!(begun.contains("day 0 of 7") && !begun.contains("cash"), "{begun}");
-        // The last week is shorter.
+        // The last week of a run is shorter.
         assert!(
             progress_text(
                 &busy(SimulationProgress { current: 500, ..SimulationProgress::new(497, 500) }),

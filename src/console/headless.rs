@@ -1,5 +1,5 @@
-//! The console without a terminal: the real application and its threads, drawn into a buffer. Used by tests, by the
-//! speed benchmark and for the pictures of the documentation.
+//! The console without a terminal: the real application and its threads draw into a buffer. Tests, the speed benchmark
+//! and the pictures of the documentation use it.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -25,11 +25,11 @@ const RESPONSE_TIMEOUT: Duration = Duration::from_secs(120);
 
 /// A console without a terminal.
 pub struct Headless {
-    /// The application.
+    /// The application that draws into the buffer.
     pub app: App,
     /// Columns and rows of the window.
     pub size: (u16, u16),
-    /// Exit code and final text, after it has exited.
+    /// Exit code and final text, after the console has exited.
     pub exit: Option<(u8, Option<String>)>,
     /// Texts that were copied to the clipboard.
     pub clipboard: Vec<String>,
@@ -38,12 +38,12 @@ pub struct Headless {
     workers: Workers,
     sender: Sender<Message>,
     messages: Receiver<Message>,
-    /// Number of awaited responses.
+    /// Number of responses that have not arrived yet.
     pending_responses: u32,
 }
 
 impl Headless {
-    /// Returns a console that has drawn nothing yet.
+    /// Returns a console that has not drawn a frame yet.
     pub fn new(settings: Settings, size: (u16, u16)) -> Headless {
         let (sender, messages) = channel();
         let workers = Workers::start(
@@ -84,7 +84,7 @@ impl Headless {
         self.wait_until_idle()
     }
 
-    /// Sends a request as a screen would, and waits for its consequences.
+    /// Sends a request as a screen would, and waits for all responses.
     ///
     /// # Errors
     /// A response does not arrive.
@@ -117,7 +117,7 @@ impl Headless {
         self.open_with(Effect::Go(goal))
     }
 
-    /// Returns the position of the playback, or `None` if nothing is replayed.
+    /// Returns the position of the playback, or `None` if no playback is open.
     pub fn playback_position(&self) -> Option<&PlaybackPosition> {
         self.app.run()?.playback.as_ref().map(|viewer| &viewer.position)
     }
@@ -153,7 +153,7 @@ impl Headless {
         self.sender.clone()
     }
 
-    /// Presses keys in the notation of the key file, separated by spaces; `_` is the space key, and a word in single
+    /// Presses keys in the notation of the key file, separated by spaces. `_` is the space key. A word in single
     /// quotes is typed letter by letter.
     ///
     /// # Errors
@@ -168,7 +168,7 @@ impl Headless {
         Ok(())
     }
 
-    /// Presses one key and waits for its consequences.
+    /// Presses one key and waits for all responses.
     ///
     /// # Errors
     /// The key does not exist, or a response does not arrive.
@@ -177,7 +177,7 @@ impl Headless {
         self.handle_event(event)
     }
 
-    /// Draws a frame, handles an event in it, and waits for the consequences.
+    /// Draws a frame, handles an event, and waits for all responses.
     ///
     /// # Errors
     /// A response does not arrive.
@@ -187,7 +187,7 @@ impl Headless {
         self.wait_until_idle()
     }
 
-    /// Waits until no response is awaited.
+    /// Waits until all responses have arrived.
     ///
     /// # Errors
     /// A response does not arrive.
@@ -201,12 +201,12 @@ impl Headless {
         Ok(())
     }
 
-    /// Waits until jobs without a response are done too, such as recorded activity.
+    /// Waits until all jobs are done, including jobs without a response, such as recording activity.
     pub fn flush_notes(&self) {
         self.workers.wait_for_jobs(RESPONSE_TIMEOUT);
     }
 
-    /// Returns the next message, waiting for it.
+    /// Waits for the next message and returns the message.
     ///
     /// # Errors
     /// No message arrives.
@@ -248,7 +248,7 @@ impl Headless {
         self.pending_responses -= u32::from(is_answer).min(self.pending_responses);
     }
 
-    /// Executes the orders of the application.
+    /// Executes the collected orders of the application.
     pub fn dispatch_orders(&mut self) {
         for order in self.app.take_orders() {
             match order {
@@ -302,7 +302,7 @@ impl Headless {
         self.cursor = drawn.cursor;
     }
 
-    /// Advances the time and waits for the consequences.
+    /// Advances the time and waits for all responses.
     ///
     /// # Errors
     /// A response does not arrive.

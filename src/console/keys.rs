@@ -1,7 +1,7 @@
-//! Key bindings: which chords trigger which action in which scope. Read from `configs/keys.toml`; a file of the user
-//! patches them.
+//! Key bindings: which chords trigger which action in which scope. The bindings are read from `configs/keys.toml` and
+//! patched by a file of the user.
 //!
-//! A binding is one chord or a short sequence: `n`, `; c`. Timing does not matter.
+//! A binding is one chord or a short sequence: `n`, `; c`. The time between the chords of a sequence does not matter.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use toml::Table;
 use super::action::{Action, Scope};
 use novamind_tui::chord::{Chord, format_sequence, parse_sequence};
 
-/// The meaning of chords in the focused place.
+/// The meaning of a chord sequence in the focused place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KeyMeaning {
     /// The chords trigger an action.
@@ -35,10 +35,10 @@ impl KeyBindings {
         keys
     }
 
-    /// Returns the bundled bindings, patched by the file of the user.
+    /// Returns the bundled bindings, patched by a file of the user.
     ///
     /// # Errors
-    /// The file is invalid; the error contains its name.
+    /// The file is invalid. The error contains the name of the file.
     pub fn with_user_file(
         configuration: &novamind_record::folder::configuration::Configuration,
     ) -> Result<KeyBindings, String> {
@@ -49,7 +49,7 @@ impl KeyBindings {
         Ok(keys)
     }
 
-    /// Replaces the bindings of the actions that a file names.
+    /// Replaces the bindings of the actions that a key file names.
     fn patch(&mut self, text: &str) -> Result<(), String> {
         let file: Table = text.parse().map_err(|error: toml::de::Error| error.to_string())?;
         for (name, actions) in &file {
@@ -96,7 +96,7 @@ impl KeyBindings {
         scopes.iter().find_map(in_scope).unwrap_or(KeyMeaning::Unbound)
     }
 
-    /// Returns the possible continuations of a sequence: the next chords and the final action.
+    /// Returns the possible completions of a sequence: the remaining chords and the action that they trigger.
     pub fn completions(&self, scopes: &[Scope], pressed: &[Chord]) -> Vec<(String, Action)> {
         let longer = |(bound, action): &(Vec<Chord>, Action)| {
             let rest = bound.strip_prefix(pressed).filter(|rest| !rest.is_empty());
@@ -119,7 +119,7 @@ impl KeyBindings {
         }
     }
 
-    /// Returns the first binding of an action, as labels show it.
+    /// Returns the first binding of an action, formatted for labels.
     pub fn label(&self, action: Action) -> Option<String> {
         self.chords(action).next().map(format_sequence)
     }
@@ -130,7 +130,7 @@ impl KeyBindings {
         bindings.filter(move |(_, bound_action)| *bound_action == action).map(|(chords, _)| chords.as_slice())
     }
 
-    /// Returns the bindings of an action that work in these scopes, without those that an inner scope overrides.
+    /// Returns the bindings of an action that work in these scopes. Bindings that an inner scope overrides are omitted.
     pub fn working_keys(&self, action: Action, scopes: &[Scope]) -> Vec<String> {
         let works = |chords: &&[Chord]| self.meaning(scopes, chords) == KeyMeaning::Action(action);
         self.chords(action).filter(works).map(format_sequence).collect()

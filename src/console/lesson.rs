@@ -1,4 +1,4 @@
-//! The task of a lesson next to the screen: question, goals, hints, pitfalls and closed features.
+//! The task of a lesson, drawn next to the screen or on a page: question, goals, hints, pitfalls and available features.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -32,7 +32,7 @@ pub fn closed_reason(screen: ScreenId, company: &DisplayedCompany) -> Option<Str
         asks || ALWAYS_OPEN_SCREENS.contains(&screen_id)
             || screens.iter().any(|name| name.eq_ignore_ascii_case(screen_id.record_name()))
     };
-    // Hidden state has its own permission.
+    // The X-ray screen has its own permission.
     if screen == ScreenId::Xray || open(screen) {
         return None;
     }
@@ -41,7 +41,7 @@ pub fn closed_reason(screen: ScreenId, company: &DisplayedCompany) -> Option<Str
     Some(format!("{} is closed in this lesson; open screens: {}", title(screen), all.join(", ")))
 }
 
-/// Draws the task next to the screen. The lesson page shows all of it.
+/// Draws the task next to the screen. The lesson page shows the complete task.
 pub fn draw_side_task(canvas: &mut Canvas<'_>, area: Rect, page: &LessonStatus, context: &ScreenContext<'_>) {
     canvas.clear(area, Role::Text);
     let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
@@ -51,13 +51,13 @@ pub fn draw_side_task(canvas: &mut Canvas<'_>, area: Rect, page: &LessonStatus, 
     let cut = lines.len() > inside.height as usize;
     draw_lines(canvas, inside, &lines, 0);
     let keys = match cut {
-        true => format!("{} for more", context.hint(Action::LessonPage)),
+        true => format!("{} shows more", context.hint(Action::LessonPage)),
         false => context.hints(&[Action::LessonPage, Action::Lesson]),
     };
     canvas.draw_pane_keys(area, &keys);
 }
 
-/// Draws lines from an index.
+/// Draws as many lines as fit, starting at the line with index `from`.
 pub fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, lines: &[(String, Role)], from: usize) {
     let shown = lines.iter().skip(from).take(area.height as usize);
     let shown: Vec<Line<'_>> =
@@ -91,7 +91,7 @@ pub enum TaskPlace {
     FullPage,
 }
 
-/// Formats the task as lines of a width.
+/// Formats the task as lines that fit into a width.
 pub fn lines_of(
     page: &LessonStatus,
     context: &ScreenContext<'_>,
@@ -119,7 +119,7 @@ pub fn lines_of(
         lines.push_text(&next_steps_text(page, context, place), Role::Key);
         return lines.lines;
     }
-    // Goals come first, because small windows truncate the end.
+    // Goals are first, because small windows cut off the last lines.
     for goal in &page.goals {
         push_goal(&mut lines, goal);
     }
@@ -153,7 +153,7 @@ fn next_steps_text(page: &LessonStatus, context: &ScreenContext<'_>, place: Task
     }
 }
 
-/// Returns the step that a retry starts with, counted from 0: the current one, or the one that has just ended.
+/// Returns the step that a retry restarts, counted from 0: the current step, or the step that has just ended.
 pub fn retry_step(page: &LessonStatus) -> usize {
     page.step - usize::from(page.previous_step.is_some())
 }
@@ -190,7 +190,7 @@ fn push_outcome(lines: &mut StyledLines, question: Option<&LessonQuestion>, goal
     }
 }
 
-/// Adds a goal with a progress bar.
+/// Adds the lines of a goal with a progress bar.
 fn push_goal(lines: &mut StyledLines, goal: &GoalStatus) {
     let (mark, role) = match goal.met {
         Some(true) => ("reached: ", Role::Good),

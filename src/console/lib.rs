@@ -1,7 +1,9 @@
 //! The terminal application.
 //!
-//! Input triggers actions, actions change the state, and a pure view draws it. The session and the database run on
-//! their own threads and report through the channel of the input; the screen never blocks. All displayed data comes
+//! Input triggers actions, actions change the state, and a view without side effects draws the state. The session and
+//! the database run on
+//! separate threads and send their results through the same channel as the input. The screen never blocks. All
+//! displayed data comes
 //! from tool results, the weekly dashboard or guarded queries.
 
 mod action;
@@ -38,16 +40,16 @@ use novamind_tui::terminal::{TerminalScreen, set_panic_note};
 use novamind_worker::Workers;
 use novamind_worker::message::Message;
 
-/// Frame interval while only elapsed times change.
+/// Frame interval while only the displayed elapsed time changes.
 const BUSY_FRAME_INTERVAL: Duration = Duration::from_millis(500);
 /// Timeout for a message while nothing on the screen depends on the time.
 const IDLE_TIMEOUT: Duration = Duration::from_secs(3600);
 
-/// Maximum delay of a suspension for recording it, in case a week is being simulated.
+/// Maximum time to wait until a suspension is recorded. The session may be busy with a week.
 #[cfg(unix)]
 const SUSPEND_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// Runs the console. Returns the exit code and the text to print on exit.
+/// Runs the console in the terminal. Returns the exit code and the text to print on exit.
 ///
 /// # Errors
 /// The terminal fails.
@@ -91,7 +93,7 @@ struct Console {
     messages: Receiver<Message>,
     sender: Sender<Message>,
     resume_command: String,
-    /// Whether the program has resumed and the message of the continue signal is still to come.
+    /// Whether the program has resumed but has not received the continue signal yet.
     #[cfg(unix)]
     has_resumed: bool,
 }
@@ -117,7 +119,7 @@ impl Console {
                 Err(RecvTimeoutError::Timeout) => self.app.handle_message(Message::TimePassed),
                 Err(RecvTimeoutError::Disconnected) => return Ok((1, None)),
             }
-            // Draws once after all messages that have arrived.
+            // Handle all messages that have arrived before drawing one frame.
             while let Ok(message) = self.messages.try_recv() {
                 self.handle_message(message)?;
             }
@@ -136,7 +138,8 @@ impl Console {
                 }
                 self.workers.wait_for_jobs(SUSPEND_TIMEOUT);
                 self.screen.suspend(self.app.mouse)?;
-                // Recorded here, because a key that ends the program could be handled before the continue signal.
+                // The resume is recorded before the continue signal arrives, because a key that ends the program could
+                // be handled first.
                 self.app.resume();
                 self.has_resumed = true;
             }
@@ -182,7 +185,8 @@ impl Console {
     }
 }
 
-/// Panics at f12 if the environment requests it, to test recovery. Not in release builds.
+/// Panics when f12 is pressed, if the environment requests a panic to test recovery. Release builds do not contain
+/// this function.
 #[cfg(debug_assertions)]
 fn inject_panic(message: &Message) {
     use crossterm::event::{Event, KeyCode};
@@ -201,7 +205,7 @@ fn spawn_input_threads(sender: Sender<Message>) {
                 return;
             }
         }
-        // The terminal is gone.
+        // The terminal was closed: report a hangup signal.
         let _ = keys.send(Message::Signal(1));
     });
     #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! The list of all key bindings as text, for the terminal and the documentation.
+//! The list of all key bindings, as text for the terminal and as Markdown for the documentation.
 
 use super::action::{ACTIONS, ActionEntry, Scope};
 use super::keys::KeyBindings;
@@ -16,7 +16,7 @@ fn actions_by_scope(
     })
 }
 
-/// Formats the list in aligned columns.
+/// Formats all key bindings as text in aligned columns.
 pub fn to_text(keys: &KeyBindings) -> String {
     let mut text = String::new();
     for (scope, rows) in actions_by_scope(keys) {
@@ -32,7 +32,7 @@ pub fn to_text(keys: &KeyBindings) -> String {
     text
 }
 
-/// Formats the list as Markdown, a table per scope.
+/// Formats all key bindings as Markdown, with one table per scope.
 pub fn to_markdown(keys: &KeyBindings) -> String {
     let mut text = String::new();
     for (scope, rows) in actions_by_scope(keys) {

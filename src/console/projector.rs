@@ -12,19 +12,19 @@ use novamind_tui::widgets::large_text::{LETTER_WIDTH_POINTS, PointSize, draw_lar
 use novamind_tui::widgets::{AxisUnit, Curve, XAxis, YAxis, draw_chart};
 use novamind_worker::company::DisplayedCompany;
 
-/// Characters of the longest figure: `-$12.3M`.
+/// Number of characters of the longest figure, for example `-$12.3M`.
 const MAX_FIGURE_LETTERS: u16 = 7;
-/// Columns of four figures side by side at one column per point.
+/// Width of four figures next to each other, in columns, if a point of a digit is one column wide.
 const SINGLE_ROW_WIDTH: u16 = 4 * (MAX_FIGURE_LETTERS * LETTER_WIDTH_POINTS + 1);
 
-/// Draws the view.
+/// Draws the projector view.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, context: &ScreenContext<'_>) {
     let size = match area.width >= 2 * SINGLE_ROW_WIDTH - 36 && area.height >= 30 {
         true => PointSize::Large,
         false => PointSize::Small,
     };
     let columns_per_row = if area.width >= SINGLE_ROW_WIDTH * size.columns() - 36 { 4 } else { 2 };
-    // Label and digits.
+    // A figure consists of a label line and the digits.
     let tall = size.rows() + 1;
     let gap = u16::from(area.height >= 24);
     for (at, (label, figure, role)) in (0u16..).zip(headline_figures(context.company)) {

@@ -1,5 +1,5 @@
 //! Test helpers for screens: companies of in-memory runs, screens with all their data, rendered text, and windows of
-//! many sizes.
+//! different sizes.
 
 use std::path::Path;
 
@@ -24,12 +24,12 @@ use novamind_worker::question::{OutgoingQuestion, Question};
 use novamind_worker::readings::Reading;
 pub use novamind_worker::test_kit::{new_session, played_session, session_with_negotiations};
 
-/// Returns a company on its first day.
+/// Returns the company of a new run.
 pub fn new_company() -> DisplayedCompany {
     DisplayedCompany::from_session(&new_session())
 }
 
-/// Returns the query results for the readings of a screen.
+/// Runs the readings of a screen and returns the query results.
 pub fn query_readings(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, QueryResult)> {
     let ask = |reading: &Reading| {
         let rows = session.query(reading.sql());
@@ -38,7 +38,7 @@ pub fn query_readings(session: &mut Session, screen: &dyn Screen) -> Vec<(Readin
     screen.readings().iter().map(ask).collect()
 }
 
-/// Returns a screen with all data of a company.
+/// Returns a screen that has received all data of a company.
 pub fn loaded_screen<S: Screen + Default>(session: &mut Session, company: &DisplayedCompany) -> S {
     let mut screen = S::default();
     let keys = KeyBindings::bundled();
@@ -50,7 +50,7 @@ pub fn loaded_screen<S: Screen + Default>(session: &mut Session, company: &Displ
     screen
 }
 
-/// Plays a run for some weeks. Returns it with its company and a screen with all data.
+/// Plays a run for a number of weeks. Returns the session, the company and a screen with all data.
 pub fn played_screen<S: Screen + Default>(weeks: usize) -> (Session, DisplayedCompany, S) {
     let mut session = played_session(weeks);
     let company = DisplayedCompany::from_session(&session);
@@ -58,7 +58,7 @@ pub fn played_screen<S: Screen + Default>(weeks: usize) -> (Session, DisplayedCo
     (session, company, screen)
 }
 
-/// Lets a screen handle an action.
+/// Sends an action to a screen and returns the effects.
 pub fn handle_action(screen: &mut dyn Screen, action: Action, company: &DisplayedCompany) -> Vec<Effect> {
     let keys = KeyBindings::bundled();
     screen.handle_action(action, &ScreenContext { company, keys: &keys, page_rows: 5 })
@@ -78,7 +78,7 @@ pub fn settings(runs: &Path) -> Settings {
     }
 }
 
-/// Returns the only question among effects.
+/// Returns the only question in a list of effects.
 pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
     let mut asks = effects.iter().filter_map(|effect| match effect {
         Effect::Ask(ask) => Some(ask),
@@ -90,12 +90,12 @@ pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
     }
 }
 
-/// Draws a screen and returns the lines of text.
+/// Draws a screen and returns the text of each row.
 pub fn screen_rows(screen: &dyn Screen, company: &DisplayedCompany, width: u16, height: u16) -> Vec<String> {
     render_screen(screen, company, (width, height), false)
 }
 
-/// Draws the focused pane of a screen zoomed and returns the text.
+/// Draws a screen with its focused pane zoomed and returns the text.
 pub fn zoomed_text(screen: &dyn Screen, company: &DisplayedCompany, width: u16, height: u16) -> String {
     render_screen(screen, company, (width, height), true).join("\n")
 }
@@ -118,7 +118,7 @@ pub fn screen_text(screen: &dyn Screen, company: &DisplayedCompany, width: u16, 
     screen_rows(screen, company, width, height).join("\n")
 }
 
-/// Draws a screen in some small and large windows, with the focus on each pane. `tests/console/sizes.rs` covers more
+/// Draws a screen in small and large windows, with the focus on each pane. `tests/console/sizes.rs` covers more
 /// sizes.
 pub fn draw_at_all_sizes(screen: &mut dyn Screen, company: &DisplayedCompany) {
     for focus in 0..screen.pane_count() {
@@ -127,7 +127,7 @@ pub fn draw_at_all_sizes(screen: &mut dyn Screen, company: &DisplayedCompany) {
         let small = small.filter(|(width, height)| (width + 3 * height) % 151 == 0);
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
             screen_text(screen, company, width, height);
-            // A few of these sizes suffice for zoomed panes.
+            // Zoomed panes are drawn only in some of these sizes.
             if height % 6 == 0 || height == 37 {
                 zoomed_text(screen, company, width, height);
             }
@@ -135,7 +135,7 @@ pub fn draw_at_all_sizes(screen: &mut dyn Screen, company: &DisplayedCompany) {
     }
 }
 
-/// Lets a dialog handle an action.
+/// Sends an action to a dialog and returns the response.
 pub fn dialog_action(dialog: &mut dyn Dialog, action: Action, company: &DisplayedCompany) -> DialogResponse {
     let keys = KeyBindings::bundled();
     dialog.handle_action(action, &ScreenContext { company, keys: &keys, page_rows: 5 })
@@ -150,7 +150,7 @@ pub fn dialog_text(dialog: &dyn Dialog, company: &DisplayedCompany, width: u16, 
     render_rows(width, height, draw).join("\n")
 }
 
-/// Draws into a window and returns the lines of text.
+/// Draws into a window and returns the text of each row.
 pub fn render_rows(width: u16, height: u16, draw: impl FnOnce(&mut Canvas<'_>, Rect)) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);

@@ -1,4 +1,4 @@
-//! Themes of the user and bundled themes.
+//! Color themes: bundled themes and themes of the user.
 
 use novamind_record::folder::configuration::Configuration;
 use novamind_tui::theme::Theme;
@@ -6,7 +6,7 @@ use novamind_tui::theme::Theme;
 /// Returns a theme by name. A file of the user takes precedence over a bundled theme.
 ///
 /// # Errors
-/// There is no theme of this name, or its file is invalid.
+/// There is no theme with this name, or its file is invalid.
 pub fn find_theme(name: &str, configuration: &Configuration) -> Result<Theme, String> {
     let parameter_source =
         configuration.read_file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
@@ -16,12 +16,12 @@ pub fn find_theme(name: &str, configuration: &Configuration) -> Result<Theme, St
     Theme::bundled(name).ok_or_else(|| {
         let texts = configuration.toml_names("themes");
         let known: Vec<&str> = bundled_names().chain(texts.iter().map(String::as_str)).collect();
-        format!("there is no theme {name}; there are {}", known.join(", "))
+        format!("there is no theme {name}; choose from {}", known.join(", "))
     })
 }
 
-/// Returns every theme that can be parsed, the bundled ones first. An invalid file of the user is left out; [`find_theme`]
-/// reports what is wrong with it.
+/// Returns all themes that can be parsed, the bundled themes first. Invalid files of the user are omitted, and
+/// [`find_theme`] reports their errors.
 pub fn all_themes(configuration: &Configuration) -> Vec<Theme> {
     let texts = configuration.toml_names("themes");
     let others = texts.iter().map(String::as_str).filter(|text| bundled_names().all(|name| name != *text));

@@ -1,4 +1,4 @@
-//! The tour: steps over the real game, each with an explanation, keys and a completion condition.
+//! The tour: steps in a real run, each with an explanation, keys and a completion condition.
 
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
-/// Completion condition of a step.
+/// Completion condition of a tour step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum StepCondition {
@@ -50,7 +50,7 @@ struct TourStep {
     done: StepCondition,
 }
 
-/// The steps of the tour, and its run.
+/// The practice run and the steps of the tour.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TourDefinition {
@@ -68,7 +68,7 @@ fn steps() -> &'static [TourStep] {
     &TOUR.step
 }
 
-/// Returns the scenario of the tour.
+/// Returns the name of the scenario of the tour.
 pub fn scenario() -> &'static str {
     &TOUR.scenario
 }
@@ -78,15 +78,15 @@ pub fn practice_run() -> NewRun {
     NewRun { seed: Some(TOUR.seed), scenario: TOUR.scenario.clone(), ..NewRun::default() }
 }
 
-/// State that completion conditions depend on.
+/// State on which the completion conditions of steps depend.
 pub struct TourFacts<'a> {
-    /// The company.
+    /// The displayed company.
     pub company: &'a DisplayedCompany,
     /// The current screen.
     pub screen: ScreenId,
-    /// Screens shown before.
+    /// Screens shown before the current screen.
     pub back_history: &'a [ScreenId],
-    /// Step of the next-week dialog, from 1, while it is open.
+    /// Number of the current step of the next-week dialog, counted from 1, while the dialog is open.
     pub next_week_step: Option<usize>,
     /// Whether a dialog is open.
     pub has_dialog: bool,
@@ -143,14 +143,14 @@ fn has_positive_number(arguments: &serde_json::Map<String, Value>) -> bool {
 
 const MAX_LINES: usize = 4;
 
-/// Progress in the tour.
+/// The user's progress in the tour.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tour {
     step: usize,
 }
 
 impl Tour {
-    /// Advances past completed steps. Returns false if none is left.
+    /// Skips all completed steps. Returns false if no step is left.
     pub fn skip_finished_steps(&mut self, facts: &TourFacts<'_>) -> bool {
         while steps().get(self.step).is_some_and(|step| step.done.is_met(facts)) {
             self.step += 1;
@@ -163,12 +163,12 @@ impl Tour {
         self.step += 1;
     }
 
-    /// Returns the height in a window of a width: a rule and the lines.
+    /// Returns the height of the tour pane for a window width: a separator line and the lines of text.
     pub fn height(&self, keys: &KeyBindings, numbers: &ParameterNumbers, width: u16) -> u16 {
         1 + self.lines(keys, numbers, width).len() as u16
     }
 
-    /// Returns the lines below the rule, and whether each names keys to press.
+    /// Returns the lines below the separator line, with a flag for lines that name keys.
     fn lines(&self, keys: &KeyBindings, numbers: &ParameterNumbers, width: u16) -> Vec<(String, bool)> {
         let Some(step) = steps().get(self.step) else { return Vec::new() };
         let room = width.saturating_sub(2) as usize;
@@ -180,7 +180,7 @@ impl Tour {
         look.chain(press).take(MAX_LINES).collect()
     }
 
-    /// Draws the step.
+    /// Draws the current step of the tour.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &KeyBindings, numbers: &ParameterNumbers) {
         let Some(step) = steps().get(self.step) else { return };
         canvas.clear(area, Role::Text);
@@ -209,7 +209,8 @@ impl Tour {
     }
 }
 
-/// Replaces action names in braces with their keys, or with the palette if an action has none.
+/// Replaces action names in braces with their keys. An action without a key is replaced with the palette key and the
+/// title of the action.
 fn insert_keys(text: &str, keys: &KeyBindings) -> String {
     let mut words = String::new();
     let mut rest = text;

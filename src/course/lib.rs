@@ -1,6 +1,7 @@
-//! Lessons from the student's side, and classes of students with their handouts (docs/lessons/classes.md).
+//! Actions of a student in a lesson, and classes of students with their handouts (docs/lessons/classes.md).
 //!
-//! `novamind-record` defines lessons and the standing of a student. `novamind-session` applies a lesson while weeks pass.
+//! `novamind-record` defines lessons and the progress of a student. `novamind-session` applies a lesson while weeks
+//! are simulated.
 
 mod class;
 mod lesson;

@@ -1,4 +1,4 @@
-//! Loading packed days from the file: all of them for the writer, or table by table for queries on a file without a writer.
+//! Loads packed days from the database file: all tables for the writer, single tables for queries on a file without a writer.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -13,7 +13,7 @@ use super::notices::{Inbox, NoticeDay, RepeatedLoss};
 use super::packing::{PackedDay, RowRun};
 use novamind_world::events::{LossCause, UsageRows};
 
-/// Loads the days of one table. Returns `None` if a day is damaged.
+/// Loads the packed days of one table. Returns `None` if a day is damaged.
 type Loader = fn(&Connection, &mut BlockStore) -> Option<()>;
 
 const LOADERS: [(&str, Loader); 5] = [
@@ -24,43 +24,43 @@ const LOADERS: [(&str, Loader); 5] = [
     ("ledger", load_ledger),
 ];
 
-/// Loads the days of all tables.
+/// Loads the packed days of all tables. Returns `None` if a day is damaged.
 pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
     let mut store = BlockStore::default();
     LOADERS.iter().try_for_each(|(_, load)| load(connection, &mut store))?;
     Some(store)
 }
 
-/// Source of the blocks of a query.
+/// Source of the packed days that a query reads.
 pub(super) enum BlockSource {
     /// The writer's store, with a gate that is closed while a commit and its blocks become visible together.
     Writer(SharedStore, Arc<RwLock<()>>),
-    /// A file without a writer in this process. The blocks of a table are loaded when a statement first names it.
+    /// A file without a writer in this process. The packed days of a table are loaded when a statement first names the table.
     File(RefCell<FileBlocks>),
 }
 
-/// The days of the tables that statements have named so far.
+/// The packed days of the tables that previous statements named.
 #[derive(Default)]
 pub(super) struct FileBlocks {
     store: BlockStore,
     loaded: BTreeSet<&'static str>,
-    /// SQLite's data version of the file at loading.
+    /// Value of SQLite's `data_version` when the packed days were loaded.
     version: Option<i64>,
     damaged: bool,
 }
 
 impl FileBlocks {
-    /// Returns the loaded blocks.
+    /// Returns the loaded packed days.
     pub fn store(&self) -> &BlockStore {
         &self.store
     }
 
-    /// Returns whether damaged days were found.
+    /// Returns whether a query found damaged packed days.
     pub fn is_damaged(&self) -> bool {
         self.damaged
     }
 
-    /// Clears the blocks if the file has changed.
+    /// Unloads all packed days if the file has changed.
     pub fn refresh(&mut self, connection: &Connection) {
         let version = connection.query_row("PRAGMA data_version", [], |row| row.get::<_, i64>(0)).ok();
         if version.is_none() || version != self.version {
@@ -68,7 +68,7 @@ impl FileBlocks {
         }
     }
 
-    /// Loads missing tables. Returns false if a day is damaged or loading was stopped.
+    /// Loads the tables in `tables` that are not loaded yet. Returns false if a day is damaged or loading was stopped.
     pub fn load(&mut self, connection: &Connection, tables: &[String]) -> bool {
         for (table, load) in LOADERS {
             if !tables.iter().any(|text| text == table) || self.loaded.contains(table) {
@@ -82,7 +82,7 @@ impl FileBlocks {
         true
     }
 
-    /// Marks the blocks as damaged.
+    /// Records that a query found damaged packed days.
     pub fn mark_damaged(&mut self) {
         self.damaged = true;
     }
@@ -121,7 +121,7 @@ fn load_runs<R: RowRun>(connection: &Connection, table: &str) -> Option<Vec<Arc<
         .collect()
 }
 
-/// Loads the packed days of a table. Returns `None` if one is damaged.
+/// Loads the packed days of a table. Returns `None` if a day is damaged.
 fn load_days<D>(
     connection: &Connection,
     table: &str,

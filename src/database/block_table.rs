@@ -1,8 +1,7 @@
-//! The tables `daily_usage`, `ads_revenue` and `issues`: read-only virtual tables over the block store, which skip days and
-//! customers that a query does not need.
+//! The tables `daily_usage`, `ads_revenue` and `issues`: read-only virtual tables over the block store. The virtual
+//! tables skip days and customers that a query does not need.
 //!
-//! The interface of rusqlite for virtual tables is a pair of unsafe traits: their structs must start with the base class of
-//! SQLite.
+//! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;
@@ -36,38 +35,38 @@ pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqli
     connection.create_module(c"issues", &ISSUES, Some(seen.clone()))
 }
 
-/// The properties in which the tables differ. Column 1 is always customer_id.
+/// The table-specific properties of a block table. Column 1 is always customer_id.
 trait BlockTableDefinition: Send + Sync + Sized + 'static {
     type Run: RowRun;
     const DECLARATION: &'static CStr;
-    /// Column of the day.
+    /// Index of the day column.
     const DAY: c_int = 0;
-    /// Column of the row number, if any.
+    /// Index of the row number column, if the table has a row number.
     const NUMBER: Option<c_int> = None;
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(seen: &QueryView) -> &CustomerIndexes<Self::Run>;
-    /// Sets the result to another column of a row.
+    /// Sets the result to a column that is neither the day, the customer nor the row number.
     fn column(
         at: (&BlockStore, u32),
         row: RowData<Self>,
         column: c_int,
         context: &mut Context,
     ) -> rusqlite::Result<()>;
-    /// Returns the position of the day that may have the row with a number.
+    /// Returns the index of the day that may contain the row with this row number.
     fn day_index_of_row(_store: &BlockStore, _number: f64) -> Option<usize> {
         None
     }
-    /// Returns the stored number of a row, if any.
+    /// Returns the row number that is stored in a row, if the table has a row number.
     fn row_number(_row: RowData<Self>) -> Option<i64> {
         None
     }
 }
 
-/// The columns of a row besides day and customer.
+/// The columns of a row except day and customer.
 type RowData<K> = <<K as BlockTableDefinition>::Run as RowRun>::Row;
 
-/// The position of a row: day in the store, run of the day, index in the run.
+/// The position of a row: index of the day in the store, of the run within the day, and of the row within the run.
 #[derive(Clone, Copy, Default)]
 struct RowPosition {
     day: usize,
@@ -165,7 +164,7 @@ const CUSTOMER_COLUMN: c_int = 1;
 const ROWID_COLUMN: c_int = -1;
 const _: () = assert!(issues::column::CUSTOMER == CUSTOMER_COLUMN);
 
-/// Returns the letter of a constraint in the index text, if the table handles the constraint.
+/// Returns the letter that represents a constraint in the index string, if the table handles the constraint.
 fn constraint_code<K: BlockTableDefinition>(column: c_int, operator: IndexConstraintOp) -> Option<char> {
     use IndexConstraintOp::*;
     match operator {
@@ -187,7 +186,7 @@ fn constraint_code<K: BlockTableDefinition>(column: c_int, operator: IndexConstr
 
 #[repr(C)]
 struct BlockTable<K: BlockTableDefinition> {
-    /// Base class; must be first.
+    /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab,
     seen: Arc<QueryView>,
     kind: PhantomData<K>,
@@ -259,29 +258,29 @@ unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
     }
 }
 
-/// The remaining rows of one customer in an index.
+/// The index and the range of the customer's rows that the cursor has not returned yet.
 type IndexedRows<K> = (Arc<CustomerIndex<<K as BlockTableDefinition>::Run>>, Range<usize>);
 
 #[repr(C)]
 struct BlockCursor<'vtab, K: BlockTableDefinition> {
-    /// Base class; must be first.
+    /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
     seen: Arc<QueryView>,
     position: RowPosition,
-    /// The run of the current place, unpacked on first use.
+    /// The run at the current position, unpacked on first use.
     run: Option<K::Run>,
-    /// Requested days in the store.
+    /// Indexes of the requested days in the store.
     days: Range<usize>,
-    /// Requested customer.
+    /// Number of the requested customer, if the query requests a single customer.
     customer: Option<f64>,
-    /// Rows in an index; replaces `place`.
+    /// Rows in an index. If set, the cursor uses these rows instead of `position`.
     indexed_rows: Option<IndexedRows<K>>,
     kind: PhantomData<&'vtab K>,
 }
 
 impl<K: BlockTableDefinition> BlockCursor<'_, K> {
-    /// Advances to the first requested row at or after the place.
+    /// Advances to the first requested row at or after the current position.
     fn advance_to_match(&mut self) {
         let days = K::days(&self.store);
         while let Some(day) = days.get(self.position.day).filter(|_| self.days.contains(&self.position.day)) {
@@ -311,13 +310,14 @@ impl<K: BlockTableDefinition> BlockCursor<'_, K> {
         }
     }
 
-    /// Returns whether the place is in the open run and all rows are requested: a fast path for most rows.
+    /// Returns whether the position is in the unpacked run and all customers are requested. This is the fast path for
+    /// most rows.
     fn is_within_run(&self) -> bool {
         self.customer.is_none()
             && self.run.as_ref().is_some_and(|run| self.position.at < run.customers().len())
     }
 
-    /// Returns the number of the row, or `None` after the last row.
+    /// Returns the number of the current row, or `None` after the last row.
     fn row_number(&self) -> Option<i64> {
         match &self.indexed_rows {
             Some((index, rest)) => index.numbers.get(rest.start).copied(),
@@ -359,7 +359,7 @@ unsafe impl<K: BlockTableDefinition> VTabCursor for BlockCursor<'_, K> {
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
                 Type::Integer | Type::Real => values.get::<f64>(at)?,
-                // NULL equals no value.
+                // A comparison with NULL is never true.
                 Type::Null => f64::NAN,
                 Type::Text => comparison_number(&values.get::<String>(at)?),
                 _ => continue,

@@ -1,4 +1,4 @@
-//! Packed days: in memory for queries, as blobs in the file.
+//! Stores of packed days: in memory for queries, as blobs in the database file.
 
 use std::sync::{Arc, RwLock};
 
@@ -20,7 +20,7 @@ pub(super) struct AdsRun {
     pub revenues: Vec<f64>,
 }
 
-/// The columns of ad revenue besides day and customer.
+/// The columns of `ads_revenue` except day and customer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct AdsRow {
     pub group: Option<Group>,
@@ -35,7 +35,7 @@ pub(super) struct BlockStore {
     pub ads: Arc<Vec<Arc<PackedDay>>>,
     pub inbox: Inbox,
     pub issues: Arc<Vec<Arc<PackedDay>>>,
-    /// The clock of issue ages after each day, from day 0 on.
+    /// Value of the issue clock after each day, from day 0 on.
     pub issue_clock: Arc<Vec<u32>>,
     pub ledger: Arc<Vec<Arc<LedgerDay>>>,
 }
@@ -43,7 +43,7 @@ pub(super) struct BlockStore {
 /// The store that the writer fills and that queries read.
 pub(super) type SharedStore = Arc<RwLock<BlockStore>>;
 
-/// The store of the running statement, with its indexes.
+/// The block store that the running statement reads, and the indexes built for the statement.
 #[derive(Default)]
 pub(super) struct QueryView {
     store: RwLock<BlockStore>,
@@ -55,7 +55,7 @@ pub(super) struct QueryView {
 }
 
 impl QueryView {
-    /// Sets the store.
+    /// Sets the store for the next statement and removes all indexes.
     pub fn set_store(&self, store: BlockStore) {
         *self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = store;
         self.usage.clear();
@@ -65,7 +65,7 @@ impl QueryView {
         self.notice_texts.clear();
     }
 
-    /// Returns the store.
+    /// Returns a clone of the store.
     pub fn store(&self) -> BlockStore {
         self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }

@@ -1,38 +1,39 @@
-//! Definitions of the visible tables, for schema browser, documentation and SQL help, and of the hidden tables of the x-ray.
+//! Definitions of the visible tables and of the hidden tables of the x-ray, for the schema browser, the documentation
+//! and SQL help.
 
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// A visible table.
+/// Definition of a visible or hidden table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// Name.
+    /// Name of the table. Names of hidden tables include the schema.
     pub name: String,
-    /// Description of the rows.
+    /// Description of what a row represents.
     pub description: String,
-    /// When rows are written.
+    /// Description of when rows are written.
     pub written: String,
-    /// Key columns.
+    /// Names of the key columns.
     pub key: Vec<String>,
-    /// Visible columns, in order.
+    /// Definitions of the columns, in order.
     pub columns: Vec<Column>,
 }
 
-/// A visible column.
+/// Definition of a column.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Column {
-    /// Name.
+    /// Name of the column.
     pub name: String,
-    /// Declared type: INTEGER, REAL or TEXT.
+    /// Declared type of the column: INTEGER, REAL or TEXT.
     #[serde(rename = "type")]
     pub kind: String,
-    /// All possible values, if they are few.
+    /// All possible values of the column, if they are few.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub values: Vec<String>,
-    /// Description.
+    /// Description of the column.
     pub description: String,
 }
 
@@ -51,17 +52,17 @@ static HIDDEN_CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     toml::from_str::<Catalogue>(text).expect("the catalogue of hidden tables is tested").table
 });
 
-/// The tables that statements of a connection may name.
+/// The set of tables that the statements of a connection may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// Visible tables.
+    /// Only visible tables.
     Visible,
     /// Visible tables and hidden tables of the x-ray.
     Hidden,
 }
 
 impl Scope {
-    /// Returns the tables, visible ones first.
+    /// Returns the tables in this scope. Visible tables precede hidden tables.
     pub(super) fn tables(self) -> impl Iterator<Item = &'static Table> {
         let hidden = match self {
             Scope::Visible => &[][..],
@@ -70,8 +71,8 @@ impl Scope {
         CATALOGUE.iter().chain(hidden)
     }
 
-    /// Returns the hidden table with the schema and name that the engine reports. If only rows are counted, the engine reports the
-    /// schema as written in the statement, so it can be missing.
+    /// Returns the hidden table with the schema and name that the engine reports. If a statement only counts rows, the
+    /// engine reports the schema as written in the statement. The schema can then be missing.
     pub(super) fn hidden_table(self, schema: Option<&str>, name: &str) -> Option<&'static Table> {
         let is_there = match schema {
             Some(schema) => schema.eq_ignore_ascii_case(HIDDEN_SCHEMA),
@@ -90,12 +91,12 @@ pub fn hidden_tables() -> &'static [Table] {
     &HIDDEN_CATALOGUE
 }
 
-/// Returns all visible tables.
+/// Returns the definitions of all visible tables.
 pub fn tables() -> &'static [Table] {
     &CATALOGUE
 }
 
-/// Returns the visible table with a case-insensitive name.
+/// Returns the visible table with this name, ignoring case.
 pub fn table(name: &str) -> Option<&'static Table> {
     CATALOGUE.iter().find(|table| table.name.eq_ignore_ascii_case(name))
 }
@@ -114,12 +115,12 @@ impl Table {
         format!("CREATE TABLE {} ({})", self.name, parts.join(", "))
     }
 
-    /// Returns the name within the schema of a hidden table, or `None` for a visible table.
+    /// Returns the name of a hidden table without the schema, or `None` for a visible table.
     fn hidden_name(&self) -> Option<&str> {
         self.name.strip_prefix(HIDDEN_SCHEMA)?.strip_prefix('.')
     }
 
-    /// Returns the column that is the rowid, if any.
+    /// Returns the name of the column that is the rowid, if the table has such a column.
     pub fn row_number_column(&self) -> Option<&str> {
         let [key] = self.key.as_slice() else { return None };
         let key_column = self.columns.iter().find(|column| column.name == *key)?;

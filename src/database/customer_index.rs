@@ -1,5 +1,5 @@
-//! Indexes of packed days by customer, for statements that look up many customers. Without an index, packed rows can only be
-//! scanned run by run.
+//! Indexes of packed days by customer, for statements that look up many customers. Without an index, a lookup scans
+//! the packed rows run by run.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,22 +7,22 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::packing::{PackedDay, RowRun};
 
-/// Maximum bytes of all indexes of a statement.
+/// Maximum total size in bytes of the indexes built for a statement on a table.
 const MAX_INDEX_BYTES: usize = 256 << 20;
 
-/// Rows of a range of days, grouped by customer in table order.
+/// Rows of a range of days, grouped by customer. The rows of a customer are in table order.
 pub(super) struct CustomerIndex<R: RowRun> {
     first_customer: u32,
-    /// Start of the rows of each customer, and end of the last one.
+    /// Start of each customer's rows, and the end of the last customer's rows.
     row_starts: Vec<u32>,
-    /// Number of each row.
+    /// Row number of each row.
     pub numbers: Vec<i64>,
-    /// Columns of each row besides day and customer.
+    /// Columns of each row except day and customer.
     pub rows: Vec<R::Row>,
 }
 
 impl<R: RowRun> CustomerIndex<R> {
-    /// Builds the index. Returns `None` if the days cannot be unpacked.
+    /// Builds the index of a range of days. Returns `None` if the days cannot be unpacked.
     fn from_days(days: &[Arc<PackedDay>]) -> Option<CustomerIndex<R>> {
         let customers = customer_range(days);
         let mut begins = vec![0u32; customers.len() + 1];
@@ -58,7 +58,7 @@ impl<R: RowRun> CustomerIndex<R> {
     }
 }
 
-/// Returns the range of customers that may have rows.
+/// Returns the range from the lowest to the highest customer number with rows.
 fn customer_range(days: &[Arc<PackedDay>]) -> Range<u32> {
     let of_runs = days.iter().flat_map(|day| (0..day.run_count()).map(|run| day.customer_range(run)));
     let of_runs = of_runs.filter(|(first, last)| first <= last);
@@ -77,7 +77,7 @@ fn for_each_run<R: RowRun>(days: &[Arc<PackedDay>], mut work: impl FnMut(i64, &R
     Some(())
 }
 
-/// The indexes of the running statement for one table.
+/// The indexes of one table, built for the running statement.
 pub(super) struct CustomerIndexes<R: RowRun>(Mutex<IndexCache<R>>);
 
 struct IndexCache<R: RowRun> {
@@ -86,7 +86,7 @@ struct IndexCache<R: RowRun> {
 }
 
 struct LookupStatistics<R: RowRun> {
-    /// Scanned rows.
+    /// Number of rows that lookups have scanned.
     rows: usize,
     index: Option<Arc<CustomerIndex<R>>>,
 }
@@ -98,7 +98,7 @@ impl<R: RowRun> Default for CustomerIndexes<R> {
 }
 
 impl<R: RowRun> CustomerIndexes<R> {
-    /// Returns the index of a range of days. Builds it once the scans have cost as much as building it.
+    /// Returns the index of a range of days. Builds the index when the scans of this range have cost as much as the index.
     pub fn get(&self, days: &[Arc<PackedDay>], range: &Range<usize>) -> Option<Arc<CustomerIndex<R>>> {
         let mut made = self.lock();
         let lookups = made.by_days.get(&(range.start, range.end))?;
@@ -118,7 +118,7 @@ impl<R: RowRun> CustomerIndexes<R> {
         Some(index)
     }
 
-    /// Counts rows that were scanned for one customer.
+    /// Adds the number of rows that a lookup of one customer scanned.
     pub fn record_scanned_rows(&self, range: &Range<usize>, rows: usize) {
         let mut made = self.lock();
         let none = LookupStatistics { rows: 0, index: None };
@@ -131,7 +131,7 @@ impl<R: RowRun> CustomerIndexes<R> {
         self.lock().by_days.values().map(|lookups| lookups.rows).sum()
     }
 
-    /// Removes all indexes.
+    /// Removes all indexes and lookup statistics.
     pub fn clear(&self) {
         *self.lock() = IndexCache { by_days: BTreeMap::new(), bytes: 0 };
     }

@@ -1,8 +1,7 @@
-//! The tables `notifications` and `ledger`: read-only virtual tables over packed days, which skip days and kinds that a
-//! query does not need, and return rows ordered by kind or day so that SQLite need not sort.
+//! The tables `notifications` and `ledger`: read-only virtual tables over packed days. The virtual tables skip days
+//! and kinds that a query does not need. They can return rows ordered by kind or day, so that SQLite need not sort.
 //!
-//! The interface of rusqlite for virtual tables is a pair of unsafe traits: their structs must start with the base class of
-//! SQLite.
+//! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;
@@ -22,34 +21,35 @@ use super::blocks::{BlockStore, QueryView};
 use super::packing::{KindSet, PackedRows};
 use super::text_index::{TextIndex, TextIndexes, TextRow};
 
-/// The properties in which the two tables differ. Columns 0 to 2 are always number, day and kind.
+/// The table-specific properties of a day table. Columns 0 to 2 are always number, day and kind.
 pub(super) trait DayTableDefinition: Send + Sync + Sized + 'static {
     type Day: PackedRows;
     /// Unpacked data of a day.
     type Unpacked: Default;
     const DECLARATION: &'static CStr;
-    /// Names of the kinds, in ascending order.
+    /// Names of the row kinds, in ascending order.
     const KINDS: &'static [&'static str];
 
     fn days(store: &BlockStore) -> &[Arc<Self::Day>];
     fn unpack(day: &Self::Day, kinds: KindSet) -> Self::Unpacked;
-    /// Returns the index of the kind of the row at a place.
+    /// Returns the kind of the row at a position, as an index into `KINDS`.
     fn kind(day: &Self::Day, place: u64) -> usize;
-    /// Column of the text, which is the last one.
+    /// Index of the text column, which is the last column.
     const TEXT: c_int;
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str>;
     fn texts(seen: &QueryView) -> &TextIndexes;
-    /// Sets the result to a column between the third and the last.
+    /// Sets the result to a table-specific column: a column after the third and before the last.
     fn column(_: &DayRow<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
         Ok(())
     }
-    /// Returns the kinds that satisfy a comparison of a column after the third; all if it does not restrict kinds.
+    /// Returns the kinds whose rows can satisfy a comparison of a table-specific column. Returns all kinds if the
+    /// comparison does not restrict kinds.
     fn matching_kinds(_column: c_int, _comparison: Comparison, _value: f64) -> KindSet {
         KindSet::MAX
     }
 }
 
-/// A row that is read.
+/// The row whose columns SQLite reads.
 pub(super) struct DayRow<'a, K: DayTableDefinition> {
     pub store: &'a BlockStore,
     pub day: &'a K::Day,
@@ -63,7 +63,7 @@ const KIND: c_int = 2;
 /// SQLite's column number of the rowid.
 const ROWID_COLUMN: c_int = -1;
 
-/// Operator of a comparison.
+/// A comparison operator of SQL.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Comparison {
     Equal,
@@ -112,7 +112,7 @@ impl HandledConstraint {
         (useful && (0..10).contains(&column)).then_some(HandledConstraint { column, comparison })
     }
 
-    /// Returns the two letters of the index text.
+    /// Returns the two characters that represent this constraint in the index string.
     fn encode(self) -> String {
         let letter = Comparison::ALL.iter().find(|(comparison, _)| *comparison == self.comparison);
         format!("{}{}", self.column, letter.map_or('=', |(_, letter)| *letter))
@@ -127,11 +127,11 @@ impl HandledConstraint {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowOrder {
-    /// By number, and therefore by day.
+    /// Order by number, and therefore by day.
     Number,
-    /// By kind, then by day.
+    /// Order by kind, then by day.
     ByKind,
-    /// By day, then by kind.
+    /// Order by day, then by kind.
     DayAndKind,
 }
 
@@ -152,7 +152,7 @@ impl RowOrder {
 
 #[repr(C)]
 pub(super) struct DayTable<K: DayTableDefinition> {
-    /// Base class; must be first.
+    /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab,
     seen: Arc<QueryView>,
     kind: PhantomData<K>,
@@ -197,7 +197,8 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
         for (argument, (at, constraint)) in (1..).zip(&handled) {
             let mut usage = info.constraint_usage(*at);
             usage.set_argv_index(argument);
-            // Equality of days and kinds is exact for values of every type; SQLite checks other constraints again.
+            // The table checks equality of days and kinds exactly for values of every type. SQLite checks all other
+            // constraints again.
             usage.set_omit(
                 constraint.comparison == Comparison::Equal && matches!(constraint.column, DAY | KIND),
             );
@@ -247,13 +248,13 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
 
 #[derive(Debug, Clone, Copy)]
 struct ScanPass {
-    /// Position among the days.
+    /// Index of the day in the store.
     day: usize,
     kinds: KindSet,
 }
 
 impl ScanPass {
-    /// Returns whether the row at a place has one of the kinds.
+    /// Returns whether the row at a position has one of the kinds of this pass.
     fn contains(self, day: &impl PackedRows, place: u64) -> bool {
         day.next_of_kinds(self.kinds, place) == Some(place)
     }
@@ -261,18 +262,18 @@ impl ScanPass {
 
 #[repr(C)]
 pub(super) struct DayCursor<'vtab, K: DayTableDefinition> {
-    /// Base class; must be first.
+    /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
     seen: Arc<QueryView>,
     passes: Vec<ScanPass>,
     pass: usize,
     place: u64,
-    /// Unpacked data of each requested day. Rows of an index can be on any of them.
+    /// Unpacked data of each requested day. All days are kept because the rows of an index can be on any day.
     unpacked: Vec<OnceCell<K::Unpacked>>,
-    /// Requested row number.
+    /// Requested row number, if the query requests a single row.
     row_number_filter: Option<f64>,
-    /// Remaining rows of an index; the positions of their days are those of the passes.
+    /// Remaining rows of a text index. The day of such a row is an index into `passes`.
     indexed_rows: Option<(Arc<TextIndex>, Range<usize>)>,
     table: PhantomData<&'vtab DayTable<K>>,
 }
@@ -282,7 +283,7 @@ impl<K: DayTableDefinition> DayCursor<'_, K> {
         self.passes.get(self.pass).map(|pass| &*K::days(&self.store)[pass.day])
     }
 
-    /// Advances to the first requested row at or after the place.
+    /// Advances to the first requested row at or after the current position.
     fn advance_to_match(&mut self) {
         if let Some((index, rest)) = &mut self.indexed_rows {
             let mut rows = rest.map(|at| index.row(at)).map(|row| (row.day as usize, u64::from(row.place)));
@@ -322,7 +323,7 @@ impl<K: DayTableDefinition> DayCursor<'_, K> {
         Some(DayRow { store: &self.store, day: of_day, unpacked, place })
     }
 
-    /// Returns the kinds that must be unpacked.
+    /// Returns the kinds that must be unpacked to read the rows of a pass.
     fn kinds_to_read(&self, pass: &ScanPass) -> KindSet {
         if self.indexed_rows.is_some() { KindSet::MAX } else { pass.kinds }
     }
@@ -338,14 +339,14 @@ impl<K: DayTableDefinition> DayCursor<'_, K> {
         days.flat_map(rows).map(|(day, place, text)| TextRow::new(&text, day - first, place)).collect()
     }
 
-    /// Returns the scans of a range of days for kinds in an order.
+    /// Returns the passes that scan a range of days for these kinds in this order.
     fn plan_passes(&self, days: [f64; 2], kinds: KindSet, order: RowOrder) -> Vec<ScanPass> {
         let all = K::days(&self.store);
         let end = all.partition_point(|day| f64::from(day.day()) <= days[1]);
         let days = all.partition_point(|day| f64::from(day.day()) < days[0]).min(end)..end;
         let single = || (0..K::KINDS.len()).map(|at| 1 << at).filter(move |bit| kinds & bit != 0);
         match order {
-            // A single row needs one scan in any order.
+            // A single row needs only one pass in any order.
             _ if self.row_number_filter.is_some() => days.map(|day| ScanPass { day, kinds }).collect(),
             RowOrder::Number => days.map(|day| ScanPass { day, kinds }).collect(),
             RowOrder::ByKind => {
@@ -368,7 +369,7 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
     ) -> rusqlite::Result<()> {
         let (mut days, mut kinds) = ([f64::NEG_INFINITY, f64::INFINITY], KindSet::MAX);
         if self.indexed_rows.is_none() {
-            // The unpacked data of a scan may lack kinds that were not requested.
+            // The unpacked data of the previous scan may lack kinds that this scan requests.
             self.unpacked.clear();
         }
         (self.row_number_filter, self.indexed_rows) = (None, None);
@@ -392,9 +393,9 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
                 // Blobs are greater than every number.
                 Type::Blob if column != KIND && column != K::TEXT => f64::INFINITY,
                 Type::Integer | Type::Real if column != KIND && column != K::TEXT => values.get::<f64>(at)?,
-                // NULL equals no value.
+                // A comparison with NULL is never true.
                 Type::Null => f64::NAN,
-                // No kind is a number.
+                // The kind column contains text, so no number is equal to a kind.
                 _ if column == KIND => f64::NAN,
                 _ => continue,
             };
@@ -456,7 +457,8 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
     }
 }
 
-/// Returns the number as which a numeric column compares a text: its parsed value, or a value greater than every number.
+/// Returns the number with which a numeric column compares a text: the parsed value of the text, or a value greater
+/// than every number.
 pub(super) fn comparison_number(text: &str) -> f64 {
     let text = text.trim_matches([' ', '\t', '\n', '\r', '\u{b}', '\u{c}']);
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte));
@@ -471,7 +473,7 @@ mod tests {
     use novamind_world::events::LossCause;
     use rusqlite::Connection;
 
-    /// Returns a connection to five days: notices of three types, losses that repeat from day 2 on, a call on day 3.
+    /// Returns a connection to five days of notices: three types, losses that repeat from day 2 on, and a tool call on day 3.
     fn connection() -> Connection {
         let losses =
             (0..3).map(|at| RepeatedLoss { customer: 10 + at, message_day: 1, cause: LossCause::Silence });

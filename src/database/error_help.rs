@@ -8,8 +8,8 @@ use super::math_functions::register_mathematics;
 use super::tokens::{Token, TokenKind, tokenize};
 use novamind_base::similar_names;
 
-/// Returns the message of the engine with valid alternatives. Suggestions come only from the visible tables, the functions of
-/// the engine and the statement itself.
+/// Replaces an error message of the engine by an explanation with valid alternatives. Suggestions contain only names
+/// of visible tables, functions of the engine and names in the statement.
 pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     if let Some(column) = message.strip_prefix("no such column: ") {
         return explain_unknown_column(column, sql, scope);
@@ -38,10 +38,10 @@ pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     message.to_owned()
 }
 
-/// Returns `; did you mean customers?` if a known name is similar to an unknown one.
+/// Returns a question such as `; did you mean customers?` if a known name is similar to `name`.
 fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let near = similar_names(name, known);
-    // A name that differs in every second letter does not help.
+    // A known name that differs in more than a third of the letters is not a useful suggestion.
     let is_close =
         |known: &&&str| strsim::damerau_levenshtein(&name.to_lowercase(), known) * 3 <= name.len().max(3);
     let begins =
@@ -82,7 +82,7 @@ fn explain_unknown_table(name: &str, scope: Scope) -> String {
         }
         None => suggestion(if alone.is_empty() { name } else { alone }, names.iter().copied()),
     };
-    // A question already ends with its mark.
+    // A suggestion already ends with a question mark.
     let end = if help.ends_with('?') { " The" } else { "; the" };
     format!("there is no table {name}{help}{end} tables are {}", names.join(", "))
 }
@@ -129,7 +129,7 @@ fn mentioned_tables(sql: &str, scope: Scope) -> Vec<&'static Table> {
     scope.tables().filter(|table| table.name.split('.').all(stands)).collect()
 }
 
-/// Returns a hint for an empty result: comparisons `column = 'text'` with a text that the column never has.
+/// Returns a hint for an empty result if the statement compares a column with a text that the column never contains.
 pub(super) fn empty_result_hint(sql: &str, scope: Scope) -> Option<String> {
     let mentioned = mentioned_tables(sql, scope);
     let mut hints = Vec::new();
@@ -146,8 +146,8 @@ pub(super) fn empty_result_hint(sql: &str, scope: Scope) -> Option<String> {
     (!hints.is_empty()).then(|| hints.join("; "))
 }
 
-/// Returns the pairs of column and text of comparisons, in either order. As in the engine, a name in double quotes is a text if
-/// no column has it.
+/// Returns the column and the text of each comparison between a column and a text, in either order. Like the engine,
+/// treats a name in double quotes as a text if no column has this name.
 fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
     let tokens = tokenize(sql);
     let mut found = Vec::new();
@@ -233,7 +233,7 @@ mod tests {
         let inside =
             ["c_max", "q_max", "sqlite_master", "load_extension", "pragma_table_info", "fts3_tokenizer"];
         for name in hidden.into_iter().chain(inside) {
-            // Each typo omits one letter.
+            // Each misspelled name omits one letter.
             for at in 0..name.len() {
                 let typed = format!("{}{}", &name[..at], &name[at + 1..]);
                 for kind in ["table", "column", "function"] {

@@ -1,5 +1,6 @@
-//! Authorization of statements: they may read the visible tables, read internal tables only within a view, and call ordinary
-//! functions (docs/formats/database.md#queries). The decision depends on what a statement does, not on its text.
+//! Authorization of SQL statements (docs/formats/database.md#queries). Statements may read visible tables and call
+//! ordinary functions. Statements may read internal tables only through a view. The decision depends on the actions of a
+//! statement, not on its text.
 
 use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,16 +14,16 @@ use rusqlite::limits::Limit;
 
 use super::catalogue::{self, Scope};
 
-/// The reason of the last rejection by the authorizer.
+/// The reason for the authorizer's last rejection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RejectionReason {
-    /// No rejection.
+    /// The authorizer has not rejected an action.
     None,
-    /// Access to the schema.
+    /// The statement accesses the schema.
     Schema,
-    /// Access to a table that is not visible.
+    /// The statement accesses a table that is not visible.
     HiddenTable,
-    /// A change of data.
+    /// The statement changes data.
     Write,
 }
 
@@ -45,7 +46,8 @@ impl LastRejection {
     }
 }
 
-/// Tables that the released simulator hides and that do not exist here. Reading them has a separate error code.
+/// Tables that the released simulator hides and that this database does not contain. Queries that name such a table
+/// get a separate error code.
 const RELEASED_HIDDEN_TABLES: [&str; 25] = [
     "events",
     "api_costs",
@@ -74,12 +76,12 @@ const RELEASED_HIDDEN_TABLES: [&str; 25] = [
     "_rng_states",
 ];
 
-/// Returns whether the released simulator hides a table; case-insensitive.
+/// Returns whether the released simulator hides the table with this name, ignoring case.
 pub(super) fn is_hidden_table(name: &str) -> bool {
     RELEASED_HIDDEN_TABLES.iter().any(|hidden| hidden.eq_ignore_ascii_case(name))
 }
 
-/// Internal tables, and whether a visible table has the same rows.
+/// Internal tables of the database. The flag is true if a visible table has the same rows.
 const INTERNAL_TABLES: [(&str, bool); 11] = [
     ("customer_rows", true),
     ("subscription_rows", true),
@@ -102,16 +104,16 @@ pub(super) fn is_unsafe_function(name: &str) -> bool {
     UNSAFE_FUNCTIONS.contains(&name)
 }
 
-/// Table-valued functions.
+/// Table-valued functions that statements may call.
 const TABLE_FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
 
-/// Returns whether a name is that of a table of the engine.
+/// Returns whether a table belongs to the engine rather than to the run.
 pub(super) fn is_engine_table(name: &str) -> bool {
     let name = name.to_lowercase();
     name.starts_with("sqlite_") || name.starts_with("pragma_") || name == "dbstat"
 }
 
-/// Returns the visible table of an internal one.
+/// Returns the visible table whose rows an internal table stores.
 pub(super) fn visible_table_of(inside: &str) -> Option<&'static str> {
     let table = catalogue::tables().iter().find(|table| {
         let stem = inside.strip_suffix("_rows").unwrap_or(inside);
@@ -120,12 +122,12 @@ pub(super) fn visible_table_of(inside: &str) -> Option<&'static str> {
     table.map(|table| table.name.as_str()).filter(|_| is_internal_table(inside))
 }
 
-/// Returns whether a name is that of an internal table; case-insensitive.
+/// Returns whether the table with this name is internal, ignoring case.
 pub(super) fn is_internal_table(name: &str) -> bool {
     INTERNAL_TABLES.iter().any(|(table, _)| table.eq_ignore_ascii_case(name))
 }
 
-/// Sets limits of statements. A function call cannot be interrupted, so values and patterns must be short.
+/// Sets limits for statements. A running SQL function cannot be interrupted, so values and patterns must be short.
 pub(super) fn set_limits(connection: &Connection) -> rusqlite::Result<()> {
     connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
     connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 2 << 20)?;
@@ -137,7 +139,7 @@ pub(super) fn set_limits(connection: &Connection) -> rusqlite::Result<()> {
     connection.set_limit(Limit::SQLITE_LIMIT_WORKER_THREADS, 0).map(|_| ())
 }
 
-/// Columns of visible tables that statements read, by table; shared between the authorizer and its users.
+/// Columns of visible tables that statements read, by table. The authorizer and its users share this record.
 #[derive(Clone, Default)]
 pub(super) struct ColumnReads(Arc<Mutex<ColumnsByTable>>);
 
@@ -145,7 +147,7 @@ pub(super) struct ColumnReads(Arc<Mutex<ColumnsByTable>>);
 pub(super) type ColumnsByTable = BTreeMap<String, BTreeSet<String>>;
 
 impl ColumnReads {
-    /// Returns and clears the columns.
+    /// Returns the recorded columns and clears the record.
     pub fn take(&self) -> ColumnsByTable {
         std::mem::take(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
@@ -159,7 +161,7 @@ impl ColumnReads {
 /// The views behind the visible tables, under unpredictable names.
 #[derive(Clone)]
 pub(super) struct InnerViews {
-    /// Prefix of their names.
+    /// Prefix of the view names.
     secret: String,
     names: Vec<String>,
 }
@@ -169,7 +171,7 @@ impl InnerViews {
     /// view.
     pub fn copy_statements(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
         let table = catalogue::table(name).filter(|table| self.names.contains(&table.name))?;
-        // The authorizer does not report columns of USING, and tables are joined by customer.
+        // The authorizer does not report the columns of a USING clause, which usually joins tables by customer.
         let is_filled = |column: &&str| {
             read.contains(*column) || *column == CUSTOMER_ID || table.key.iter().any(|key| key == column)
         };
@@ -188,10 +190,10 @@ impl InnerViews {
     }
 }
 
-/// The join column of the tables.
+/// The column by which statements join tables.
 pub(super) const CUSTOMER_ID: &str = "customer_id";
 
-/// The authorizer of statements.
+/// The authorizer that allows or denies the actions of statements.
 pub(super) struct Guard {
     last_rejection: LastRejection,
     reads: ColumnReads,
@@ -199,15 +201,16 @@ pub(super) struct Guard {
     views: Option<InnerViews>,
     /// Tables that statements may name.
     scope: Scope,
-    /// Names of all tables, views and modules, in lower case. Any other name is that of a common table expression.
+    /// Names of all tables, views and modules, in lower case. Any other name belongs to a common table expression.
     existing: BTreeSet<String>,
 }
 
 impl Guard {
-    /// Replaces the views of the visible tables by temporary views of the same names, which read copies with names that cannot be guessed.
+    /// Replaces the views of the visible tables by temporary views with the same names. The temporary views read
+    /// copies of the original views with unpredictable names.
     ///
-    /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like views. So
-    /// internal tables are readable only in views with unpredictable names.
+    /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like
+    /// views. Therefore, internal tables are readable only in views with unpredictable names.
     pub fn with_inner_views(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
@@ -244,17 +247,17 @@ impl Guard {
         })
     }
 
-    /// Returns the columns that statements read.
+    /// Returns the shared record of the columns that statements read.
     pub fn reads(&self) -> ColumnReads {
         self.reads.clone()
     }
 
-    /// Returns the inner views.
+    /// Returns the inner views, or `None` if there are no internal tables.
     pub fn views(&self) -> Option<InnerViews> {
         self.views.clone()
     }
 
-    /// Returns the rejection reasons.
+    /// Returns the shared record of the last rejection reason.
     pub fn last_rejection(&self) -> LastRejection {
         self.last_rejection.clone()
     }
@@ -304,7 +307,7 @@ impl Guard {
             || TABLE_FUNCTIONS.contains(&name.as_str())
             || is_inner_view(&name);
         let from_view = accessor.is_some_and(is_inner_view);
-        // Without a column, only rows are counted: those of a common table expression, or of a view that the
+        // If no column is read, the statement only counts rows of a common table expression or of a view that the
         // planner has flattened. Any other table that exists and is not listed is rejected.
         let counted = column.is_empty()
             && match inside {
@@ -332,8 +335,8 @@ fn existing_names(connection: &Connection) -> rusqlite::Result<BTreeSet<String>>
     Ok(existing.into_iter().map(|name| name.to_lowercase()).collect())
 }
 
-/// Disables the authorizer while the program itself works on a connection. Dropping it, also by a panic, restores the previous
-/// state.
+/// Disables the authorizer while the program executes its own statements. Dropping the guard restores the previous
+/// state, even after a panic.
 pub(super) struct TrustGuard<'a> {
     trusted: &'a AtomicBool,
     previous: bool,
@@ -351,7 +354,7 @@ impl Drop for TrustGuard<'_> {
     }
 }
 
-/// Returns 64 unpredictable bits. They only name views of one connection and never affect a run.
+/// Returns 64 unpredictable bits. The bits are used only for the names of a connection's views and never affect a run.
 fn random_bits() -> u64 {
     RandomState::new().build_hasher().finish()
 }

@@ -1,5 +1,5 @@
 //! The hidden tables of the x-ray: ordinary tables in the memory of one connection, in a separate schema
-//! (docs/formats/hidden-tables.md). They are never in a file.
+//! (docs/formats/hidden-tables.md). The hidden tables are never written to a file.
 
 use rusqlite::Connection;
 
@@ -8,13 +8,13 @@ use super::catalogue::{HIDDEN_SCHEMA, Table, hidden_tables};
 /// A value of a hidden table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HiddenValue {
-    /// SQL NULL.
+    /// SQL NULL, a missing value.
     Null,
     /// An integer; Booleans are 0 and 1.
     Integer(i64),
     /// A floating-point number.
     Real(f64),
-    /// A word of a fixed list.
+    /// A text from a fixed list.
     Text(&'static str),
 }
 
@@ -48,7 +48,7 @@ impl<T: Into<HiddenValue>> From<Option<T>> for HiddenValue {
     }
 }
 
-/// Creates the empty tables on a connection.
+/// Creates the empty hidden tables on a connection.
 pub(super) fn create_hidden_tables(connection: &Connection) -> rusqlite::Result<()> {
     // A read-only connection cannot write to a database that is attached as `:memory:`.
     connection.execute_batch(&format!("ATTACH 'file:{HIDDEN_SCHEMA}?mode=memory' AS {HIDDEN_SCHEMA}"))?;

@@ -1,4 +1,4 @@
-//! Filling the hidden tables of a connection.
+//! Fills the hidden tables of a connection.
 
 use std::time::Duration;
 
@@ -13,7 +13,8 @@ use super::rows::{NULL, Value, insert_rows, integer, real, text};
 const MAX_FILL_TIME: Duration = Duration::from_secs(600);
 
 impl QueryConnection {
-    /// Returns the hidden tables that statements name, each once. For a text that does not compile, returns those before the error.
+    /// Returns the hidden tables that statements name, without duplicates. If a statement does not compile, returns
+    /// the tables of the statements before it.
     pub fn hidden_tables_in(&self, sql: &str) -> Vec<&'static Table> {
         let mut statements = self.released.statements(sql);
         let mut named = Vec::new();
@@ -23,10 +24,11 @@ impl QueryConnection {
         hidden_tables().iter().filter(|table| named.contains(&table.name)).collect()
     }
 
-    /// Writes rows to a hidden table atomically, replacing its rows if `anew` is set, or else appending.
+    /// Writes rows to a hidden table atomically. Replaces the existing rows if `anew` is set, otherwise appends.
     ///
     /// # Errors
-    /// `sql_cancelled` if the user cancelled it, `sql_timeout` if it took too much time or memory, `sql_error`.
+    /// `sql_cancelled` if the user cancelled the query, `sql_timeout` if filling took too much time or memory,
+    /// otherwise `sql_error`.
     pub fn fill_hidden_table<const COLUMNS: usize>(
         &self,
         ticket: QueryTicket,

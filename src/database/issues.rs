@@ -1,4 +1,5 @@
-//! Issues as packed days: a run has the issues of one group that were opened on a day, in ascending order of customers.
+//! Packed days of the table `issues`. A run contains issues of one group that were opened on the same day, in
+//! ascending order of customers.
 
 use rusqlite::vtab::Context;
 use std::ffi::c_int;
@@ -8,18 +9,18 @@ use super::packing::{MAX_RUN_ROWS, PackedDay, Packer, RowRun, Unpacker};
 use novamind_world::events::IssueOpened;
 use novamind_world::identifiers::Group;
 
-/// Issues with consecutive numbers.
+/// Issues of one group with consecutive numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct IssueRun {
     /// Number of the first issue.
     pub first: u32,
     pub group: Group,
     pub customers: Vec<u32>,
-    /// Day of resolution of each; 0 while it is open.
+    /// Day on which each issue was resolved; 0 for open issues.
     pub solved: Vec<u32>,
 }
 
-/// The columns of issues besides day and customer.
+/// The columns of `issues` except day and customer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct IssueRow {
     pub issue: u32,
@@ -91,7 +92,7 @@ pub(super) mod column {
     pub const SOLVED_DAY: c_int = 6;
 }
 
-/// Sets the result to a column of an issue, with ages by the issue clock.
+/// Sets the result to a column of an issue. The age is computed with the issue clock.
 pub(super) fn write_column(
     (clock, day): (&[u32], u32),
     row: IssueRow,
@@ -109,15 +110,16 @@ pub(super) fn write_column(
     }
 }
 
-/// Returns the age of an issue by the clock, which ticks on days with work on issues. Resolutions precede the tick of their
-/// day, new issues follow it. `clock` has its value after each day.
+/// Returns the age of an issue, measured with the issue clock, which advances on days on which issues are processed.
+/// On each day, issues are resolved before the clock advances, and new issues are opened afterwards. `clock` contains
+/// the value after each day.
 pub(super) fn days_open(clock: &[u32], opened: u32, solved: Option<u32>) -> u32 {
     let after = |day: u32| clock.get(day as usize).or(clock.last()).copied().unwrap_or(0);
     let until = solved.map_or_else(|| clock.last().copied().unwrap_or(0), |day| after(day.saturating_sub(1)));
     until.saturating_sub(after(opened))
 }
 
-/// Returns the position of the day on which an issue was opened.
+/// Returns the index of the day on which an issue was opened.
 pub(super) fn day_index_of_issue(days: &[Arc<PackedDay>], issue: u32) -> Option<usize> {
     let first = |day: &PackedDay| day.unpack_run::<IssueRun>(0).map_or(u32::MAX, |run| run.first);
     days.partition_point(|day| first(day) <= issue).checked_sub(1)
@@ -157,7 +159,7 @@ mod tests {
 
     #[test]
     fn days_open_follows_the_issue_clock() {
-        // The clock does not tick on day 3.
+        // The clock does not advance on day 3.
         let clock = [0, 1, 2, 2, 3, 4];
         for (opened, solved, days) in
             [(1, None, 3), (1, Some(5), 2), (2, Some(3), 0), (2, Some(4), 0), (3, Some(5), 1), (5, None, 0)]

@@ -1,12 +1,12 @@
-//! The ledger as packed days. Most rows are lead costs, in the order of their customers, and payments with few different
-//! amounts.
+//! Packed days of the table `ledger`. Most rows are lead costs in the order of customers, or payments with few
+//! different amounts.
 
 use std::collections::BTreeMap;
 
 use super::packing::{KindSet, PackedRows, Packer, Unpacker};
 use novamind_world::events::Category;
 
-/// Categories in alphabetical order.
+/// Ledger categories in alphabetical order.
 pub(super) const CATEGORIES: [&str; 12] = [
     "ad_revenue",
     "advertising",
@@ -23,7 +23,7 @@ pub(super) const CATEGORIES: [&str; 12] = [
 ];
 pub(super) const LEAD_COST_CATEGORY: usize = 7;
 pub(super) const PAYMENT_CATEGORY: usize = 11;
-/// Income categories.
+/// Categories whose entries are income, as a set of bits.
 pub(super) const INCOME_CATEGORIES: KindSet = 1 | 1 << 6 | 1 << PAYMENT_CATEGORY;
 
 /// A ledger entry that is neither a lead cost nor a payment.
@@ -34,7 +34,7 @@ pub(super) struct OtherEntry {
     pub note: String,
 }
 
-/// The ledger entries of a day: lead costs, payments, others.
+/// The ledger entries of a day: lead costs, payments, and other entries.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct LedgerDay {
     day: u32,
@@ -43,12 +43,12 @@ pub(super) struct LedgerDay {
     pub lead_cost: f64,
     leads: u32,
     payments: u32,
-    /// Customers and amounts, packed.
+    /// Packed [`LeadsAndPayments`] of the day.
     pub packed: Vec<u8>,
     others: Vec<OtherEntry>,
 }
 
-/// Customers of lead costs, and payments with their customers.
+/// The customers of the day's lead costs, and the customers and amounts of the day's payments.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct LeadsAndPayments {
     pub leads: Vec<u32>,
@@ -56,27 +56,27 @@ pub(super) struct LeadsAndPayments {
 }
 
 impl LedgerDay {
-    /// Returns a day without entries.
+    /// Returns a ledger day without entries.
     pub fn new(day: u32, first: u64, lead_cost: f64) -> LedgerDay {
         let packed = LeadsAndPayments::default().pack();
-        // SQLite keeps no negative zero.
+        // SQLite does not store negative zero.
         let lead_cost = lead_cost + 0.0;
         LedgerDay { day, first, lead_cost, packed, ..LedgerDay::default() }
     }
 
-    /// Sets lead costs and payments.
+    /// Sets the lead costs and payments of the day.
     pub fn set_leads_and_payments(&mut self, movements: &LeadsAndPayments) {
         (self.leads, self.payments) = (movements.leads.len() as u32, movements.payments.len() as u32);
         self.packed = movements.pack();
     }
 
-    /// Adds another entry.
+    /// Appends an entry that is neither a lead cost nor a payment.
     pub fn push(&mut self, category: Category, amount: f64, note: String) {
         let category = CATEGORIES.binary_search(&category.id()).unwrap_or_default() as u8;
         self.others.push(OtherEntry { category, amount: amount + 0.0, note });
     }
 
-    /// Returns the bytes in the file.
+    /// Returns the bytes that are stored in the database file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut packer = Packer::default();
         packer.push_number(self.first);
@@ -95,7 +95,7 @@ impl LedgerDay {
         packer.finish()
     }
 
-    /// Parses the bytes of a day. Returns `None` if they are invalid.
+    /// Parses the stored bytes of a day. Returns `None` if the bytes are invalid.
     pub fn from_bytes(day: u32, bytes: &[u8]) -> Option<LedgerDay> {
         let mut unpacker = Unpacker::new(bytes);
         let (first, lead_cost) = (unpacker.read_number()?, unpacker.read_float()?);
@@ -117,7 +117,7 @@ impl LedgerDay {
         (sound && unpacker.is_empty()).then_some(read)
     }
 
-    /// Returns the entry at a place, from 0.
+    /// Returns the entry at a position of the day, counted from 0.
     pub fn entry_at(&self, place: u64) -> LedgerRow<'_> {
         let (leads, payments) = (u64::from(self.leads), u64::from(self.payments));
         match place {
@@ -128,7 +128,7 @@ impl LedgerDay {
     }
 }
 
-/// An entry at a place of a day.
+/// An entry of a ledger day. Leads and payments are indexes into the unpacked [`LeadsAndPayments`].
 pub(super) enum LedgerRow<'a> {
     Lead(usize),
     Payment(usize),
@@ -161,7 +161,7 @@ impl LeadsAndPayments {
         packer.finish()
     }
 
-    /// Parses packed entries. Returns `None` if the bytes are invalid.
+    /// Parses packed lead costs and payments. Returns `None` if the bytes are invalid.
     pub fn unpack(bytes: &[u8]) -> Option<LeadsAndPayments> {
         let mut unpacker = Unpacker::new(bytes);
         let leads = unpacker.read_ascending()?;
@@ -215,7 +215,7 @@ pub(super) fn payment_note(customer: u32) -> String {
 }
 
 impl LedgerDay {
-    /// Returns all rows: number, category, amount, note.
+    /// Returns all rows of the day: number, category, amount, note.
     pub fn rows(&self) -> impl Iterator<Item = (u64, &'static str, f64, String)> + '_ {
         let movements = LeadsAndPayments::unpack(&self.packed).unwrap_or_default();
         (0..self.len()).map(move |place| {

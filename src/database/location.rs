@@ -6,29 +6,29 @@ use std::time::Duration;
 
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
-/// Page cache of a connection; negative values are KiB for SQLite.
+/// Size of a connection's page cache. SQLite reads negative values as KiB.
 const CACHE_SIZE: i64 = -65_536;
 
 const MAX_CACHED_STATEMENTS: usize = 64;
 
-/// Location of a database.
+/// Location of a database: a file or shared memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DatabaseLocation {
-    /// A file.
+    /// A database file.
     File(PathBuf),
-    /// Named memory of this process.
+    /// A named database in the memory of this process.
     Memory(String),
 }
 
 impl DatabaseLocation {
-    /// Returns a new location in memory.
+    /// Returns the location of a new database in memory.
     pub fn new_in_memory() -> DatabaseLocation {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         DatabaseLocation::Memory(format!("file:/novamind-{}-{number}?vfs=memdb", std::process::id()))
     }
 
-    /// Returns the path of a file.
+    /// Returns the path of a database file, or `None` for a database in memory.
     pub fn path(&self) -> Option<&Path> {
         match self {
             DatabaseLocation::File(path) => Some(path),
@@ -36,16 +36,16 @@ impl DatabaseLocation {
         }
     }
 
-    /// Opens the only writing connection.
+    /// Opens the writing connection. A database has at most one writing connection.
     pub(super) fn open_writer(&self) -> rusqlite::Result<Connection> {
         let connection = self.open(OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE)?;
         if self.path().is_some() {
-            // Readers keep the state before a week while the week is written.
+            // Readers see the state before a week while the week is written.
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "NORMAL")?;
         }
         connection.pragma_update(None, "cache_size", CACHE_SIZE)?;
-        // More than a day needs, because an evicted statement would be compiled again every day.
+        // The cache has room for all statements of a day. An evicted statement would be compiled again every day.
         connection.set_prepared_statement_cache_capacity(MAX_CACHED_STATEMENTS);
         Ok(connection)
     }
@@ -57,7 +57,7 @@ impl DatabaseLocation {
             Ok(connection)
         });
         let connection = match (opened, self.path().and_then(Path::to_str)) {
-            // On read-only media, SQLite cannot create its shared-memory file.
+            // On read-only media, SQLite cannot create its shared-memory file, so the database is opened as immutable.
             (Err(error), Some(path)) if error.sqlite_error_code() == Some(ErrorCode::CannotOpen) => {
                 let escaped = path.replace('%', "%25").replace('?', "%3f").replace('#', "%23");
                 DatabaseLocation::Memory(format!("file:{escaped}?immutable=1"))
@@ -65,7 +65,7 @@ impl DatabaseLocation {
             }
             (opened, _) => opened,
         }?;
-        // Enough to sort a table of the largest runs without a temporary file.
+        // The cache is large enough to sort a table of the largest runs without a temporary file.
         connection.pragma_update(None, "cache_size", CACHE_SIZE)?;
         Ok(connection)
     }

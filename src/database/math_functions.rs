@@ -1,7 +1,7 @@
 //! SQL's mathematical functions, with the semantics that SQLite documents (<https://www.sqlite.org/lang_mathfunc.html>).
 //!
-//! They are registered on each connection that compiles or runs statements, so they exist in every build of SQLite.
-//! `libm` computes them, so results agree between machines.
+//! The functions are registered on each connection that compiles or runs statements, so that they exist with every
+//! build of SQLite. The library `libm` computes the results, which are therefore identical on all machines.
 
 use std::f64::consts::PI;
 
@@ -12,11 +12,11 @@ use rusqlite::types::{Value, ValueRef};
 type UnaryFunction = fn(f64) -> f64;
 type BinaryFunction = fn(f64, f64) -> f64;
 
-/// Functions that return an integer for an integer.
+/// Functions that return an integer argument unchanged as an integer.
 const ROUNDING_FUNCTIONS: [(&str, UnaryFunction); 4] =
     [("ceil", libm::ceil), ("ceiling", libm::ceil), ("floor", libm::floor), ("trunc", libm::trunc)];
 
-/// Functions of one number. A result that is not a number becomes NULL.
+/// Functions with one argument. A NaN result becomes NULL.
 const UNARY_FUNCTIONS: [(&str, UnaryFunction); 20] = [
     ("acos", libm::acos),
     ("acosh", libm::acosh),
@@ -40,7 +40,7 @@ const UNARY_FUNCTIONS: [(&str, UnaryFunction); 20] = [
     ("tanh", libm::tanh),
 ];
 
-/// Functions of two numbers. A result that is not a number becomes NULL.
+/// Functions with two arguments. A NaN result becomes NULL.
 const BINARY_FUNCTIONS: [(&str, BinaryFunction); 5] = [
     ("atan2", libm::atan2),
     ("log", log_to_base),
@@ -52,7 +52,7 @@ const BINARY_FUNCTIONS: [(&str, BinaryFunction); 5] = [
 /// Registers SQL's mathematical functions on a connection.
 ///
 /// # Errors
-/// The connection cannot take functions.
+/// SQLite cannot register a function on the connection.
 pub fn register_mathematics(connection: &Connection) -> rusqlite::Result<()> {
     let flags =
         FunctionFlags::SQLITE_UTF8 | FunctionFlags::SQLITE_DETERMINISTIC | FunctionFlags::SQLITE_INNOCUOUS;
@@ -80,7 +80,7 @@ pub fn register_mathematics(connection: &Connection) -> rusqlite::Result<()> {
     connection.create_scalar_function("pi", 0, flags, |_| Ok(PI))
 }
 
-/// Returns a logarithm, which is not defined for 0 and below.
+/// Applies a logarithm function, which is undefined for arguments of 0 and below.
 fn logarithm_of_positive(logarithm: UnaryFunction, x: f64) -> f64 {
     if x > 0.0 { logarithm(x) } else { f64::NAN }
 }
@@ -105,7 +105,7 @@ impl Number {
     }
 }
 
-/// Reads an argument. Returns `None` for NULL, a blob, or text that is not a number as a whole.
+/// Reads a numeric argument. Returns `None` for NULL, a blob, or text that is not entirely a number.
 fn number_argument(arguments: &Context<'_>, at: usize) -> Option<Number> {
     match arguments.get_raw(at) {
         ValueRef::Integer(x) => Some(Number::Integer(x)),
@@ -115,11 +115,11 @@ fn number_argument(arguments: &Context<'_>, at: usize) -> Option<Number> {
     }
 }
 
-/// Reads a number as SQLite writes them in decimal, with white space around it.
+/// Parses a decimal number in SQLite's syntax, with optional surrounding white space.
 fn parse_number(text: &[u8]) -> Option<Number> {
     let text = std::str::from_utf8(text).ok()?;
     let text = text.trim_matches([' ', '\t', '\n', '\x0b', '\x0c', '\r']);
-    // Rust also reads `inf` and `nan`, which are text to SQLite.
+    // Rust also parses `inf` and `nan`, which SQLite treats as text.
     if !text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte)) {
         return None;
     }
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn functions_agree_with_those_of_sqlite() {
-        // Computed by SQLite 3.40.1 with its own functions, by tests/python/mathematics.py.
+        // tests/python/mathematics.py computed the expected values with SQLite 3.40.1 and its built-in functions.
         let connection = connection();
         let recorded = include_str!("../../tests/data/mathematics.csv");
         let mut reader = csv::Reader::from_reader(recorded.as_bytes());

@@ -1,15 +1,15 @@
-//! The inbox as packed days: in memory for queries, as blobs in the file.
+//! The inbox as packed days: in memory for queries, as blobs in the database file.
 //!
-//! A lead that was lost after its thread had two turns is reported again every day until the run ends: millions of rows for a
-//! large company. They are stored as one entry per lead, in the order of their start, and a day stores how many of them it
-//! repeats.
+//! If a lead is lost after its thread had two turns, the loss is reported again every day until the run ends. A large
+//! company has millions of such rows. These losses are stored once per lead, in the order of the first report. Each
+//! day stores the number of losses that it repeats.
 
 use std::sync::Arc;
 
 use super::packing::{KindSet, PackedRows, Packer, Unpacker};
 use novamind_world::events::{LossCause, Notice};
 
-/// Types in alphabetical order.
+/// Notification types in alphabetical order.
 pub(super) const NOTICE_TYPES: [&str; 8] = [
     "deal_won",
     "group_research_complete",
@@ -21,7 +21,7 @@ pub(super) const NOTICE_TYPES: [&str; 8] = [
     "social_media",
 ];
 
-/// Index of losses in [`NOTICE_TYPES`].
+/// Index of the type `lead_lost` in [`NOTICE_TYPES`].
 pub(super) const LEAD_LOST: u8 = 3;
 
 /// Returns the index of a notice's type in [`NOTICE_TYPES`].
@@ -29,10 +29,10 @@ pub(super) fn type_index(notice: &Notice) -> u8 {
     NOTICE_TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST, |at| at as u8)
 }
 
-/// A loss that is reported every day.
+/// A lost lead that is reported again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct RepeatedLoss {
-    /// Customer number.
+    /// Number of the lost customer.
     pub customer: u32,
     /// Day of the unanswered message.
     pub message_day: u32,
@@ -41,13 +41,13 @@ pub(super) struct RepeatedLoss {
 }
 
 impl RepeatedLoss {
-    /// Returns the loss that a notice repeats.
+    /// Returns the loss that a notice repeats, or `None` for other notices.
     pub fn from_notice(notice: &Notice) -> Option<RepeatedLoss> {
         let Notice::LeadLossRepeated { customer, cause, message_day, .. } = *notice else { return None };
         Some(RepeatedLoss { customer, message_day, cause })
     }
 
-    /// Returns the text of the notice.
+    /// Returns the text of the repeated notice.
     pub fn text(&self) -> String {
         let RepeatedLoss { customer, message_day, .. } = self;
         match self.cause {
@@ -67,34 +67,34 @@ impl RepeatedLoss {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct NoticeDay {
     pub day: u32,
-    /// Number of the first notice.
+    /// Row number of the day's first notice.
     pub first: u64,
-    /// Number of repeated losses, counted from the first of the run.
+    /// Number of losses that this day repeats: the first ones of the run's list.
     pub repeats: u32,
-    /// Number of notices before the repeated ones; those of later calls follow them.
+    /// Number of notices before the repeated losses. Notices of later tool calls follow the repeated losses.
     pub before_repeats: u32,
     types: Vec<u8>,
     texts: PatternTexts,
 }
 
 impl NoticeDay {
-    /// Returns a day without notices.
+    /// Returns an inbox day without notices.
     pub fn new(day: u32, first: u64) -> NoticeDay {
         NoticeDay { day, first, ..NoticeDay::default() }
     }
 
-    /// Adds a notice.
+    /// Appends a notice that is not a repeated loss.
     pub fn push(&mut self, notice_type: u8, text: &str) {
         self.types.push(notice_type);
         self.texts.push(text);
     }
 
-    /// Completes the simulated day with its number of repeated losses.
+    /// Sets the number of repeated losses after the notices of the simulated day. Notices of later tool calls follow.
     pub fn set_repeats(&mut self, repeats: u32) {
         (self.before_repeats, self.repeats) = (self.types.len() as u32, repeats);
     }
 
-    /// Returns the notice at a place, from 0.
+    /// Returns the notice at a position of the day, counted from 0.
     pub fn slot_at(&self, place: u64) -> NoticeSlot {
         let (before, repeats) = (u64::from(self.before_repeats), u64::from(self.repeats));
         match place {
@@ -104,17 +104,17 @@ impl NoticeDay {
         }
     }
 
-    /// Returns the type of a notice of the day itself.
+    /// Returns the type of a notice that is stored with the day.
     pub fn type_at(&self, at: usize) -> u8 {
         self.types[at]
     }
 
-    /// Returns the text of a notice of the day itself.
+    /// Returns the text of a notice that is stored with the day.
     pub fn text_at(&self, at: usize) -> String {
         self.texts.get(at)
     }
 
-    /// Returns the bytes in the file.
+    /// Returns the bytes that are stored in the database file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut packer = Packer::default();
         for number in [self.first, self.repeats.into(), self.before_repeats.into(), self.types.len() as u64] {
@@ -125,7 +125,7 @@ impl NoticeDay {
         packer.finish()
     }
 
-    /// Parses the bytes of a day. Returns `None` if they are invalid.
+    /// Parses the stored bytes of a day. Returns `None` if the bytes are invalid.
     pub fn from_bytes(day: u32, bytes: &[u8]) -> Option<NoticeDay> {
         let mut unpacker = Unpacker::new(bytes);
         let first = unpacker.read_number()?;
@@ -171,29 +171,29 @@ impl PackedRows for NoticeDay {
     }
 }
 
-/// A notice at a place of a day.
+/// A notice of a day, stored with the day or repeated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NoticeSlot {
-    /// A notice of the day itself.
+    /// Index of a notice that is stored with the day.
     Stored(usize),
-    /// A repeated loss.
+    /// Index of a repeated loss in the run's list.
     Repeated(usize),
 }
 
-/// Texts that differ in their numbers: each is a pattern of the day with its numbers.
+/// Texts of a day, each stored as a pattern and the numbers that fill the pattern.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct PatternTexts {
-    /// Texts with a [`NUMBER`] for each of their numbers.
+    /// Distinct texts in which each number is replaced by [`NUMBER_PLACEHOLDER`].
     patterns: Vec<String>,
-    /// Offset of each text.
+    /// Offset of each text in `packed`.
     starts: Vec<u32>,
-    /// Pattern and numbers of each text.
+    /// Pattern index and numbers of each text, packed.
     packed: Vec<u8>,
 }
 
-/// Placeholder of a number in a pattern; no text has this character.
+/// Placeholder for a number in a pattern. No text contains this character.
 const NUMBER_PLACEHOLDER: char = '\u{0}';
-/// Maximum digits of a number: with the leading 1 they fit into 64 bits.
+/// Maximum number of digits in a number. With the leading 1, the number fits into 64 bits.
 const MAX_DIGITS: usize = 18;
 
 impl PatternTexts {
@@ -217,7 +217,7 @@ impl PatternTexts {
         let mut text = String::new();
         for letter in pattern.map_or("", String::as_str).chars() {
             match letter {
-                // The first digit is the 1 that preserves leading zeros.
+                // Omit the first digit, a 1 that preserves leading zeros.
                 NUMBER_PLACEHOLDER => text.push_str(&unpacker.read_number().unwrap_or(1).to_string()[1..]),
                 letter => text.push(letter),
             }
@@ -254,7 +254,7 @@ impl PatternTexts {
     }
 }
 
-/// Splits a text into its pattern and its numbers, each with a 1 before its digits.
+/// Splits a text into a pattern and numbers. A 1 is prefixed to the digits of each number.
 fn split_numbers(text: &str) -> (String, Vec<u64>) {
     let (mut pattern, mut numbers, mut rest) = (String::new(), Vec::new(), text);
     while let Some(letter) = rest.chars().next() {
@@ -280,7 +280,7 @@ fn split_numbers(text: &str) -> (String, Vec<u64>) {
 pub(super) struct Inbox {
     /// Days with notices, in order.
     pub days: Arc<Vec<Arc<NoticeDay>>>,
-    /// Repeated losses, in the order of their start.
+    /// Repeated losses, in the order of the first report.
     pub losses: Arc<Vec<RepeatedLoss>>,
 }
 

@@ -17,7 +17,7 @@ use super::notices::{LEAD_LOST, NOTICE_TYPES, NoticeDay, NoticeSlot};
 use super::packing::KindSet;
 use super::text_index::TextIndexes;
 
-/// Registers both tables on a connection.
+/// Registers the tables `ledger` and `notifications` on a connection.
 pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqlite::Result<()> {
     const NOTICES: Module<'static, DayTable<Notifications>> = Module::eponymous_only_module();
     const LEDGER: Module<'static, DayTable<Ledger>> = Module::eponymous_only_module();
@@ -25,7 +25,7 @@ pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqli
     connection.create_module(c"ledger", &LEDGER, Some(seen.clone()))
 }
 
-/// The table `ledger`.
+/// Definition of the table `ledger`.
 pub(super) struct Ledger;
 
 const AMOUNT_COLUMN: c_int = 3;
@@ -92,7 +92,7 @@ impl DayTableDefinition for Ledger {
     }
 }
 
-/// The table `notifications`.
+/// Definition of the table `notifications`.
 pub(super) struct Notifications;
 
 impl DayTableDefinition for Notifications {

@@ -1,21 +1,21 @@
-//! Packed days: variable-length numbers, runs of ascending customers, and rows at places with kinds.
+//! The packed format of a day's rows: variable-length numbers, and runs of rows with ascending customers.
 
-/// Maximum rows of a run, because reading one row unpacks all of them.
+/// Maximum number of rows in a run. The number is limited because reading one row unpacks the whole run.
 pub(super) const MAX_RUN_ROWS: usize = 1024;
 
 /// A run of a table: rows with ascending customer numbers.
 pub(super) trait RowRun: Sized {
-    /// The columns of a row besides day and customer.
+    /// The columns of a row except day and customer.
     type Row: Copy + Default + Send + Sync;
 
     fn customers(&self) -> &[u32];
     fn row(&self, at: usize) -> Self::Row;
     fn pack(&self, packer: &mut Packer);
-    /// Parses a run. Returns `None` if the bytes are invalid.
+    /// Parses the bytes of a run. Returns `None` if the bytes are invalid.
     fn unpack(unpacker: &mut Unpacker<'_>) -> Option<Self>;
 }
 
-/// A packed day of a table, as in the file: unpacked rows would take a multiple of the memory.
+/// The rows of a table for one day, packed as in the database file. Unpacked rows would need several times the memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PackedDay {
     pub day: u32,
@@ -27,7 +27,7 @@ pub(super) struct PackedDay {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RunLocation {
     begin: usize,
-    /// Rows of the day before it.
+    /// Number of rows in earlier runs of the day.
     rows_before: usize,
     rows: usize,
     first_customer: u32,
@@ -35,7 +35,7 @@ struct RunLocation {
 }
 
 impl RunLocation {
-    /// Returns the place of a run that starts at a byte, after earlier runs.
+    /// Returns the location of a run that follows earlier runs and starts at this byte.
     fn after(before: &[RunLocation], run: &impl RowRun, begin: usize) -> RunLocation {
         let customers = run.customers();
         RunLocation {
@@ -61,7 +61,7 @@ impl PackedDay {
         PackedDay { day, bytes: packer.0, runs }
     }
 
-    /// Parses the bytes of a day. Returns `None` if they are invalid.
+    /// Parses the stored bytes of a day. Returns `None` if the bytes are invalid.
     pub fn from_bytes<R: RowRun>(day: u32, bytes: Vec<u8>) -> Option<PackedDay> {
         let mut unpacker = Unpacker(&bytes);
         let mut runs = Vec::new();
@@ -72,61 +72,61 @@ impl PackedDay {
         unpacker.0.is_empty().then_some(PackedDay { day, bytes, runs })
     }
 
-    /// Returns the bytes in the file.
+    /// Returns the bytes that are stored in the database file.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Returns the number of runs.
+    /// Returns the number of runs in the day.
     pub fn run_count(&self) -> usize {
         self.runs.len()
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of rows in the day.
     pub fn row_count(&self) -> usize {
         self.runs.last().map_or(0, |last| last.rows_before + last.rows)
     }
 
-    /// Returns the number of a row: day and position in the day.
+    /// Returns the row number of a row, which combines the day and the position within the day.
     pub fn row_number(&self, run: usize, at: usize) -> i64 {
         let before = self.runs.get(run).map_or(0, |place| place.rows_before);
         i64::from(self.day) << 32 | (before + at + 1) as i64
     }
 
-    /// Returns first and last customer of a run; the first is greater if it is empty.
+    /// Returns the first and last customer of a run. For an empty run, the first is greater than the last.
     pub fn customer_range(&self, run: usize) -> (u32, u32) {
         let place = &self.runs[run];
         (place.first_customer, place.last_customer)
     }
 
-    /// Returns whether a run may have a customer.
+    /// Returns whether a customer is within the customer range of a run.
     pub fn may_contain_customer(&self, run: usize, customer: f64) -> bool {
         let (first, last) = self.customer_range(run);
         (f64::from(first)..=f64::from(last)).contains(&customer)
     }
 
-    /// Unpacks a run.
+    /// Unpacks a run of the day. Returns `None` if its bytes are damaged.
     pub fn unpack_run<R: RowRun>(&self, run: usize) -> Option<R> {
         let place = self.runs.get(run)?;
         R::unpack(&mut Unpacker(&self.bytes[place.begin..]))
     }
 }
 
-/// A set of kinds as bits.
+/// A set of row kinds, one bit per kind.
 pub(super) type KindSet = u32;
 
-/// A packed day with rows at places from 0, each of a kind.
+/// A packed day whose rows have a kind and a position, counted from 0.
 pub(super) trait PackedRows {
     fn day(&self) -> u32;
-    /// Returns the number of the first row.
+    /// Returns the row number of the day's first row.
     fn first(&self) -> u64;
-    /// Returns the number of rows.
+    /// Returns how many rows the day has.
     fn len(&self) -> u64;
-    /// Returns the first place from `place` on with one of the kinds.
+    /// Returns the position of the first row at or after `place` that has one of the kinds.
     fn next_of_kinds(&self, kinds: KindSet, place: u64) -> Option<u64>;
 }
 
-/// Writes variable-length numbers.
+/// A writer of variable-length numbers, floats and bytes.
 #[derive(Default)]
 pub(super) struct Packer(Vec<u8>);
 
@@ -143,7 +143,7 @@ impl Packer {
         self.0.extend_from_slice(bytes);
     }
 
-    /// Returns the bytes.
+    /// Returns the packed bytes.
     pub fn finish(self) -> Vec<u8> {
         self.0
     }
@@ -171,7 +171,7 @@ impl<'a> Unpacker<'a> {
         Unpacker(bytes)
     }
 
-    /// Returns the remaining bytes.
+    /// Returns the bytes that have not been read.
     pub fn remaining(&self) -> &'a [u8] {
         self.0
     }

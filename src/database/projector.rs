@@ -1,4 +1,4 @@
-//! The writer thread: receives entries and commits them in one transaction per week or call.
+//! The writer thread, which receives entries and commits them in one transaction per week or tool call.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -18,17 +18,17 @@ use super::rows::{LAYOUT_VERSION, ProjectionEntry, RowWriter, create_tables};
 use novamind_world::events::Facts;
 use novamind_world::params::Params;
 
-/// Maximum queued entries, which limits memory. The simulation waits if the queue is full.
+/// Maximum number of queued entries, which limits memory usage. The simulation waits if the queue is full.
 const QUEUE_CAPACITY: usize = 16;
-/// Maximum written facts whose memory is reused: the days of a week.
+/// Maximum number of written facts that are kept to reuse their memory: one per day of a week.
 const MAX_SPARE_FACTS: usize = 7;
 
-/// Position of a database: the last trajectory line that it includes.
+/// Position of a database: the last trajectory line whose data the database contains.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProjectionPosition {
-    /// Number of the line.
+    /// Number of the trajectory line.
     pub seq: u64,
-    /// Hash of the line.
+    /// Hash of the trajectory line.
     pub line_hash: String,
 }
 
@@ -46,7 +46,7 @@ impl fmt::Display for ProjectionError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             formatter,
-            "the database could not be written ({}); the run is safe, and the database is rebuilt when it is opened again",
+            "the database could not be written ({}); the run is safe, and the database is rebuilt when the run is opened again",
             self.0
         )
     }
@@ -54,7 +54,7 @@ impl fmt::Display for ProjectionError {
 
 impl std::error::Error for ProjectionError {}
 
-/// Work that runs after all earlier jobs.
+/// A task that the writer thread runs after all earlier jobs.
 type WriterTask = Box<dyn FnOnce(&Connection) + Send>;
 
 enum Job {
@@ -64,7 +64,7 @@ enum Job {
     Flush(Sender<Result<(), ProjectionError>>),
 }
 
-/// Keeps a database up to date in the background.
+/// Handle of the background thread that keeps a database up to date.
 pub struct Projector {
     jobs: Option<SyncSender<Job>>,
     thread: Option<JoinHandle<()>>,
@@ -89,8 +89,8 @@ impl SharedFailure {
 }
 
 impl Projector {
-    /// Starts a projector on a database. Continues an existing database if `known` accepts its position; otherwise creates a new one
-    /// with the id of its run.
+    /// Starts a projector on a database. Continues an existing database if `known` accepts its position. Otherwise,
+    /// creates a new database that stores `owner`, the number of its run.
     ///
     /// # Errors
     /// The database can neither be read nor created.
@@ -138,23 +138,23 @@ impl Projector {
         Ok((projector, position))
     }
 
-    /// Sends an entry. Blocks only if the queue is full.
+    /// Sends an entry to the writer thread. Blocks only if the queue is full.
     pub fn enqueue(&self, entry: ProjectionEntry) {
         self.send(Job::Write(Box::new(entry)));
     }
 
-    /// Returns empty facts with reusable memory, if available.
+    /// Returns empty facts whose memory can be reused, if any are available.
     pub fn spare_facts(&self) -> Option<Arc<Facts>> {
         self.spare.take()
     }
 
-    /// Commits all entries sent so far, with a trajectory position.
+    /// Commits all entries that were sent before, together with the trajectory position.
     pub fn commit(&self, position: ProjectionPosition) {
         self.send(Job::Commit(position));
     }
 
-    /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the database file;
-    /// `None` in memory, or if the file cannot be read.
+    /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the
+    /// database file to `work`. Passes `None` for a database in memory or an unreadable file.
     pub fn run_after_commit(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         let path = self.location.path().filter(|_| digest).map(Path::to_owned);
         self.send(Job::Run(Box::new(move |connection| {
@@ -162,17 +162,17 @@ impl Projector {
         })));
     }
 
-    /// Waits until everything sent so far is in the database.
+    /// Waits until the writer thread has processed all earlier jobs.
     ///
     /// # Errors
-    /// The error of writing the database.
+    /// The database could not be written.
     pub fn flush(&self) -> Result<(), ProjectionError> {
         let (done, answer) = channel();
         self.send(Job::Flush(done));
         answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
     }
 
-    /// Returns the error that stopped writing the database, if one has occurred so far.
+    /// Returns the error that stopped the writing of the database, or `None` if no error has occurred.
     pub fn failure(&self) -> Option<ProjectionError> {
         self.failed.get()
     }
@@ -186,7 +186,7 @@ impl Projector {
         QueryConnection::open(&self.location, source, scope).map_err(to_error)
     }
 
-    /// Limits the database to a number of additional pages, which simulates a full disk.
+    /// Limits the growth of the database to `more` pages, which simulates a full disk.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn limit_pages(&self, more: Option<u32>) {
         self.send(Job::Run(Box::new(move |connection| {
@@ -200,7 +200,7 @@ impl Projector {
 
     fn send(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
-            // The next `wait` reports a stopped writer.
+            // The next `flush` reports a stopped writer.
             let _ = jobs.send(job);
         }
     }
@@ -219,7 +219,7 @@ fn to_error(error: rusqlite::Error) -> ProjectionError {
     ProjectionError(error.to_string())
 }
 
-/// Explains the size limit of SQLite for databases in memory.
+/// Converts an error of a database in memory. If the database is full, the message explains SQLite's size limit.
 fn to_memory_error(error: rusqlite::Error) -> ProjectionError {
     match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DiskFull) => ProjectionError(
@@ -235,11 +235,11 @@ struct Worker<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
-    /// Whether readers continue with the previous state during a transaction.
+    /// Whether readers can read the previous state during a transaction.
     readers_are_not_blocked: bool,
     spare: FactsPool,
     failed: SharedFailure,
-    /// Conversion of errors.
+    /// Function that converts errors of SQLite.
     to_error: fn(rusqlite::Error) -> ProjectionError,
 }
 
@@ -250,7 +250,7 @@ struct FactsPool(Arc<Mutex<Vec<Arc<Facts>>>>);
 impl FactsPool {
     fn recycle(&self, mut facts: Arc<Facts>) {
         let Some(unread) = Arc::get_mut(&mut facts) else { return };
-        // Not every user of the facts starts a day, so they must be completely cleared.
+        // Not every user of the facts starts a day, so the facts must be cleared completely.
         unread.start_day(0);
         let mut kept = self.lock();
         if kept.len() < MAX_SPARE_FACTS {
@@ -268,8 +268,8 @@ impl FactsPool {
 }
 
 impl Worker<'_> {
-    /// Writes only when a week or call is complete, so that the simulation has all processors, and readers of a database in memory
-    /// wait for one short transaction at most.
+    /// Processes jobs until the queue is closed. Entries are written only when a week or tool call is complete. The
+    /// simulation can then use all processors, and readers of a database in memory wait for at most one short transaction.
     fn run(mut self, queue: &Receiver<Job>) {
         let mut pending: Vec<ProjectionEntry> = Vec::new();
         loop {
@@ -282,14 +282,14 @@ impl Worker<'_> {
                 Job::Commit(position) => {
                     self.run_unless_failed(|worker| worker.commit_pending(&mut pending, &position))
                 }
-                // After a failure nothing is written, so drop the entry.
+                // After a failure, nothing is written, and all pending entries are dropped.
                 Job::Write(entry) if self.failed.get().is_none() => pending.push(*entry),
                 Job::Write(_) => pending.clear(),
             }
         }
     }
 
-    /// Runs work unless an earlier job failed: an incomplete database must not have gaps.
+    /// Runs `work` unless an earlier job failed. Without this check, the database would have gaps.
     fn run_unless_failed(&mut self, work: impl FnOnce(&mut Self) -> rusqlite::Result<()>) {
         if self.failed.get().is_none()
             && let Err(error) = work(self)
@@ -305,8 +305,8 @@ impl Worker<'_> {
     ) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Without a write-ahead log, close the gate first: otherwise a reader that passed the gate would wait for the
-        // writer, and the writer at the gate for the reader.
+        // Without a write-ahead log, close the gate first. Otherwise, a reader that passed the gate and the writer at
+        // the gate would wait for each other.
         let early = (!self.readers_are_not_blocked).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
@@ -338,14 +338,15 @@ fn checkpointed_digest(connection: &Connection, path: &Path) -> Option<String> {
     (busy == 0).then(|| file_digest(path)).flatten()
 }
 
-/// Returns the digest of a file's bytes, or `None` if it cannot be read.
+/// Returns the digest of a file's bytes, or `None` if the file cannot be read.
 pub fn file_digest(path: &Path) -> Option<String> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
     Some(hasher.finalize().to_hex().to_string())
 }
 
-/// Opens an undamaged database at a known position and loads its blocks into the store.
+/// Opens an existing database and loads its packed days into the store. Returns `None` if the database is damaged or
+/// its position is unknown.
 fn open_existing(
     location: &DatabaseLocation,
     store: &SharedStore,
@@ -364,10 +365,10 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// Opens a connection to a database without a writer, and returns its position.
+/// Opens a query connection to a database without a writer. Also returns the position of the database.
 ///
 /// # Errors
-/// The database does not exist, or is not that of a run.
+/// The database does not exist, or is not the database of a run.
 pub fn query_connection(
     location: &DatabaseLocation,
     scope: Scope,
@@ -396,7 +397,7 @@ fn is_current_layout(connection: &Connection) -> bool {
     layout.is_ok_and(|layout| layout == LAYOUT_VERSION)
 }
 
-/// Returns whether SQLite's quick check of the database at a location succeeds. Slow for large databases.
+/// Returns whether SQLite's quick check of the database at a location succeeds. The check is slow for large databases.
 pub fn is_consistent(location: &DatabaseLocation) -> bool {
     let check = |connection: Connection| {
         connection.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0))
@@ -404,13 +405,13 @@ pub fn is_consistent(location: &DatabaseLocation) -> bool {
     location.open_reader().and_then(check).is_ok_and(|answer| answer == "ok")
 }
 
-/// Returns the position of the database at a location, or `None` if it cannot be read.
+/// Returns the trajectory position that the database at a location stores, or `None` if the position cannot be read.
 pub fn read_position(location: &DatabaseLocation) -> Option<ProjectionPosition> {
     location.path().filter(|path| path.exists())?;
     stored_position(&location.open_reader().ok()?).ok()?
 }
 
-/// Returns the number of the run that owns the database at a location, if any.
+/// Returns the number of the run that owns the database at a location, or `None` if the database cannot be read.
 pub fn read_owner(location: &DatabaseLocation) -> Option<u32> {
     location.path().filter(|path| path.exists())?;
     let connection = location.open_reader().ok()?;
@@ -422,7 +423,7 @@ fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Projectio
     connection
         .query_row("SELECT seq, line_hash, own_check FROM projection", [], |row| {
             let position = ProjectionPosition { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? };
-            // Ignore a damaged position: the error would name the wrong file.
+            // Ignore a damaged position, because the error would name the wrong file.
             let whole = row.get::<_, String>(2)? == position.checksum();
             Ok(whole.then_some(position))
         })
@@ -435,13 +436,13 @@ fn recreate(location: &DatabaseLocation, owner: u32) -> rusqlite::Result<Connect
         for suffix in ["", "-wal", "-shm", "-journal"] {
             let mut file = path.as_os_str().to_owned();
             file.push(suffix);
-            // Ignore errors: a file that cannot be removed makes the creation of the tables fail.
+            // Ignore errors, because creating the tables fails if the file cannot be removed.
             let _ = std::fs::remove_file(file);
         }
     }
     let mut connection = location.open_writer()?;
     create_tables(&mut connection)?;
-    // Two's complement: the pragma takes a signed number.
+    // The pragma accepts only signed numbers, so the bits are reinterpreted.
     connection.pragma_update(None, "application_id", owner as i32)?;
     Ok(connection)
 }

@@ -1,6 +1,7 @@
 //! Guarded queries: one read-only statement over the 19 visible tables (docs/formats/database.md#queries).
 //!
-//! A statement is first compiled against the released schema (`released.rs`), which has no hidden names. The query connection
+//! A statement is first compiled against the released schema (`released_schema.rs`), which contains no hidden names.
+//! The query connection
 //! is read-only. An authorizer (`guard.rs`) allows the visible tables and ordinary functions. Limits restrict the size of
 //! statements, values and results, and a progress handler interrupts queries that take too much time or memory. Rejections
 //! depend on what a statement does, not on its text.
@@ -31,40 +32,40 @@ use super::query_result::{Cell, QueryResult};
 use super::released_schema::{CheckedStatement, ReleasedSchema, strip_explain_query_plan};
 use super::tokens::tokenize;
 
-/// An error of a query.
+/// An error that a query returned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {
-    /// Code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, [`SQL_CANCELLED`],
+    /// Error code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, [`SQL_CANCELLED`],
     /// `sql_error`.
     pub code: &'static str,
-    /// Message with help.
+    /// Error message with suggestions for the user.
     pub message: String,
-    /// Byte offset in the statement, if it is known.
+    /// Byte offset of the error in the statement, if it is known.
     pub position: Option<usize>,
 }
-/// An error of a script.
+/// An error that stopped a script of several statements.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScriptError {
-    /// Number of the statement, from 1.
+    /// Number of the failed statement, counted from 1.
     pub statement: usize,
-    /// Error of the statement.
+    /// Error that the statement returned.
     pub error: QueryError,
 }
 
-/// Limits of a query.
+/// Limits of a query's result, time and steps.
 #[derive(Debug, Clone, Copy)]
 pub struct QueryLimits {
-    /// Maximum rows.
+    /// Maximum number of returned rows.
     pub rows: usize,
-    /// Maximum time.
+    /// Maximum duration of the query.
     pub time: Duration,
-    /// Maximum steps of SQLite's virtual machine; `None` for no limit.
+    /// Maximum number of steps of SQLite's virtual machine; `None` means no limit.
     pub steps: Option<u64>,
 }
 
 const MAX_RESULT_TEXT_BYTES: usize = 64 << 20;
 
-/// A connection for guarded queries.
+/// A read-only connection whose statements are checked by a guard.
 pub struct QueryConnection {
     pub(super) released: ReleasedSchema,
     connection: Connection,
@@ -72,16 +73,16 @@ pub struct QueryConnection {
     scope: Scope,
     last_rejection: LastRejection,
     views: Option<InnerViews>,
-    /// Whether the authorizer is disabled for the program itself.
+    /// Whether the authorizer is disabled because the program executes its own statements.
     trusted: Arc<AtomicBool>,
     pub(super) interrupt: Interrupt,
     source: BlockSource,
-    /// Blocks of the running query.
+    /// Packed days and indexes of the running query.
     view: Arc<QueryView>,
 }
 
 impl QueryConnection {
-    /// Opens a guarded connection.
+    /// Opens a read-only connection and installs the guard.
     pub(super) fn open(
         location: &DatabaseLocation,
         source: BlockSource,
@@ -100,7 +101,7 @@ impl QueryConnection {
         let guard = Guard::with_inner_views(&connection, scope)?;
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
-        // Virtual tables connect at their first use, which the authorizer would reject.
+        // Connect the virtual tables now, because the authorizer would reject their connection at first use.
         for table in ["daily_usage", "ads_revenue", "issues", "ledger", "notifications"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
@@ -129,23 +130,23 @@ impl QueryConnection {
         })
     }
 
-    /// Returns a handle that stops the queries of this connection.
+    /// Returns a handle with which another thread can stop the queries of this connection.
     pub fn interrupt(&self) -> Interrupt {
         self.interrupt.clone()
     }
 
-    /// Runs one statement.
+    /// Runs one SQL statement.
     ///
     /// # Errors
-    /// The `sql_` codes.
+    /// The statement fails with one of the `sql_` codes of [`QueryError::code`].
     pub fn query(&self, sql: &str, limits: QueryLimits) -> Result<QueryResult, QueryError> {
         self.query_with_ticket(self.interrupt.ticket(), sql, limits)
     }
 
-    /// Runs one statement with the ticket of its request.
+    /// Runs one statement under a ticket that was issued earlier.
     ///
     /// # Errors
-    /// The `sql_` codes.
+    /// The statement fails with one of the `sql_` codes of [`QueryError::code`].
     pub fn query_with_ticket(
         &self,
         ticket: QueryTicket,
@@ -163,15 +164,15 @@ impl QueryConnection {
         let answer =
             self.run_single_statement(sql, limits).map_err(|fault| self.fault_to_error(sql, fault, limits));
         let closed = self.end_read();
-        // Report the error of the statement rather than a following one.
+        // If the statement and the end of the transaction both fail, report the error of the statement.
         answer.and_then(|rows| closed.map(|()| rows))
     }
 
-    /// Runs statements in order on the same state, each with the limits of `limits`, and all together within `time`. Calls
-    /// `answered` with each result.
+    /// Runs statements in order on the same state of the database. `limits` applies to each statement, `time` to the
+    /// whole script. Calls `answered` with each result.
     ///
     /// # Errors
-    /// The first statement that fails; the results of earlier ones were passed.
+    /// A statement fails. The results of earlier statements have been passed to `answered`.
     pub fn run_script(
         &self,
         sql: &str,
@@ -207,7 +208,7 @@ impl QueryConnection {
         done.and(closed)
     }
 
-    /// Starts a read transaction with rows and blocks of the same commit.
+    /// Starts a read transaction. The rows and the packed days of the transaction belong to the same commit.
     fn begin_read(&self, ticket: QueryTicket, sql: &str, limits: QueryLimits) -> Result<(), QueryError> {
         self.last_rejection.clear();
         self.released.last_rejection().clear();
@@ -233,7 +234,7 @@ impl QueryConnection {
         Ok(())
     }
 
-    /// Returns whether damaged blocks were found, so that results are not reliable.
+    /// Returns whether a query found damaged packed days. If so, results are not reliable.
     pub fn has_found_damage(&self) -> bool {
         matches!(&self.source, BlockSource::File(blocks) if blocks.borrow().is_damaged())
     }
@@ -394,7 +395,7 @@ impl QueryConnection {
     fn sqlite_to_error(&self, sql: &str, error: &rusqlite::Error, limits: QueryLimits) -> QueryError {
         use rusqlite::ErrorCode::{OperationInterrupted, OutOfMemory};
         if error.sqlite_error_code() == Some(OutOfMemory) {
-            // The machine has less memory than the limit.
+            // The machine ran out of memory before the query reached its limit.
             return query_error("sql_timeout", TOO_MUCH_MEMORY);
         }
         if error.sqlite_error_code() == Some(OperationInterrupted) {
@@ -429,7 +430,8 @@ impl QueryConnection {
     }
 }
 
-/// Returns whether a statement starts like one that changes data. Help on its syntax would be useless.
+/// Returns whether a statement begins with a keyword of statements that change data. Syntax errors in such statements
+/// are reported without help.
 fn is_write_statement(sql: &str) -> bool {
     const WORDS: [&str; 11] = [
         "INSERT", "REPLACE", "UPDATE", "DELETE", "CREATE", "DROP", "ALTER", "ATTACH", "DETACH", "REINDEX",
@@ -440,24 +442,24 @@ fn is_write_statement(sql: &str) -> bool {
     first.is_some_and(|first| WORDS.iter().any(|word| first.is_word(word)))
 }
 
-/// Internal error of a statement.
+/// Internal error of a statement, before its conversion to a [`QueryError`].
 #[derive(Debug)]
 pub(super) enum QueryFault {
-    /// No statement.
+    /// The text contains no statement.
     Empty,
-    /// More than one statement.
+    /// The text contains more than one statement.
     MultipleStatements,
-    /// EXPLAIN without QUERY PLAN.
+    /// The statement is an EXPLAIN without QUERY PLAN.
     MachineCode,
-    /// Parameters.
+    /// The statement contains parameters.
     Parameters,
-    /// A change of data.
+    /// The statement changes data.
     Write,
-    /// Damaged blocks.
+    /// The packed days of a table are damaged.
     Damaged,
-    /// A statement or a result that is too large.
+    /// The statement or its result is too large.
     TooLarge,
-    /// An error of the engine.
+    /// SQLite returned an error.
     Sqlite(rusqlite::Error),
 }
 

@@ -1,4 +1,4 @@
-//! Interrupting queries: on request, and at their limits of time, steps and memory.
+//! Interrupts queries on request and when they reach a limit of time, steps or memory.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,18 +6,19 @@ use std::time::{Duration, Instant};
 
 use super::memory::bytes_in_use;
 
-/// Steps of SQLite's virtual machine between checks of time and memory. Few, because each can process two megabytes.
+/// Number of steps of SQLite's virtual machine between checks of time and memory. The number is small because one step
+/// can process two megabytes.
 pub(super) const STEPS_BETWEEN_CHECKS: u32 = 250;
 
-/// Maximum additional memory of a query, in bytes: sorting and recursion keep their rows in memory.
+/// Maximum additional memory of a query in bytes. Sorting and recursion keep their rows in memory.
 const MAX_QUERY_MEMORY_BYTES: u64 = 512 << 20;
 
-/// Stops a running query from another thread, or at its limits.
+/// A handle that stops a running query on request of another thread or at a limit.
 #[derive(Debug, Clone)]
 pub struct Interrupt(Arc<InterruptState>);
 
-/// Identifies a query from the moment of its request. A caller on another thread takes the ticket first, so that a stop before
-/// the start of the query is not lost.
+/// Identifies a query from its request to its end. The caller obtains the ticket before sending the query to
+/// another thread. A stop request before the start of the query is therefore not lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct QueryTicket(u64);
 
@@ -25,28 +26,28 @@ pub struct QueryTicket(u64);
 struct InterruptState {
     /// Number of issued tickets.
     issued: AtomicU64,
-    /// The newest stopped ticket; all older ones are stopped, too.
+    /// The newest stopped ticket; all older tickets are stopped, too.
     stopped: AtomicU64,
     /// Ticket of the running or last query.
     running: AtomicU64,
     started: Instant,
-    /// Deadline of the running query, milliseconds after `started`.
+    /// Deadline of the running statement, in milliseconds after `started`.
     deadline: AtomicU64,
-    /// Remaining checks of the running query.
+    /// Number of checks before the running statement reaches its limit of steps.
     remaining_checks: AtomicU64,
-    /// Maximum bytes in use while it runs.
+    /// Maximum bytes that SQLite may use while the query runs.
     max_memory_bytes: AtomicU64,
     cause: AtomicU64,
 }
 
-/// Why a query was stopped.
+/// The reason why a query was stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum StopCause {
-    /// A request.
+    /// A caller requested the stop.
     Request,
-    /// The limit of time or steps.
+    /// The query reached its limit of time or steps.
     Time,
-    /// The limit of memory.
+    /// The query reached the limit of memory.
     Memory,
 }
 
@@ -64,22 +65,22 @@ impl Interrupt {
         }))
     }
 
-    /// Returns a ticket for a later query.
+    /// Issues a ticket for a later query.
     pub fn ticket(&self) -> QueryTicket {
         QueryTicket(self.0.issued.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Stops every query whose ticket was issued before, whether it has started or not.
+    /// Stops every query whose ticket has been issued, even if the query has not started.
     pub fn stop(&self) {
         self.0.stopped.fetch_max(self.0.issued.load(Ordering::Relaxed), Ordering::Relaxed);
     }
 
-    /// Returns whether the query with a ticket was stopped.
+    /// Returns whether the query with this ticket was stopped.
     pub fn is_ticket_stopped(&self, ticket: QueryTicket) -> bool {
         self.0.stopped.load(Ordering::Relaxed) >= ticket.0
     }
 
-    /// Starts a query or a script with limits of time and steps.
+    /// Resets the limits at the start of a query or script.
     pub(super) fn begin(&self, ticket: QueryTicket, time: Duration, steps: Option<u64>) {
         self.0.running.store(ticket.0, Ordering::Relaxed);
         self.0
@@ -89,7 +90,7 @@ impl Interrupt {
         self.begin_statement(time, steps);
     }
 
-    /// Starts the next statement of a script.
+    /// Resets the limits of time and steps for the next statement of a script.
     pub(super) fn begin_statement(&self, time: Duration, steps: Option<u64>) {
         let deadline = self.0.started.elapsed() + time;
         self.0.deadline.store(deadline.as_millis() as u64, Ordering::Relaxed);
@@ -97,7 +98,7 @@ impl Interrupt {
         self.0.remaining_checks.store(looks, Ordering::Relaxed);
     }
 
-    /// Returns why the query was stopped.
+    /// Returns the reason why the query was stopped.
     pub(super) fn cause(&self) -> StopCause {
         match self.0.cause.load(Ordering::Relaxed) {
             _ if self.is_stop_requested() => StopCause::Request,

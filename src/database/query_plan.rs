@@ -1,21 +1,21 @@
-//! Query plans for users, without the names of internal tables.
+//! Query plans for users, in which the names of internal tables are masked.
 
 use super::catalogue::{table, tables};
 use super::guard::visible_table_of;
 use super::query_result::{Cell, text_at};
 use super::tokens::tokenize;
 
-/// Column of a plan with the number of the parent step; the first column is the number of the step.
+/// Index of the plan column that contains the number of the parent step. Column 0 contains the number of the step.
 const PARENT_COLUMN: usize = 1;
 
 const DETAIL_COLUMN: usize = 3;
 
-/// Replacement of internal names.
+/// Text that replaces internal names.
 const MASK: &str = "\u{2026}";
 
 const LOWERCASE_WORDS: [&str; 3] = ["rowid", "subquery", "join"];
 
-/// Masks the plan of a statement. Removes the lookups of words, which are internal.
+/// Masks internal names in the plan of a statement, and removes the steps that only read internal tables.
 pub(super) fn mask_plan(plan: &mut Vec<Vec<Cell>>, sql: &str) {
     for row in plan.iter_mut() {
         if let Some(Cell::Text(detail)) = row.get_mut(DETAIL_COLUMN) {
@@ -35,13 +35,13 @@ pub(super) fn mask_plan(plan: &mut Vec<Vec<Cell>>, sql: &str) {
 }
 
 fn mask_detail(detail: &str, sql: &str) -> String {
-    // The index text of a virtual table is internal.
+    // Remove the index string of a virtual table, which is internal.
     let detail = detail.split_once(" VIRTUAL TABLE INDEX").map_or(detail, |(before, _)| before);
     let mut text = String::new();
     for word in detail.split_inclusive(|letter: char| !is_word_character(letter)) {
         let name = word.trim_end_matches(|letter| !is_word_character(letter));
         let shown = if name.is_empty() { "" } else { mask_word(name, sql) };
-        // The name of an index is omitted: its columns follow.
+        // Omit the name of an index, because the columns of the index follow.
         let is_index = shown == MASK && text.ends_with("INDEX ");
         text += if is_index { "" } else { shown };
         text += if is_index { word[name.len()..].trim_start() } else { &word[name.len()..] };
@@ -53,7 +53,7 @@ fn is_word_character(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// Returns the shown form of a word of a plan.
+/// Returns a word of a plan, or the mask if the word may be an internal name.
 fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
     let language = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
     let column = || {

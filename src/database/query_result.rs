@@ -1,17 +1,17 @@
-//! Results of queries.
+//! Results of SQL queries.
 
 use rusqlite::types::ValueRef;
 
-/// A value of a result.
+/// A value in a query result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// SQL NULL.
     Null,
-    /// An integer.
+    /// An SQL integer.
     Integer(i64),
-    /// A floating-point number.
+    /// An SQL floating-point number.
     Real(f64),
-    /// Text, or a blob converted to text.
+    /// SQL text, or a blob converted to text.
     Text(String),
 }
 
@@ -35,22 +35,22 @@ impl Cell {
     }
 }
 
-/// A result.
+/// The rows that a query returned.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct QueryResult {
-    /// Names of the columns; they may repeat.
+    /// Names of the columns. Several columns may have the same name.
     pub columns: Vec<String>,
     /// Rows, each with one cell per column.
     pub rows: Vec<Vec<Cell>>,
     /// Whether more rows exist than were returned.
     pub truncated: bool,
-    /// Warning about a truncated result.
+    /// Warning if the result is truncated.
     pub warning: Option<String>,
-    /// Possible reason of an empty result.
+    /// Possible reason why the result is empty.
     pub hint: Option<String>,
 }
 
-/// Returns a cell of a row as a number, or 0 if it is not one.
+/// Returns the number in a cell of a row, or 0 if the cell does not contain a number.
 pub fn number_at(row: &[Cell], at: usize) -> f64 {
     match row.get(at) {
         Some(Cell::Integer(number)) => *number as f64,
@@ -59,7 +59,7 @@ pub fn number_at(row: &[Cell], at: usize) -> f64 {
     }
 }
 
-/// Returns a cell of a row as text, or an empty text if it is not one.
+/// Returns the text in a cell of a row, or an empty text if the cell does not contain text.
 pub fn text_at(row: &[Cell], at: usize) -> &str {
     match row.get(at) {
         Some(Cell::Text(text)) => text,

@@ -1,7 +1,8 @@
-//! The empty tables of the released simulator, without internal tables.
+//! The schema of the released simulator: empty tables in memory, without internal tables.
 //!
-//! Every statement is compiled against them first. Error messages and column names come from this compilation, so they never
-//! mention internal names. Spellings that only ordinary tables support (`rowid`, `main.ledger`) are replaced if both spellings
+//! Every statement is first compiled against these tables. Error messages and column names are taken from this
+//! compilation, so that they never contain internal names. Spellings that only ordinary tables support (`rowid`,
+//! `main.ledger`) are replaced if both spellings
 //! compile to the same program.
 
 use std::collections::BTreeSet;
@@ -22,10 +23,10 @@ const MAX_SPELLINGS: usize = 200;
 
 const ROWID_NAMES: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
-/// The table with lookups by customer but without an index.
+/// The table that statements look up by customer although it has no index.
 const ISSUES: &str = "issues";
 
-/// The released schema.
+/// A connection to empty tables with the schema of the released simulator.
 pub(super) struct ReleasedSchema {
     connection: Connection,
     last_rejection: LastRejection,
@@ -35,25 +36,25 @@ pub(super) struct ReleasedSchema {
 /// A statement that compiles against the released schema.
 #[derive(Debug)]
 pub(super) struct CheckedStatement {
-    /// Text to run.
+    /// Text of the statement to run.
     pub sql: String,
     /// Names of the result columns.
     pub columns: Vec<String>,
-    /// Whether it is an EXPLAIN QUERY PLAN.
+    /// Whether the statement is an EXPLAIN QUERY PLAN.
     pub is_plan: bool,
-    /// Columns to copy, by table, before the statement runs; each copy gets an index by customer. All tables for a RIGHT or FULL JOIN, because the
-    /// engine cannot search a view there. `issues` for a correlated subquery, because a stored index of issues would slow down
-    /// every week.
+    /// Columns, by table, that are copied to an indexed temporary table before the statement runs. A RIGHT or FULL
+    /// JOIN needs a copy of every table, because the engine cannot search a view in such a join. A correlated subquery needs a
+    /// copy of `issues`, because a stored index of issues would slow down every week.
     pub copied: ColumnsByTable,
-    /// Tables that it names.
+    /// Names of the tables that the statement reads.
     pub tables: Vec<String>,
 }
 
-/// The compiled program of a statement. It depends on the resolved columns, but not on their names.
+/// The compiled program of a statement. Equal programs read the same columns, even if the statements spell names differently.
 type Program = Vec<Vec<Value>>;
 
 impl ReleasedSchema {
-    /// Creates the tables in memory, with the hidden ones if statements may name them.
+    /// Creates the tables in memory, including the hidden tables if `scope` allows them.
     pub fn open(scope: Scope) -> rusqlite::Result<ReleasedSchema> {
         let mut connection = Connection::open_in_memory()?;
         if scope == Scope::Hidden {
@@ -72,12 +73,12 @@ impl ReleasedSchema {
         Ok(ReleasedSchema { connection, last_rejection: objections, reads })
     }
 
-    /// Returns the rejection reasons.
+    /// Returns the shared record of the last rejection reason.
     pub fn last_rejection(&self) -> &LastRejection {
         &self.last_rejection
     }
 
-    /// Returns the statements of a text, compiled one by one.
+    /// Returns an iterator that compiles the statements of a text one by one.
     pub fn statements<'a>(&'a self, sql: &'a str) -> Statements<'a> {
         Statements { released: self, batch: Batch::new(&self.connection, sql) }
     }
@@ -113,12 +114,12 @@ impl ReleasedSchema {
         let plan = self
             .explain_rows(&format!("EXPLAIN QUERY PLAN {}", strip_explain_query_plan(sql)))
             .unwrap_or_default();
-        // The engine converts some EXISTS to joins and marks the table.
+        // The engine converts some EXISTS subqueries to joins and marks their table in the plan.
         let again = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
         plan.iter().flatten().any(|cell| matches!(cell, Value::Text(step) if again(step)))
     }
 
-    /// Replaces `main.` and rowids in a statement, where that does not change the program.
+    /// Replaces `main.` and rowids in a statement if the replacement does not change the program.
     fn rewrite_for_views(&self, sql: String) -> String {
         let tokens = tokenize(&sql);
         let places: Vec<ReplaceableName> =
@@ -127,7 +128,7 @@ impl ReleasedSchema {
         let qualifiers = qualifiers(&tokens);
         let mut spelled = sql.clone();
         let mut attempts = 0;
-        // From the end, so that earlier offsets stay valid.
+        // Replace from the end, so that earlier offsets stay valid.
         for place in places.iter().rev() {
             for other in place.spellings(&qualifiers) {
                 attempts += 1;
@@ -144,7 +145,7 @@ impl ReleasedSchema {
         spelled
     }
 
-    /// Compiles a statement. Returns `None` if it does not compile.
+    /// Compiles a statement and returns its program. Returns `None` if the statement does not compile.
     fn program(&self, sql: &str) -> Option<Program> {
         self.explain_rows(&format!("EXPLAIN {}", strip_explain_query_plan(sql)))
     }
@@ -175,7 +176,7 @@ impl Statements<'_> {
     }
 }
 
-/// A place in a statement that only ordinary tables support.
+/// A name in a statement that only ordinary tables support.
 struct ReplaceableName {
     start: usize,
     end: usize,
@@ -210,7 +211,7 @@ impl ReplaceableName {
         })
     }
 
-    /// Returns possible replacements, most likely first.
+    /// Returns possible replacements of the name, most likely first.
     fn spellings(&self, qualifiers: &[&str]) -> Vec<String> {
         let keys = || tables().iter().filter_map(Table::row_number_column);
         match self.kind {
@@ -225,7 +226,7 @@ impl ReplaceableName {
     }
 }
 
-/// Returns possible qualifiers of columns: table names and the words after them.
+/// Returns possible qualifiers of columns: table names and the words after table names, which may be aliases.
 fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for (at, token) in tokens.iter().enumerate() {

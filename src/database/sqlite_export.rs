@@ -15,7 +15,7 @@ use super::packing::PackedRows;
 use super::projector::{ProjectionError, Projector};
 use novamind_world::events::UsageRows;
 
-/// Ordinary tables for the virtual ones. Repeated losses are a view over days and losses.
+/// Statements that create ordinary tables to replace the virtual tables. Repeated losses become a view over days and losses.
 const TABLE_STATEMENTS: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
 CREATE TABLE ads_revenue (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, group_id TEXT NOT NULL,
     ads_strength REAL NOT NULL, revenue REAL NOT NULL);
@@ -31,7 +31,7 @@ SELECT notification_id, day, type, message FROM notice_rows
 UNION ALL
 SELECT first_number + number, day, 'lead_lost', message FROM repeating_days JOIN repeating_losses ON number < losses;";
 
-/// Indexes for queries of one customer.
+/// Statements that create indexes for queries of one customer and drop the internal tables.
 const INDEX_STATEMENTS: &str = "CREATE INDEX daily_usage_by_customer ON daily_usage (customer_id, day);
 CREATE INDEX ads_revenue_by_customer ON ads_revenue (customer_id, day);
 CREATE INDEX issues_by_customer ON issues (customer_id);
@@ -73,7 +73,7 @@ pub fn export_sqlite(location: &DatabaseLocation, file: &Path) -> Result<(), Pro
 fn write_sqlite_file(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Result<()> {
     let mut copy = Connection::open(file)?;
     Backup::new(source, &mut copy)?.run_to_completion(PAGES_PER_STEP, Duration::ZERO, None)?;
-    // No journal: an incomplete copy is deleted.
+    // The copy needs no journal, because an incomplete copy is deleted.
     copy.pragma_update(None, "journal_mode", "OFF")?;
     copy.pragma_update(None, "synchronous", "OFF")?;
     let transaction = copy.transaction()?;
@@ -90,8 +90,8 @@ fn write_sqlite_file(source: &Connection, store: &BlockStore, file: &Path) -> ru
     copy.pragma_update(None, "journal_mode", "DELETE")
 }
 
-/// Casts `subscriptions.effective_price` in the view. SQLite before 3.52 returns whole numbers of a generated column as
-/// integers when it sorts complete rows.
+/// Casts `subscriptions.effective_price` in the view. When SQLite before 3.52 sorts complete rows, it returns whole
+/// numbers of a generated column as integers.
 fn declare_price_type(transaction: &Transaction<'_>) -> rusqlite::Result<()> {
     let of_view = "SELECT sql FROM sqlite_schema WHERE type = 'view' AND name = 'subscriptions'";
     let view: String = transaction.query_row(of_view, [], |row| row.get(0))?;

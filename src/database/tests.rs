@@ -41,7 +41,7 @@ fn position(seq: u64) -> ProjectionPosition {
     ProjectionPosition { seq, line_hash: format!("hash {seq}") }
 }
 
-/// Simulates days of policy P and projects them with one commit per week.
+/// A company that policy P plays and a projector writes, with one commit per week.
 struct Company {
     world: World,
     params: Arc<Params>,
@@ -291,7 +291,7 @@ fn hidden_tables_cannot_be_queried() {
     let mut company = Company::open(DatabaseLocation::new_in_memory());
     let connection = company.simulate_weeks(2);
     for (sql, code) in [
-        // Obvious attempts first, then advanced ones.
+        // Obvious attempts first, then advanced attempts.
         ("", "sql_empty"),
         ("  ", "sql_empty"),
         ("SELECT 1\0; SELECT 2", "sql_error"),
@@ -710,7 +710,7 @@ fn readers_and_writer_do_not_block_each_other() {
     let connection = company.projector.connection(Scope::Visible).expect("a connection");
     let over = Arc::new(AtomicBool::new(false));
     let is_over = over.clone();
-    // Without a pause, so that queries run during transactions.
+    // The reader queries without a pause, so that some queries run during transactions.
     let reader = std::thread::spawn(move || {
         while !is_over.load(Ordering::Relaxed) {
             let answer = connection.query("SELECT count(*) FROM ledger", LIMITS);

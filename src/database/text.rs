@@ -1,10 +1,10 @@
-//! Formatting of results as text.
+//! Formats query results as text.
 
 use unicode_width::UnicodeWidthStr;
 
 use super::query_result::{Cell, QueryResult};
 
-/// Formats a value of a result.
+/// Formats a value of a query result.
 pub fn format_cell(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
@@ -14,7 +14,7 @@ pub fn format_cell(cell: &Cell) -> String {
     }
 }
 
-/// Formats a result as aligned columns with names, row count, warning and hint.
+/// Formats a query result as aligned columns with headings, row count, warning and hint.
 pub fn format_result(rows: &QueryResult) -> String {
     let mut text = format_columns(rows);
     text += &match (rows.rows.len(), rows.truncated) {
@@ -31,7 +31,7 @@ pub fn format_result(rows: &QueryResult) -> String {
     text
 }
 
-/// Formats a result as aligned columns with names.
+/// Formats a query result as aligned columns with headings.
 pub fn format_columns(rows: &QueryResult) -> String {
     let cells: Vec<Vec<String>> = rows
         .rows
@@ -41,7 +41,7 @@ pub fn format_columns(rows: &QueryResult) -> String {
     align_columns(&rows.columns, &cells)
 }
 
-/// Formats rows of text as aligned columns with names.
+/// Formats rows of text as aligned columns with headings.
 pub fn align_columns(columns: &[String], rows: &[Vec<String>]) -> String {
     let width = |at: usize| {
         let cells = rows.iter().filter_map(|row| row.get(at)).chain([&columns[at]]);

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-/// Maximum bytes of all indexes of a statement.
+/// Maximum total size in bytes of the indexes built for a statement on a table.
 const MAX_INDEX_BYTES: usize = 256 << 20;
-/// Number of lookups after which an index is built: an index costs little more than two scans.
+/// Number of lookups without an index. An index costs little more than two scans.
 const LOOKUPS_BEFORE_INDEX: usize = 2;
 
-/// The position of a row: day in the store, place within the day.
+/// The hash of a row's text and the position of the row: index of the day, and position within the day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct TextRow {
     hash: u64,
@@ -23,7 +23,8 @@ impl TextRow {
     }
 }
 
-/// Rows of a range of days, grouped by the hash of their text in table order. Different texts can have the same hash.
+/// Rows of a range of days, grouped by the hash of their text. The rows of a group are in table order. Different texts
+/// can have the same hash.
 pub(super) struct TextIndex(Vec<TextRow>);
 
 impl TextIndex {
@@ -32,7 +33,7 @@ impl TextIndex {
         TextIndex(rows)
     }
 
-    /// Returns the positions of the rows that may have a text.
+    /// Returns the range of index rows that may have this text.
     pub fn row_range(&self, text: &str) -> Range<usize> {
         let wanted = hash(text);
         let first = self.0.partition_point(|row| row.hash < wanted);
@@ -44,13 +45,13 @@ impl TextIndex {
     }
 }
 
-/// FNV-1a, which suits short texts that differ in their numbers.
+/// Computes the FNV-1a hash, which distributes short texts well that differ only in numbers.
 fn hash(text: &str) -> u64 {
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// The indexes of the running statement for one table, by range of days.
+/// The indexes of one table by range of days, built for the running statement.
 #[derive(Default)]
 pub(super) struct TextIndexes(Mutex<BTreeMap<(usize, usize), TextLookups>>);
 
@@ -62,7 +63,8 @@ struct TextLookups {
 }
 
 impl TextIndexes {
-    /// Returns the index of a range of days with `rows` rows, or `None` for the first lookups and if it needs too much memory.
+    /// Returns the index of a range of days with `rows` rows. Returns `None` for the first lookups, and if the index
+    /// would need too much memory.
     pub fn get(
         &self,
         days: &Range<usize>,
@@ -81,7 +83,7 @@ impl TextIndexes {
         lookups.index.clone()
     }
 
-    /// Removes all indexes.
+    /// Removes all indexes and lookup counts.
     pub fn clear(&self) {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
     }

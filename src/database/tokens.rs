@@ -1,11 +1,11 @@
-//! Tokens of a statement: names, texts and signs with their positions, as in the engine.
+//! Splits a statement into tokens in the same way as the engine: names, texts, numbers and symbols.
 
 use std::borrow::Cow;
 use std::ops::Range;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TokenKind {
-    /// A name or a keyword.
+    /// An unquoted name or a keyword.
     Name,
     /// A name in double quotes, brackets or backquotes, or a text in double quotes.
     Quoted,
@@ -13,28 +13,28 @@ pub(super) enum TokenKind {
     Text,
     /// A number or a parameter.
     Number,
-    /// Anything else: one character.
+    /// Any other character, such as an operator or a bracket.
     Symbol,
 }
 
 /// A token of a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Token<'a> {
-    /// Kind.
+    /// Kind of the token.
     pub kind: TokenKind,
-    /// Source text.
+    /// Source text of the token.
     pub text: &'a str,
-    /// Byte offset.
+    /// Byte offset of the token in the statement.
     pub offset: usize,
 }
 
 impl<'a> Token<'a> {
-    /// Returns its byte range.
+    /// Returns the byte range of the token in the statement.
     pub fn range(&self) -> Range<usize> {
         self.offset..self.offset + self.text.len()
     }
 
-    /// Returns its content without quotes.
+    /// Returns the text of the token without quotes.
     pub fn unquoted(&self) -> Cow<'a, str> {
         let quote = match (self.kind, self.text.chars().next()) {
             (TokenKind::Quoted | TokenKind::Text, Some('[')) => ']',
@@ -49,17 +49,17 @@ impl<'a> Token<'a> {
         }
     }
 
-    /// Returns whether it is this keyword or name; case-insensitive.
+    /// Returns whether the token is this unquoted keyword or name, ignoring case.
     pub fn is_word(&self, word: &str) -> bool {
         self.kind == TokenKind::Name && self.text.eq_ignore_ascii_case(word)
     }
 
-    /// Returns whether it is this sign.
+    /// Returns whether the token is this symbol.
     pub fn is_symbol(&self, sign: &str) -> bool {
         self.kind == TokenKind::Symbol && self.text == sign
     }
 
-    /// Returns whether it is a name, quoted or not.
+    /// Returns whether the token is a quoted or unquoted name.
     pub fn can_be_name(&self) -> bool {
         matches!(self.kind, TokenKind::Name | TokenKind::Quoted | TokenKind::Text)
     }
@@ -77,7 +77,7 @@ pub(super) fn tokenize(sql: &str) -> Vec<Token<'_>> {
     found
 }
 
-/// Returns kind and length of the first token; spaces and comments have no kind.
+/// Returns the kind and length of the first token. The kind of spaces and comments is `None`.
 fn next_token(rest: &str) -> (Option<TokenKind>, usize) {
     let until = |end: &str, from: usize| rest[from..].find(end).map(|at| from + at + end.len());
     let first = rest.chars().next().unwrap_or(' ');
@@ -106,7 +106,7 @@ fn word_length(rest: &str) -> usize {
     rest.find(outside).unwrap_or(rest.len())
 }
 
-/// Returns the length of a leading quoted text; a doubled quote does not end it.
+/// Returns the length of the quoted text at the start of `rest`. A doubled quote does not end the text.
 fn quoted_length(rest: &str, quote: char) -> usize {
     let mut letters = rest.char_indices().skip(1).peekable();
     while let Some((at, letter)) = letters.next() {

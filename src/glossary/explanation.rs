@@ -1,4 +1,4 @@
-//! Explanations of subjects, in sections that any interface can show.
+//! Explanations of glossary subjects, divided into sections that every interface can show.
 
 use std::fmt::Write;
 
@@ -6,32 +6,32 @@ use super::{Subject, Term, subject_by_name, term};
 use novamind_database::{Column, Table};
 use novamind_tools::{Argument, ParameterNumbers, ToolSpec};
 
-/// A part of an explanation.
+/// A labelled section of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Section {
-    /// Label; empty for the first section, which defines the subject.
+    /// Label of the section. The first section, which defines the subject, has an empty label.
     pub name: &'static str,
-    /// Text, possibly several lines.
+    /// Text of the section, in one or more lines.
     pub text: String,
 }
 
-/// An explanation.
+/// An explanation of a glossary subject.
 #[derive(Debug, Clone)]
 pub struct Explanation {
-    /// Display name of the subject.
+    /// Display name of the explained subject.
     pub title: String,
-    /// Category in a few words.
+    /// Category of the subject, for example `argument of set_prices`.
     pub note: String,
-    /// Sections.
+    /// Sections of the explanation that are not empty.
     pub sections: Vec<Section>,
-    /// Related subjects.
+    /// Subjects that are related to the explained subject.
     pub related: Vec<Subject>,
     /// Screens and dialogs that show the subject, by action name.
     pub places: &'static [String],
 }
 
 impl Explanation {
-    /// Explains a subject with the parameters in force.
+    /// Creates the explanation of a subject, with the parameters of the run.
     pub fn new(subject: Subject, numbers: &ParameterNumbers) -> Explanation {
         let (note, sections, related, places) = match subject {
             Subject::Term(term) => term_parts(term),

@@ -1,7 +1,7 @@
 //! The glossary: terms of the company, and the documentation of tools and tables.
 //!
-//! Terms are defined in `assets/glossary.toml` and contain only information visible to players. Interfaces request an
-//! [`Explanation`] of a [`Subject`] and display it in their own way.
+//! Terms are defined in `assets/glossary.toml` and contain only information visible to players. Each interface
+//! displays the [`Explanation`] of a [`Subject`] in its own layout.
 
 mod explanation;
 mod subject;
@@ -17,30 +17,30 @@ pub use subject::{Subject, find_subject, subject_by_name};
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Term {
-    /// ID in kebab-case, for example `delivered-quality`.
+    /// ID of the term in kebab-case, for example `delivered-quality`.
     pub id: String,
-    /// Topic: money, customers, product …
+    /// Topic of the term, for example money, customers or product.
     pub topic: String,
-    /// Display name.
+    /// Display name of the term.
     pub title: String,
-    /// Synonyms.
+    /// Synonyms of the term.
     #[serde(default)]
     pub aka: Vec<String>,
-    /// Definition in one sentence.
+    /// Definition of the term in one sentence.
     pub text: String,
-    /// Computation and other details.
+    /// How the figure is computed, and other details.
     #[serde(default)]
     pub more: String,
     /// IDs of related terms.
     #[serde(default)]
     pub see: Vec<String>,
-    /// Screens and dialogs that show it, by action name.
+    /// Screens and dialogs that show the term, by action name.
     #[serde(default)]
     pub places: Vec<String>,
-    /// Tools that set or return it.
+    /// Tools that set or return the figure.
     #[serde(default)]
     pub tools: Vec<String>,
-    /// Tables that contain it.
+    /// Tables that contain the figure.
     #[serde(default)]
     pub tables: Vec<String>,
 }
@@ -55,12 +55,12 @@ static TERMS: LazyLock<Vec<Term>> = LazyLock::new(|| {
     toml::from_str::<GlossaryFile>(text).expect("the bundled glossary is valid").term
 });
 
-/// Returns all terms, ordered by topic.
+/// Returns all terms of the glossary, ordered by topic.
 pub fn terms() -> &'static [Term] {
     &TERMS
 }
 
-/// Returns the term with this ID.
+/// Returns the glossary term with this ID.
 pub fn term(id: &str) -> Option<&'static Term> {
     TERMS.iter().find(|term| term.id == id)
 }

@@ -1,27 +1,27 @@
-//! Subjects that can be explained, and their lookup.
+//! Subjects that the glossary can explain, and their lookup by name.
 
 use super::{Term, term, terms};
 use novamind_base::similar_names;
 use novamind_database::{Column, Table};
 use novamind_tools::{Argument, ToolSpec};
 
-/// A subject that can be explained.
+/// A subject that the glossary can explain.
 #[derive(Debug, Clone, Copy)]
 pub enum Subject {
     /// A term of the glossary.
     Term(&'static Term),
-    /// A tool.
+    /// A tool of the benchmark.
     Tool(&'static ToolSpec),
     /// An argument of a tool.
     Argument(&'static ToolSpec, &'static Argument),
-    /// A table.
+    /// A public SQL table.
     Table(&'static Table),
-    /// A column of a table.
+    /// A column of a public SQL table.
     Column(&'static Table, &'static Column),
 }
 
 impl Subject {
-    /// Returns the name for lookup.
+    /// Returns the name that [`subject_by_name`] finds.
     pub fn name(&self) -> String {
         match self {
             Subject::Term(term) => term.id.clone(),
@@ -32,7 +32,7 @@ impl Subject {
         }
     }
 
-    /// Returns the display name.
+    /// Returns the display name of the subject.
     pub fn title(&self) -> String {
         match self {
             Subject::Term(term) => term.title.clone(),
@@ -40,7 +40,7 @@ impl Subject {
         }
     }
 
-    /// Returns the kind of subject.
+    /// Returns the kind of the subject, for example `term` or `tool`.
     pub fn kind(&self) -> &'static str {
         match self {
             Subject::Term(_) => "term",
@@ -53,7 +53,7 @@ impl Subject {
 }
 
 /// Looks up an exact name: a term (`churn`), a tool or argument (`set_prices`, `set_prices.A`), a table or column
-/// (`ledger`, `ledger.amount`). Parts of a tool that are not arguments resolve to the tool.
+/// (`ledger`, `ledger.amount`). A name such as `set_prices.x`, where `x` is not an argument, returns the tool.
 pub fn subject_by_name(name: &str) -> Option<Subject> {
     if let Some(term) = term(name) {
         return Some(Subject::Term(term));
@@ -75,10 +75,10 @@ pub fn subject_by_name(name: &str) -> Option<Subject> {
     Some(argument.map_or(Subject::Tool(spec), |argument| Subject::Argument(spec, argument)))
 }
 
-/// Looks up words as users type them, ignoring case and dashes and including synonyms.
+/// Finds the subject that a user typed. Ignores case and dashes, and accepts synonyms.
 ///
 /// # Errors
-/// Returns similar names if nothing matches.
+/// Returns similar names if no subject matches.
 pub fn find_subject(words: &str) -> Result<Subject, Vec<&'static str>> {
     let typed = normalize(words);
     let called = |term: &&Term| {
@@ -97,9 +97,9 @@ pub fn find_subject(words: &str) -> Result<Subject, Vec<&'static str>> {
         .ok_or_else(|| similar_terms(&typed))
 }
 
-/// Returns the tool that answers with a field of this name, because its manual describes the field.
+/// Returns the tool whose result contains a field of this name, because the manual of the tool describes the field.
 fn tool_with_result_field(field: &str) -> Option<Subject> {
-    // A single word is more likely a type than a field.
+    // A single word is more likely to name a type than a field.
     if !field.contains('_') && field != "description" {
         return None;
     }
@@ -113,12 +113,12 @@ fn tool_with_result_field(field: &str) -> Option<Subject> {
     novamind_tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
 }
 
-/// Removes a remark in brackets at the end, as in `Overload (peak)`.
+/// Removes parentheses at the end, as in `Overload (peak)`.
 fn strip_parentheses(words: &str) -> Option<&str> {
     words.trim().strip_suffix(')')?.split_once('(').map(|(words, _)| words)
 }
 
-/// Returns similar names, those that contain the words first.
+/// Returns the IDs of similar terms. Terms that contain the typed words come first.
 fn similar_terms(typed: &str) -> Vec<&'static str> {
     let names = || terms().iter().map(|term| term.id.as_str());
     let mut found: Vec<&str> = if typed.len() < 3 {

@@ -1,6 +1,8 @@
-//! Simulated explanations of a run: causes of changes, results of other decisions, participation curves, and hidden state.
+//! Explanations of a run by simulation: causes of changes, results of other decisions, participation curves, and
+//! hidden state.
 //!
-//! Every function checks permissions first. Hidden state comes from inspections of the session, which are rejected or recorded.
+//! Every public function first checks permissions. Hidden state is read by inspections of the session. Each inspection is
+//! rejected or recorded.
 
 mod causes;
 mod counterfactual;

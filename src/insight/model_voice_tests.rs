@@ -1,4 +1,4 @@
-//! Re-simulation uses the recorded scores of the language model.
+//! Re-simulations use the recorded scores of the language model.
 
 use std::path::Path;
 
@@ -74,7 +74,7 @@ fn branch_with_decisions_copies_voice_scores() {
     let stub = StubModel::start(StubBehavior::Correct);
     let session = play_three_weeks(runs.path(), &stub.configuration(true, true, 30));
     drop(stub);
-    // The branch posts again.
+    // The branch publishes the post again.
     let on = &mut |_| std::ops::ControlFlow::Continue(());
     let kept = create_branch_with_decisions(&session, 1, &[], Mode::Sandbox, on).expect("a branch").session;
     assert_eq!(kept.state_hash(), session.state_hash());

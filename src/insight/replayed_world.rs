@@ -1,4 +1,4 @@
-//! The world of a finished run for another player: the same random draws, from day 0.
+//! The world of a finished run, which another player can play from day 0 with the same random draws.
 
 use std::path::Path;
 
@@ -13,16 +13,16 @@ use novamind_record::rules::SessionRules;
 use novamind_session::{Session, new_run_id, unreadable_record};
 use novamind_tools::Rejection;
 
-/// The world of a run.
+/// The world of a finished run.
 #[derive(Debug)]
 pub struct ReplayedWorld {
     manifest: Manifest,
-    /// Day on which scores are compared: the last day of the run, or of its part of a lesson.
+    /// Day on which scores are compared: the last day of the run or of the run's lesson part.
     pub last_day: u32,
 }
 
 impl ReplayedWorld {
-    /// Reads the world of the run in a folder.
+    /// Reads the world of a finished run.
     ///
     /// # Errors
     /// `not_in_this_mode` if the run is unfinished and not a debug run, or if its study shows no results; `not_possible` if
@@ -41,22 +41,22 @@ impl ReplayedWorld {
         }
         if has_preset_decisions(folder, &past.manifest).map_err(|error| unreadable_record(&error))? {
             return not_possible(
-                "this part of the lesson starts with an existing company, but opponents start with an empty one",
+                "this part of the lesson starts with an existing company, but opponents start with a new company",
             );
         }
         let last_day = if past.manifest.lesson.is_some() { past.last_day() } else { past.manifest.days };
         Ok(ReplayedWorld { manifest: past.manifest, last_day })
     }
 
-    /// Returns the seed of the random draws.
+    /// Returns the seed of the world's random draws.
     pub fn seed(&self) -> u64 {
         self.manifest.seed
     }
 
-    /// Starts a debug run in this world, in memory and without a database.
+    /// Starts a debug run in the world, in memory and without a database.
     ///
     /// # Errors
-    /// Returns an error if this program does not support the parameters of the run.
+    /// Returns an error if the program does not support the parameters of the run.
     pub fn start_session(&self) -> Result<Session, RunError> {
         let manifest = Manifest {
             id: new_run_id(),

@@ -1,4 +1,4 @@
-//! Participation curves: required quality by price (docs/laboratory/laws-and-curves.md).
+//! Reports on participation curves: required quality by price (docs/laboratory/laws-and-curves.md).
 
 use super::lab_report::{
     AxisScale, CellValue, Column, Graph, GraphAxis, GraphForm, LabReport, LabTable, Measure, Series,
@@ -10,7 +10,7 @@ use novamind_world::params::{GroupParams, Params};
 
 /// Number of price steps from 0 to the budget.
 const PRICE_STEPS: u32 = 100;
-/// Sampled prices per table row.
+/// Number of sampled prices in a table row.
 const PRICES_PER_ROW: usize = 5;
 
 /// Returns a customer with the mean traits of a group.
@@ -25,7 +25,7 @@ fn mean_customer(group_params: &GroupParams, params: &Params) -> Curve {
     }
 }
 
-/// Returns the curves of the groups' mean customers, with prices as shares of the budget.
+/// Returns a report on the curves of all groups' mean customers, with prices as shares of the budget.
 pub fn all_curves_report(params: &Params) -> LabReport {
     let columns = vec![
         Column::text("group", "group"),
@@ -86,7 +86,8 @@ fn mean_curve_graph(of: &str, groups: impl Iterator<Item = Group>, params: &Para
     }
 }
 
-/// Returns the curve of a group's mean customer and the quality that satisfies 10 %, 50 % and 90 % of its customers.
+/// Returns a report on the curve of a group's mean customer, and on the quality that satisfies 10 %, 50 % and 90 % of
+/// the group's customers.
 pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
     let group_params = params.group(group);
     let curve = mean_customer(group_params, params);
@@ -131,7 +132,7 @@ pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
         ],
         form: GraphForm::Lines,
     });
-    exhibit.with_note("– the price is above the budget of too many customers.")
+    exhibit.with_note("–: the price is above the budget of too many customers.")
 }
 
 #[cfg(test)]
@@ -145,7 +146,7 @@ mod tests {
         let table = exhibit.table("curves").expect("a table");
         assert_eq!(table.rows.len(), 26);
         let s1 = mean_customer(params.group(Group::parse("S1").expect("a group")), &params);
-        // Reference customer X of docs/mechanics/customers/participation.md.
+        // Compare with reference customer X of docs/mechanics/customers/participation.md.
         assert_eq!((s1.steepness_left, s1.steepness_right, s1.c_max), (1.2, 2.8, 50.0));
         assert!((required_quality(20.0, &s1, &params) - 0.293083510).abs() < 1e-9);
         assert_eq!(exhibit.graphs.len(), 2);

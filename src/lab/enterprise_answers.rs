@@ -1,4 +1,5 @@
-//! Answers of a policy to enterprises: the section `[enterprise]` (docs/interfaces/policies.md#answers-to-enterprises).
+//! Automatic answers to enterprises: the section `[enterprise]` of a policy
+//! (docs/interfaces/policies.md#answers-to-enterprises).
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -8,41 +9,41 @@ use novamind_tools::ToolId;
 use novamind_world::events::ThreadKind;
 use novamind_world::identifiers::Plan;
 
-/// Answers every waiting thread on every decision day.
+/// A rule that answers every waiting thread on every decision day.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EnterpriseRule {
-    /// Offers in order, one to three.
+    /// One to three offers, in order.
     pub offerings: Vec<OfferingRule>,
-    /// Price factors by the number of the policy's turns in a thread.
+    /// Price factor, which depends on the number of the policy's turns in the thread.
     #[serde(default)]
     pub factor: PriceFactor,
-    /// Turns after which a thread is rejected; `None`: never.
+    /// Number of the policy's turns after which it rejects a thread; `None` to never reject.
     pub give_up_after: Option<u32>,
-    /// Thread types that are answered.
+    /// Types of the threads that are answered.
     #[serde(default)]
     pub types: ThreadTypes,
 }
 
-/// A plan and its price before the factor.
+/// An offered plan and its price before the factor.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OfferingRule {
-    /// Plan.
+    /// Offered plan.
     pub plan: Plan,
-    /// Dollars a month and seat.
+    /// Price before the factor, $ per month and seat.
     pub price: f64,
 }
 
-/// Price factor: max(floor, start + step times own turns).
+/// A price factor that changes with the policy's turns: max(floor, start + step * turns).
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PriceFactor {
-    /// Factor of the first offer.
+    /// Price factor of the first offer.
     pub start: f64,
-    /// Change with every further offer.
+    /// Change of the factor with each further offer.
     pub step: f64,
-    /// Minimum factor.
+    /// Minimum price factor.
     pub floor: f64,
 }
 
@@ -53,23 +54,23 @@ impl Default for PriceFactor {
 }
 
 impl PriceFactor {
-    /// Returns the factor after this many own turns.
+    /// Returns the factor after a number of turns of the policy.
     pub fn factor_after(&self, own_turns: u32) -> f64 {
         (self.start + self.step * f64::from(own_turns)).max(self.floor)
     }
 }
 
-/// Thread types: `"all"` or a list.
+/// The selected thread types: `"all"` or a list.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(untagged, expecting = "types must be \"all\" or a list of thread types")]
 pub enum ThreadTypes {
-    /// All types.
+    /// All thread types.
     #[default]
     #[serde(skip)]
     All,
-    /// The word `all`, or an invalid word.
+    /// A word: `all`, or an invalid word.
     Word(String),
-    /// The listed types.
+    /// A list of thread types.
     List(Vec<String>),
 }
 
@@ -86,7 +87,7 @@ impl EnterpriseRule {
     /// Returns the rule if it is valid.
     ///
     /// # Errors
-    /// Describes the problem.
+    /// Returns a description of the first invalid value.
     pub(super) fn validated(self) -> Result<EnterpriseRule, String> {
         if !(1..=3).contains(&self.offerings.len()) {
             return Err(format!("the number of offerings must be 1 to 3, not {}", self.offerings.len()));
@@ -108,7 +109,8 @@ impl EnterpriseRule {
         }
     }
 
-    /// Returns the calls that answer these threads: one with all offers, one with all rejections. Empty calls are omitted.
+    /// Returns the calls that answer the waiting threads: one call with all offers and one call with all rejections.
+    /// Empty calls are omitted.
     pub fn calls(&self, waiting: &[WaitingThread]) -> Vec<(ToolId, Value)> {
         let mut threads: Vec<&WaitingThread> =
             waiting.iter().filter(|thread| self.types.contains(thread.kind)).collect();

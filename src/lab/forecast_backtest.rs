@@ -1,5 +1,4 @@
-//! Back-test of naive forecasts: plays policies and compares the naive forecast before each week
-//! with the outcome.
+//! Back-test of naive forecasts. Policies are played, and the naive forecast before each week is compared with the outcome.
 
 use super::policy::Policy;
 use super::runner::{RunError, RunSpec, play_all_weeks};
@@ -8,21 +7,21 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_session::{Coverage, ErrorBands, GrowthStage, Hindcast, hindcasts};
 use novamind_world::params::Params;
 
-/// Forecast horizons in days.
+/// Returns the forecast horizons in days.
 pub fn forecast_horizons() -> Vec<u32> {
     Params::bundled().limits.prediction_horizons_days
 }
 
-/// Weeks of one run of a policy.
+/// The weeks of a run that a policy played.
 #[derive(Debug, Clone)]
 pub struct PlayedWeeks {
-    /// Policy.
+    /// Name of the policy.
     pub policy: String,
-    /// Weeks.
+    /// Figures of the weeks, in order.
     pub weeks: Vec<WeekFigures>,
 }
 
-/// Plays a policy on a seed and returns its weeks.
+/// Plays a policy on a seed and returns the weeks of the run.
 ///
 /// # Errors
 /// Fails if the run cannot start or a tool rejects a call that must succeed.
@@ -35,9 +34,9 @@ pub fn play_weeks(
     Ok(PlayedWeeks { policy: policy.name.clone(), weeks })
 }
 
-/// Returns the intervals fitted to some runs, with their coverage there.
+/// Returns forecast intervals that are fitted to the given runs, with their coverage in these runs.
 pub fn measure_naive_bands(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> ErrorBands {
-    // Errors do not depend on the intervals.
+    // The forecast errors do not depend on the intervals.
     let all = horizons.iter().flat_map(|horizon| runs.iter().map(move |run| (*horizon, run)));
     let errors: Vec<(GrowthStage, u32, f64)> = all
         .flat_map(|(horizon, run)| {
@@ -51,7 +50,7 @@ pub fn measure_naive_bands(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -
     ErrorBands { coverage, ..bands }
 }
 
-/// Returns the coverage at a horizon, over all runs or those of one policy.
+/// Returns the coverage of the intervals at a horizon, over all runs or the runs of one policy.
 pub fn band_coverage(
     runs: &[PlayedWeeks],
     policy: Option<&str>,
@@ -61,12 +60,12 @@ pub fn band_coverage(
     let policy_runs = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
     let made: Vec<Hindcast> = policy_runs.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
     let held = made.iter().filter(|hindcast| hindcast.is_covered).count();
-    // Rounded to the displayed digits to keep the file readable.
+    // The share is rounded to the displayed digits to keep the file readable.
     let share = if made.is_empty() { 0.0 } else { held as f64 / made.len() as f64 };
     Coverage { horizon, forecasts: made.len(), held: (share * 1e4).round() / 1e4 }
 }
 
-/// Returns the names of the policies in order.
+/// Returns the distinct policy names, in order.
 pub fn policy_names(runs: &[PlayedWeeks]) -> Vec<&str> {
     let mut names: Vec<&str> = runs.iter().map(|run| run.policy.as_str()).collect();
     names.dedup();
@@ -78,7 +77,7 @@ mod tests {
     use super::*;
     use novamind_session::JournalEntry;
 
-    /// The forecast offered during play equals the back-test's forecast.
+    /// The forecast that is offered during play equals the forecast of the back-test.
     #[test]
     fn backtest_uses_the_forecasts_the_game_offers() {
         let configuration = Configuration::bundled();

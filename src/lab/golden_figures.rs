@@ -1,4 +1,4 @@
-//! Comparison with reference figures (docs/interfaces/golden.md).
+//! Comparison of runs with the golden figures of the released simulator (docs/interfaces/golden.md).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -7,17 +7,18 @@ use std::path::{Path, PathBuf};
 use super::metrics::MetricValue;
 use novamind_base::statistics::{SampleStatistics, median};
 
-/// A cell: figure, group, checkpoint day.
+/// Key of a compared cell: figure, group, checkpoint day.
 type CellKey = (String, String, u32);
 
-/// Figures of the released simulator under one policy.
+/// Golden figures of the released simulator under one policy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReferenceFigures {
     /// Name of the policy.
     pub policy: String,
     /// Mean, standard deviation and number of seeds by cell.
     pub cells: BTreeMap<CellKey, SampleStatistics>,
-    /// Single values, if the reference has them, for figures that are compared as logarithms.
+    /// Values of each seed by cell, if the reference contains them. Single values are needed for figures that are
+    /// compared as logarithms.
     per_seed: BTreeMap<CellKey, Vec<f64>>,
 }
 
@@ -36,7 +37,7 @@ impl fmt::Display for GoldenError {
 
 impl std::error::Error for GoldenError {}
 
-/// Figures with compound growth, compared as ln(1 + x).
+/// Figures with compound growth, which are compared as ln(1 + x).
 const LOG_COMPARED_FIGURES: [&str; 17] = [
     "subs",
     "subs_total",
@@ -57,29 +58,29 @@ const LOG_COMPARED_FIGURES: [&str; 17] = [
     "lost_leads_cum",
 ];
 
-/// Shown but excluded from the verdict: the mood of churned authors differs by design.
+/// Figures that are shown but excluded from the verdict. The satisfaction of churned authors differs by design.
 const UNJUDGED_FIGURES: [&str; 1] = ["posts_customer_cum"];
 
-/// Minimum number of seeds of a cell.
+/// Minimum number of seeds of a compared cell.
 const MIN_SEEDS: usize = 5;
 
 impl ReferenceFigures {
-    /// Last checkpoint day.
+    /// Returns the last checkpoint day of the reference.
     pub fn last_day(&self) -> u32 {
         self.cells.keys().map(|(_, _, day)| *day).max().unwrap_or(0)
     }
 
-    /// Checkpoint days.
+    /// Returns the checkpoint days of the reference, in ascending order.
     pub fn days(&self) -> Vec<u32> {
         let days: BTreeSet<u32> = self.cells.keys().map(|(_, _, day)| *day).collect();
         days.into_iter().collect()
     }
 }
 
-/// Reads `<policy>.csv` from a reference folder, and `per_seed/<policy>.csv` if it exists.
+/// Reads the reference figures of a policy: `<policy>.csv` from a folder, and `per_seed/<policy>.csv` if it exists.
 ///
 /// # Errors
-/// Fails if the file is missing or is not a table of figures.
+/// Fails if the policy's file is missing or is not a table of figures.
 pub fn read_reference(folder: &Path, policy: &str) -> Result<ReferenceFigures, GoldenError> {
     let path = folder.join(format!("{policy}.csv"));
     let mut reference = ReferenceFigures { policy: policy.to_owned(), ..ReferenceFigures::default() };
@@ -126,37 +127,37 @@ fn read_table<const WIDTH: usize>(
     rows.collect()
 }
 
-/// One compared cell.
+/// A compared cell: one figure of a group on a checkpoint day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedCell {
-    /// Figure.
+    /// Name of the figure.
     pub figure: String,
-    /// Group.
+    /// Group of the figure; empty for the whole company.
     pub group: String,
-    /// Checkpoint day.
+    /// Checkpoint day of the cell.
     pub day: u32,
-    /// Mean of the reference.
+    /// Statistics of the reference.
     pub reference: SampleStatistics,
-    /// Mean of our runs.
+    /// Statistics of the new runs.
     pub measured: SampleStatistics,
-    /// Difference of the means in standard errors.
+    /// Difference between the two means, in standard errors.
     pub z: f64,
 }
 
-/// The comparison of one policy.
+/// The comparison of new runs with the reference under one policy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoldenComparison {
-    /// Policy.
+    /// Name of the policy.
     pub policy: String,
-    /// Cells that count for the verdict.
+    /// Cells that are included in the verdict.
     pub cells: Vec<ComparedCell>,
-    /// Cells that are shown only.
+    /// Cells that are shown but excluded from the verdict.
     pub unjudged: Vec<ComparedCell>,
-    /// Reference figures that are missing in our runs.
+    /// Reference figures that are missing in the new runs.
     pub missing: Vec<String>,
 }
 
-/// Compares our runs (a list of figures per seed) with a reference.
+/// Compares new runs with a reference. `runs` contains the figures of each seed.
 pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricValue>]) -> GoldenComparison {
     let mut values_by_cell: BTreeMap<(&str, &str, u32), Vec<f64>> = BTreeMap::new();
     for figure in runs.iter().flatten() {
@@ -209,7 +210,8 @@ fn log1p_values(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| libm::log1p(value.max(0.0))).collect()
 }
 
-/// Returns the difference of two means in standard errors: 0 if they agree to a millionth, 99 if neither varies.
+/// Returns the difference of two means in standard errors. Returns 0 if the means agree to a millionth, and ±99 if
+/// neither sample varies.
 fn z_score(reference: &SampleStatistics, sample_statistics: &SampleStatistics) -> f64 {
     let difference = sample_statistics.mean - reference.mean;
     if difference.abs() < 1e-9 + 1e-6 * reference.mean.abs() {
@@ -221,13 +223,13 @@ fn z_score(reference: &SampleStatistics, sample_statistics: &SampleStatistics) -
 }
 
 impl GoldenComparison {
-    /// Returns the share of cells with |z| below a bound.
+    /// Returns the share of cells whose |z| is below a bound.
     pub fn share_below(&self, bound: f64) -> f64 {
         let below = self.cells.iter().filter(|cell| cell.z.abs() < bound).count();
         below as f64 / self.cells.len().max(1) as f64
     }
 
-    /// Returns the figures with at least five cells and |median z| above 3.5, with that median.
+    /// Returns the figures with at least five cells and |median z| above 3.5, each with its median z.
     pub fn suspect_figures(&self) -> Vec<(String, f64)> {
         let mut by_figure: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell.z));
@@ -239,7 +241,7 @@ impl GoldenComparison {
             .collect()
     }
 
-    /// Returns a line per figure: number of cells, median z, and the worst cell.
+    /// Returns a text line per figure with the number of cells, the median z and the cell with the largest |z|.
     pub fn figure_lines(&self) -> Vec<String> {
         let mut by_figure: BTreeMap<&str, Vec<&ComparedCell>> = BTreeMap::new();
         self.cells.iter().for_each(|cell| by_figure.entry(&cell.figure).or_default().push(cell));
@@ -259,7 +261,7 @@ impl GoldenComparison {
         by_figure.into_iter().filter_map(line).collect()
     }
 
-    /// Returns the cells that differ most.
+    /// Returns the `count` cells with the largest |z|.
     pub fn most_different(&self, count: usize) -> Vec<&ComparedCell> {
         let mut cells: Vec<&ComparedCell> = self.cells.iter().collect();
         cells.sort_by(|left, right| right.z.abs().total_cmp(&left.z.abs()));
@@ -336,7 +338,8 @@ mod tests {
 
     #[test]
     fn only_compounding_figures_are_log_compared() {
-        // ln(1 + x) is 1 to 5 in the reference and 2 to 6 in ours: the difference is 1, and each mean has variance 2.5 / 5.
+        // ln(1 + x) is 1 to 5 in the reference and 2 to 6 in the runs. The difference of the means is 1, and the
+        // variance of each mean is 2.5 / 5.
         let singles = |first: i32| (first..first + 5).map(|power| libm::expm1(f64::from(power)));
         let mut reference = ReferenceFigures { policy: "x".to_owned(), ..ReferenceFigures::default() };
         for figure in ["subs_total", "cash"] {

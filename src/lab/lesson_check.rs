@@ -1,5 +1,5 @@
-//! Checks a lesson on six seeds: the reference play reaches every goal, the bad play misses a goal and triggers
-//! its pitfall, and the figures in its texts are correct.
+//! Checks a lesson on six seeds. The reference play must reach every goal. The bad play must miss a goal and trigger
+//! its pitfall. The figures in the texts must be correct.
 
 use std::sync::Arc;
 
@@ -10,13 +10,13 @@ use novamind_record::error::RunError;
 use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{PartPlay, Session, play_part, play_part_with_hooks};
 
-/// Allowed relative deviation of a measured figure from the stated one.
+/// Allowed relative deviation of a measured figure from the stated figure.
 pub const TOLERANCE: f64 = 0.15;
 
-/// The result of a play on a seed.
+/// The result of a play on one seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlayResult {
-    /// Seed.
+    /// Seed of the play.
     pub seed: u64,
     /// Results of the goals of each part, in order.
     pub goals: Vec<GoalResult>,
@@ -24,30 +24,30 @@ pub struct PlayResult {
     pub pitfalls: Vec<String>,
 }
 
-/// The result of a goal.
+/// The result of one goal in a play.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoalResult {
-    /// Text of the goal.
+    /// Text of the lesson goal.
     pub text: String,
-    /// Measured value, if any.
+    /// Measured value of the goal, if any.
     pub value: Option<f64>,
-    /// Target value.
+    /// Target value of the goal, if any.
     pub target: Option<f64>,
-    /// Whether the goal was reached.
+    /// Whether the play reached the goal.
     pub is_met: bool,
 }
 
-/// A figure in the texts, measured again.
+/// A figure that the lesson's texts state, with its measured mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureResult {
-    /// The stated figure.
+    /// The figure as stated in the texts.
     pub stated: MeasuredFigure,
-    /// Mean over the seeds; NaN if there is none.
+    /// Mean of the measured values over the seeds; NaN if no seed has a value.
     pub mean: f64,
 }
 
 impl FigureResult {
-    /// Returns whether the stated value is correct.
+    /// Returns whether the stated value is within [`TOLERANCE`] of the measured mean.
     pub fn is_within_tolerance(&self) -> bool {
         (self.mean - self.stated.value).abs() <= TOLERANCE * self.stated.value.abs()
     }
@@ -60,9 +60,9 @@ pub struct LessonCheck {
     pub reference_results: Vec<PlayResult>,
     /// Results of the bad play by seed.
     pub pitfall_results: Vec<PlayResult>,
-    /// Figures in the texts.
+    /// Figures that the texts state, with measured values.
     pub figures: Vec<FigureResult>,
-    /// Pitfall that the bad play must trigger.
+    /// Name of the pitfall that the bad play must trigger.
     pub pitfall: String,
 }
 
@@ -82,7 +82,7 @@ impl LessonCheck {
         let wrong = self.figures.iter().filter(|figure| !figure.is_within_tolerance()).map(|figure| {
             let FigureResult { stated, mean } = figure;
             format!(
-                "{} is stated as {} but is {}",
+                "{} is stated as {} but measured as {}",
                 stated.name,
                 stated.formatted_value(),
                 stated.format_value(*mean)
@@ -92,7 +92,7 @@ impl LessonCheck {
     }
 }
 
-/// Checks a lesson.
+/// Checks the plays and the figures of a lesson.
 ///
 /// # Errors
 /// Fails if a part cannot start or a play is rejected.
@@ -103,10 +103,10 @@ pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
     })
 }
 
-/// Checks the plays of a lesson on some seeds without measured figures.
+/// Checks the plays of a lesson on the given seeds, without measuring figures.
 ///
 /// # Errors
-/// As for [`check_lesson`].
+/// Same errors as [`check_lesson`].
 pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, RunError> {
     let plays = |play: &ReferencePlay| -> Result<Vec<PlayResult>, RunError> {
         seeds.par_iter().map(|seed| run_play(lesson, play, *seed)).collect()
@@ -150,7 +150,7 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
     Ok(result)
 }
 
-/// Measures the figures of a lesson; figures of one play are measured in the same runs.
+/// Measures the figures of a lesson. Figures of the same play are measured in the same runs.
 fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     let mut plays: Vec<Vec<&MeasuredFigure>> = Vec::new();
     for figure in &lesson.plan.measured {
@@ -189,7 +189,7 @@ fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> 
         .collect())
 }
 
-/// Measures the figures of one play on a seed.
+/// Measures figures of one play on one seed.
 fn figure_values(
     lesson: &Arc<Lesson>,
     figures: &[&MeasuredFigure],
@@ -209,7 +209,7 @@ fn figure_values(
     };
     let mut values = vec![None; figures.len()];
     let mut measure = |session: &mut Session, week: u32| {
-        // A bankrupt company does not change.
+        // The state of a bankrupt company does not change.
         let stays = session.ended().is_some();
         for (value, figure) in values.iter_mut().zip(figures) {
             let wanted = figure.week.unwrap_or(last);

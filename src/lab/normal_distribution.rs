@@ -1,4 +1,4 @@
-//! The normal distribution function.
+//! Cumulative distribution function of the normal distribution.
 
 /// Returns the probability that a standard normal value is below `z`, 0..=1.
 pub fn normal_cdf(z: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Policies played in the world of a finished run (docs/interfaces/policies.md#opponents).
+//! Opponents: policies played in the world of a finished run (docs/interfaces/policies.md#opponents).
 
 use std::path::Path;
 
@@ -15,11 +15,11 @@ use novamind_report::opponents::{OpponentResult, OpponentResults};
 use novamind_session::Session;
 use novamind_tools::Rejection;
 
-/// Plays the strong policies and the baseline in the world of the run in a folder, with its seed. Demand surges, days and cash
-/// are those of the run. Returns `None` if it was stopped.
+/// Plays the strong policies and the baseline in the world of a finished run. Seed, demand surges, days and cash are
+/// equal to those of the run. Returns `None` if `goes_on` stopped the simulation.
 ///
 /// # Errors
-/// As for [`ReplayedWorld::from_run`].
+/// Same errors as [`ReplayedWorld::from_run`].
 pub fn play_opponents(
     folder: &Path,
     configuration: &Configuration,

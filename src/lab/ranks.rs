@@ -1,6 +1,6 @@
-//! Ranks and rank correlation.
+//! Ranks, rank correlation and concordance.
 
-/// Returns ranks from 1, greatest value first; equal values share their mean rank.
+/// Returns the ranks of the values. The greatest value has rank 1, and equal values share their mean rank.
 pub fn mean_ranks(values: &[f64]) -> Vec<f64> {
     let place = |value: &f64| {
         let better = values.iter().filter(|other| other.total_cmp(value).is_gt()).count() as f64;
@@ -10,8 +10,8 @@ pub fn mean_ranks(values: &[f64]) -> Vec<f64> {
     values.iter().map(place).collect()
 }
 
-/// Returns Spearman's rank correlation, with mean ranks for ties. Returns `None` for fewer than three pairs or if one side
-/// does not vary.
+/// Returns Spearman's rank correlation of the pairs, with mean ranks for ties. Returns `None` for fewer than three
+/// pairs or if one of the variables does not vary.
 pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     if pairs.len() < 3 {
         return None;
@@ -26,8 +26,8 @@ pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| product(&left, &right) / spread)
 }
 
-/// Returns Kendall's coefficient of concordance W of several rankings: 1 if all are equal, about 1 / (number
-/// of rankings) if they are unrelated. Corrects for ties. Returns `None` for fewer than two rankings or two items, or if
+/// Returns Kendall's coefficient of concordance W of several rankings, corrected for ties. W is 1 for equal rankings
+/// and about 1 / (number of rankings) for unrelated rankings. Returns `None` for fewer than two rankings or two items, or if
 /// every ranking has all items tied.
 pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
     let (judges, things) = (rankings.len() as f64, rankings.first()?.len() as f64);
@@ -43,10 +43,10 @@ pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
     (spread > 0.0).then(|| above / spread)
 }
 
-/// Returns the sum of t^3 - t over groups of t ties.
+/// Returns the sum of t^3 - t over all groups of t tied items.
 fn tie_correction(places: &[f64]) -> f64 {
     let shared = |place: &f64| places.iter().filter(|other| **other == *place).count() as f64;
-    // Each of the t tied items adds its share.
+    // Each of the t tied items adds t^2 - 1, so the group adds t^3 - t.
     places.iter().map(shared).map(|count| count * count - 1.0).sum()
 }
 
@@ -68,7 +68,7 @@ mod tests {
         let tied = vec![1.5, 1.5, 3.0];
         assert_eq!(concordance(&[tied.clone(), tied]), Some(1.0));
         assert_eq!(concordance(&[up]), None);
-        // Three judges, four items (Kendall 1948): R = 6, 5, 9, 10.
+        // Three judges rank four items (Kendall 1948). The rank sums are R = 6, 5, 9, 10.
         let judges = [[2.0, 1.0, 3.0, 4.0], [1.0, 3.0, 2.0, 4.0], [3.0, 1.0, 4.0, 2.0]].map(Vec::from);
         let value = concordance(&judges).expect("rankings");
         let sums = [6.0, 5.0, 9.0, 10.0];
@@ -79,7 +79,7 @@ mod tests {
     fn concordance_ignores_magnitudes() {
         assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 5.0), (300.0, 1.0)]), Some(-1.0));
         assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 2.0), (3.0, 900.0)]), Some(1.0));
-        // Ranks 1, 2.5, 2.5, 4 against 1, 3, 2, 4.
+        // The ranks are 1, 2.5, 2.5, 4 and 1, 3, 2, 4.
         let tied = rank_correlation(&[(1.0, 1.0), (2.0, 3.0), (2.0, 2.0), (5.0, 4.0)]).expect("it varies");
         assert!((tied - 0.948_683_298_050_513_8).abs() < 1e-12, "{tied}");
     }

@@ -1,4 +1,4 @@
-//! Plays policies.
+//! Execution of policies.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -20,22 +20,22 @@ use novamind_record::trajectory::record::{RunEndReason, Via};
 use novamind_session::{DayReport, NewRun, Session, Storage};
 use novamind_tools::{Answer, Rejection, ToolId};
 
-/// Settings of a run.
+/// The settings of a policy's run.
 #[derive(Debug, Clone)]
 pub struct RunSpec {
     /// Seed of all random draws.
     pub seed: u64,
-    /// Last day of the run; it affects the mechanics.
+    /// Last day of the run, which affects the mechanics.
     pub days: Option<u32>,
-    /// Stop after this day.
+    /// Day after which the run is stopped.
     pub stop_after_day: Option<u32>,
-    /// Demand surges; `None`: from the policy or scenario.
+    /// Whether demand surges occur; `None` to use the value of the policy or scenario.
     pub surges: Option<bool>,
     /// Cash on day 0, dollars.
     pub cash: Option<f64>,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: Option<String>,
-    /// Single parameters, `(table.key, value)`.
+    /// Overrides of single parameters, as `(table.key, value)`.
     pub overrides: Vec<(String, String)>,
     /// Folder in which the run is saved.
     pub save_folder: Option<PathBuf>,
@@ -44,7 +44,7 @@ pub struct RunSpec {
 }
 
 impl RunSpec {
-    /// Returns a run on a seed with the settings of the policy.
+    /// Returns the settings of a run on a seed, with the other settings from the policy.
     pub fn for_seed(seed: u64) -> RunSpec {
         RunSpec {
             seed,
@@ -60,44 +60,44 @@ impl RunSpec {
     }
 }
 
-/// The end of a policy's run.
+/// The reason why a policy's run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunEnd {
-    /// On the last day.
+    /// The run reached its last day.
     Horizon,
-    /// On the requested stop day.
+    /// The run reached the requested stop day.
     Until,
-    /// Bankruptcy.
+    /// The company went bankrupt.
     Bankruptcy,
 }
 
-/// The outcome of a run.
+/// The outcome of a policy's run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PolicyRunOutcome {
-    /// Seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// Policy.
+    /// Name of the policy.
     pub policy: String,
-    /// Last day of the run.
+    /// Last possible day of the run.
     pub days: u32,
-    /// Last simulated day.
+    /// Last simulated day of the run.
     pub day: u32,
-    /// Cash, dollars.
+    /// Cash at the end, dollars.
     pub cash: f64,
-    /// Active subscriptions of individuals.
+    /// Active subscriptions of individuals at the end.
     pub subscribers: u32,
-    /// Seats of active enterprises.
+    /// Seats of active enterprises at the end.
     pub seats: u32,
-    /// How it ended.
+    /// Reason for the end of the run.
     pub ended: RunEnd,
-    /// Hash of the last state.
+    /// Hash of the state after the last day.
     pub state_hash: String,
     /// Whether demand surges are possible.
     pub surges: bool,
     /// Name of the saved run, if any.
     pub run: Option<String>,
-    /// Elapsed time, seconds.
+    /// Duration of the run, seconds.
     pub seconds: f64,
 }
 
@@ -120,26 +120,26 @@ impl fmt::Display for PolicyRunOutcome {
             formatter.write_str("  no demand surges")?;
         }
         match &self.run {
-            Some(run) => write!(formatter, "  kept as run {run}"),
+            Some(run) => write!(formatter, "  saved as run {run}"),
             None => Ok(()),
         }
     }
 }
 
-/// Reason why a policy's run failed.
+/// The reason why a policy's run failed.
 #[derive(Debug)]
 pub enum RunError {
     /// The run could not start.
     Start(Box<SessionError>),
     /// A tool rejected a call.
     Refused {
-        /// Seed.
+        /// Seed of the run.
         seed: u64,
-        /// Decision day.
+        /// Decision day of the rejected call.
         day: u32,
-        /// Tool.
+        /// Name of the rejected tool.
         tool: String,
-        /// Rejection.
+        /// Reason for the rejection.
         refusal: Box<Rejection>,
     },
 }
@@ -163,7 +163,7 @@ impl From<SessionError> for RunError {
     }
 }
 
-/// Plays a policy to its end; `collector` observes every day.
+/// Plays a policy to the end of its run. `collector` observes every day.
 ///
 /// # Errors
 /// Fails if the run cannot start or a tool rejects a call that must succeed.
@@ -178,7 +178,7 @@ pub fn play(
     Ok(outcome(policy, spec.seed, &session, started.elapsed()))
 }
 
-/// Plays a policy to its end and returns the weeks.
+/// Plays a policy to the end of its run and returns the figures of the weeks.
 pub(super) fn play_all_weeks(
     policy: &Policy,
     spec: &RunSpec,
@@ -188,7 +188,7 @@ pub(super) fn play_all_weeks(
     Ok(session.weeks().to_vec())
 }
 
-/// Plays a policy to its end and returns the session.
+/// Plays a policy to the end of its run and returns the session.
 pub(super) fn play_session(
     policy: &Policy,
     spec: &RunSpec,
@@ -201,7 +201,8 @@ pub(super) fn play_session(
     Ok(session)
 }
 
-/// Plays a policy without saving it. Observes each day, and asks after each week whether to continue.
+/// Plays a policy without saving its run. One callback observes each day, and another decides after each week whether
+/// to continue.
 pub(super) fn play_while(
     goes_on: &dyn Fn() -> bool,
     policy: &Policy,
@@ -222,9 +223,9 @@ pub(super) fn is_over(session: &Session, spec: &RunSpec) -> bool {
     session.ended().is_some() || spec.stop_after_day.is_some_and(|until| session.day() >= until)
 }
 
-/// Creates the session that a policy requests.
+/// Returns the definition of the run that a policy and a specification request.
 pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
-    // Explicit overrides come after the policy's settings and take precedence.
+    // Explicit overrides follow the policy's settings and take precedence.
     let mut overrides = Vec::new();
     if spec.surges.or(policy.start.surges) == Some(false) {
         overrides.push(("demand_surge.probability".to_owned(), "0.0".to_owned()));
@@ -251,12 +252,12 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
     }
 }
 
-/// Makes the calls of a policy on the current decision day.
+/// Executes the calls of a policy on the current decision day.
 pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
     decide_with_answers(policy, seed, session, &mut |_| ())
 }
 
-/// Makes the calls of a policy and passes every response to a callback.
+/// Executes the calls of a policy on the current decision day and passes every response to a callback.
 pub(super) fn decide_with_answers(
     policy: &Policy,
     seed: u64,
@@ -301,7 +302,7 @@ pub(super) fn decide_with_answers(
     Ok(())
 }
 
-/// Simulates a week, or the days up to the stop day; `watch` observes every day.
+/// Simulates a week, or the days up to the stop day. `watch` observes every day.
 pub(super) fn advance_week(
     policy: &Policy,
     seed: u64,
@@ -324,7 +325,7 @@ pub(super) fn advance_week(
     })
 }
 
-/// Returns the outcome of a session.
+/// Returns the outcome of a policy's session.
 pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> PolicyRunOutcome {
     let seen = session.company().observe();
     PolicyRunOutcome {

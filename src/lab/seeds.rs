@@ -1,4 +1,4 @@
-//! Parses seeds and ranges of seeds.
+//! Parsing of seeds and seed ranges.
 
 use novamind_base::formatting::grouped_number;
 
@@ -8,16 +8,17 @@ const MAX_SEEDS: u64 = 1_000_000;
 /// A seed or an inclusive range of seeds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SeedRange {
-    /// First seed.
+    /// First seed of the range.
     pub first: u64,
-    /// Last seed.
+    /// Last seed of the range.
     pub last: u64,
 }
 
-/// Parses `7` or `1..24`.
+/// Parses a seed or a range of seeds: `7` or `1..24`.
 ///
 /// # Errors
-/// Fails if the text is neither, a seed is above 2^63 - 1, or the range is empty or longer than `MAX_SEEDS`.
+/// Fails if the text is not a seed or a range, if a seed is above 2^63 - 1, or if the range is empty or longer than
+/// `MAX_SEEDS`.
 pub fn parse_seeds(text: &str) -> Result<SeedRange, String> {
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let seeds = match text.split_once("..") {

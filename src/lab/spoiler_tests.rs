@@ -1,5 +1,5 @@
-//! Tests that texts for new players do not reveal good settings: tour, README, documents, pictures and examples do not contain
-//! the numbers of a bundled policy.
+//! Tests that texts for new players do not reveal effective settings. The tour, the README, documents, pictures and
+//! examples must not contain the numbers of a bundled policy.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,20 +11,20 @@ use novamind_tools::CATALOGUE;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// The page that documents the policies; it is exempt.
+/// The page that documents the policies, which may contain their numbers.
 const POLICY_PAGE: &str = "docs/interfaces/policies.md";
 
-/// Maximum characters between two numbers of one list.
+/// Maximum number of characters between two numbers of one list.
 const MAX_DISTANCE: usize = 24;
 
-/// Settings of the bundled policies.
+/// Settings of the bundled policies that texts must not reveal.
 struct PolicyNumbers {
-    /// Prices or quotas of the plans A, B and C.
+    /// Sets of prices or quotas for the plans A, B and C.
     sets: Vec<[f64; 3]>,
-    /// Development and ads of S1 and of S3, dollars a day.
+    /// Budgets for development and ads by group, $ per day.
     development: Vec<(&'static str, f64)>,
     ads: Vec<(&'static str, f64)>,
-    /// Channels on which the routine advertises to a group at first.
+    /// Group and the channel in which the routine first advertises to the group.
     channels: Vec<(&'static str, &'static str)>,
 }
 
@@ -58,7 +58,7 @@ struct NumberInText {
     start: usize,
     end: usize,
     value: f64,
-    /// The plan named before it.
+    /// Plan that the text names before the number.
     plan: Option<char>,
 }
 
@@ -100,7 +100,7 @@ fn numbers_in(text: &str) -> Vec<NumberInText> {
     found
 }
 
-/// Returns the settings that a text reveals.
+/// Returns the policy settings that a text reveals.
 fn leaked_numbers(text: &str, answers: &PolicyNumbers) -> Vec<String> {
     let numbers = numbers_in(text);
     let near = |pair: &[NumberInText]| pair[1].start.saturating_sub(pair[0].end) <= MAX_DISTANCE;
@@ -151,7 +151,7 @@ fn leaked_numbers(text: &str, answers: &PolicyNumbers) -> Vec<String> {
     found
 }
 
-/// Returns the files in a folder, recursively.
+/// Collects the files in a folder, recursively.
 fn collect_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -159,7 +159,7 @@ fn collect_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the readable text of a file: sources without tests, pictures as rows of text.
+/// Returns the readable text of a file. Source code is returned without tests, and a picture as lines of text.
 fn readable_text(path: &Path) -> Option<String> {
     let text = fs::read_to_string(path).ok()?;
     let name = path.file_name()?.to_str()?;
@@ -172,7 +172,7 @@ fn readable_text(path: &Path) -> Option<String> {
     }
 }
 
-/// Returns the text of a console picture without tags, one line per row.
+/// Returns the text of a console picture without SVG tags, one line per row of the console.
 fn svg_text(svg: &str) -> String {
     let (mut text, mut row) = (String::new(), "");
     for piece in svg.split("<text").skip(1) {

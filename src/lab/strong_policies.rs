@@ -1,6 +1,6 @@
 //! Strong handwritten policies, for comparison with other runs (docs/interfaces/policies.md#strong-policies).
 
-/// Names of the strong policies. They use the scenario's demand surges, as players do.
+/// Names of the strong policies. Strong policies play with the scenario's demand surges, as players do.
 pub const STRONG_POLICIES: [&str; 4] = ["ads-first", "enterprise-led", "harvest-late", "price-experimenting"];
 
 #[cfg(test)]
@@ -11,10 +11,10 @@ mod tests {
     use crate::{Collector, Policy, RunEnd, RunSpec, play};
     use novamind_record::folder::configuration::Configuration;
 
-    /// Seeds on which no strong policy was tuned; the second has a surge while enterprises sign.
+    /// Seeds on which no strong policy was tuned. The second seed has a demand surge while enterprises sign deals.
     const SEEDS: [u64; 2] = [113, 114];
 
-    /// Plays until day 70 of 500 and returns the cash in dollars.
+    /// Plays a policy until day 70 of 500 and returns the cash in dollars.
     fn cash_on_day_70(name: &str, seed: u64) -> f64 {
         let configuration = Configuration::bundled();
         let policy = Policy::find(name, &configuration).expect(name);

@@ -5,13 +5,13 @@ use serde_json::{Map, Value};
 
 use novamind_world::identifiers::{Channel, Group};
 
-/// Values of symbols.
+/// The symbols that policies can use, with their values.
 pub struct SymbolTable {
     known_groups: Vec<Group>,
 }
 
 impl SymbolTable {
-    /// Creates the symbols for a company that knows these groups.
+    /// Creates the symbols for a company that has discovered the groups in `known`.
     pub fn new(known: impl IntoIterator<Item = Group>) -> SymbolTable {
         SymbolTable { known_groups: known.into_iter().collect() }
     }
@@ -20,7 +20,7 @@ impl SymbolTable {
         self.known_groups.iter().copied().filter(|group| !group.is_initially_known())
     }
 
-    /// Returns the names that a symbol represents, or `None` if the text is not a symbol.
+    /// Returns the group IDs that a symbol represents, or `None` if the text is not a symbol.
     fn symbol_members(&self, text: &str) -> Option<Vec<String>> {
         let names =
             |groups: &mut dyn Iterator<Item = Group>| groups.map(|group| group.id().to_owned()).collect();
@@ -40,8 +40,8 @@ impl SymbolTable {
         })
     }
 
-    /// Expands arguments with symbols into calls: one per member of a symbol that is the value of an
-    /// argument. Returns no calls if any symbol is empty.
+    /// Expands arguments with symbols into the arguments of one or more calls. A symbol that is the value of an
+    /// argument produces one call per member. Returns no calls if a symbol is empty.
     pub fn resolve(&self, arguments: &Value) -> Vec<Value> {
         let Some(map) = arguments.as_object() else { return vec![arguments.clone()] };
         let mut calls = vec![Map::new()];
@@ -64,7 +64,7 @@ impl SymbolTable {
         calls.into_iter().map(Value::Object).collect()
     }
 
-    /// Expands the symbol keys of a map; explicit entries take precedence. Returns `None` if a symbol is empty.
+    /// Expands the symbols among the keys of a map. Explicit keys take precedence. Returns `None` if a symbol is empty.
     fn expand_map(&self, value: &Value) -> Option<Value> {
         let Some(map) = value.as_object() else { return Some(value.clone()) };
         let mut spread = Map::new();

@@ -8,11 +8,11 @@ use novamind_tools::ToolId;
 use novamind_world::identifiers::{Group, Plan};
 use novamind_world::params::Params;
 
-/// First day with ads.
+/// First day on which the routine advertises.
 const ADS_START_DAY: u32 = 20;
-/// First day of the second target group.
+/// First day on which the second target group receives development and ads.
 const SECOND_GROUP_START_DAY: u32 = 30;
-/// Returns the calls of the routine on a decision day, in order.
+/// Returns the calls of the routine on the current decision day, in order.
 pub fn routine_calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value)> {
     let seen = session.company().observe();
     let on = seen.cash > rules.cash_floor;
@@ -72,7 +72,6 @@ fn targeted_calls(rules: &RuleBased, seen: &Observation, on: bool, params: &Para
     ]
 }
 
-/// Returns the next capacity tier: one step towards the smallest that serves the week's mean usage at 80 % utilization.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! `next`: rationale, forecasts, a week (docs/interfaces/plain-mode.md#next).
+//! `next`: submits a rationale and forecasts, and simulates a week (docs/interfaces/plain-mode.md#next).
 
 use std::io;
 
@@ -18,31 +18,31 @@ use novamind_report::research::late_project_lines;
 use novamind_session::{Session, TIME_LIMIT_RATIONALE, WeekResult};
 use novamind_tools::{FORECAST_KEYS, Forecast, Rejection};
 
-/// The submission before a week.
+/// Rationale and forecasts that are submitted before a week.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WeekFiling {
-    /// Rationale and predictions in the form of the tool.
+    /// The command line contained the rationale and the predictions, or the lesson fills them in.
     Given {
-        /// Rationale.
+        /// Rationale as an argument of the tool `next_week`.
         rationale: Value,
-        /// Forecasts.
+        /// Forecasts as an argument of the tool `next_week`.
         predictions: Value,
-        /// Horizons that the naive projection filled.
+        /// Whether the forecast for each horizon is the naive forecast.
         naive: [bool; 4],
     },
-    /// The player must be asked.
+    /// The program must ask the player for rationale and forecasts.
     Ask,
 }
 
 impl WeekFiling {
-    /// Returns the submission after a time limit was reached.
+    /// Returns the submission that is used when a time limit is reached.
     pub fn for_time_limit(session: &Session) -> WeekFiling {
         let predictions = session.company().naive_forecasts().to_predictions();
         WeekFiling::Given { rationale: json!(TIME_LIMIT_RATIONALE), predictions, naive: [true; 4] }
     }
 }
 
-/// Reads the forms of the command.
+/// Parses the arguments of the command `next`.
 pub fn parse_filing(
     arguments: &[Argument],
     session: &Session,
@@ -52,7 +52,7 @@ pub fn parse_filing(
     let given =
         |rationale: Value, predictions: Value, naive| WeekFiling::Given { rationale, predictions, naive };
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
-    // The player need not type what the lesson fills in.
+    // The lesson can fill in naive forecasts, so that the player need not type them.
     let access = session.lesson().map(LessonProgress::access);
     let fills = access.is_some_and(LessonAccess::uses_naive_forecasts);
     let left_out = || if fills { (naive.to_predictions(), [true; 4]) } else { (Value::Null, [false; 4]) };
@@ -92,7 +92,7 @@ pub fn parse_filing(
     }
 }
 
-/// Returns a submission. `is_excluded` supplies the predictions if they were left out.
+/// Returns a submission. `left_out` supplies the predictions if `given` is null.
 fn fill_predictions(rationale: Value, given: Value, left_out: impl Fn() -> (Value, [bool; 4])) -> WeekFiling {
     let (predictions, naive) = if given.is_null() { left_out() } else { (given, [false; 4]) };
     WeekFiling::Given { rationale, predictions, naive }
@@ -109,7 +109,7 @@ fn check_argument_name(name: &str, column: usize) -> Result<(), ParseError> {
     })
 }
 
-/// Reads twelve numbers: point, lower, upper for four horizons.
+/// Parses twelve numbers: point, lower and upper for each of four horizons.
 fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, ParseError> {
     let wrong = |column, text: String| ParseError { text, column };
     if let Some(named) = std::iter::once(why).chain(numbers).find(|argument| argument.key.is_some()) {
@@ -153,7 +153,7 @@ pub fn advance_week(session: &mut Session, filing: WeekFiling) -> CommandRespons
     }
 }
 
-/// Returns the answer after a week or single days.
+/// Returns the response to a command that simulated a week or single days.
 pub fn week_response(command: &str, session: &Session, week: &WeekResult) -> CommandResponse {
     let figures = &week.figures;
     let done = if command == "next" {
@@ -172,7 +172,7 @@ pub fn week_response(command: &str, session: &Session, week: &WeekResult) -> Com
         signed_dollars(figures.cash_change)
     );
     if let Some(ended) = week.ended {
-        // Lessons have no score.
+        // A lesson has no score.
         let score = session.score().map_or(String::new(), |score| format!(" · score {}", dollars(score)));
         text += &format!("run ended: {} · day {}{score}\n", ended.id(), figures.day);
     }
@@ -182,7 +182,7 @@ pub fn week_response(command: &str, session: &Session, week: &WeekResult) -> Com
     CommandResponse::success(command, text, week.to_json())
 }
 
-/// Returns the answer at the end of a run whose result is hidden.
+/// Returns the response at the end of a run whose result is hidden from the participant.
 fn end_response(command: &str, session: &Session, week: &WeekResult) -> CommandResponse {
     let mut text = match session.manifest().is_practice() {
         true => "the practice is over; the session comes next\n".to_owned(),
@@ -195,7 +195,7 @@ fn end_response(command: &str, session: &Session, week: &WeekResult) -> CommandR
     CommandResponse::success(command, text, object)
 }
 
-/// Asks the player. Returns `None` if they cancel.
+/// Asks the player for rationale and forecasts. Returns `None` if the player cancels.
 ///
 /// # Errors
 /// The input or the prompt fails.
@@ -245,7 +245,7 @@ fn ask_rationale(input: &mut LineSource) -> io::Result<Option<String>> {
     }
 }
 
-/// Asks for one forecast. Also returns whether it is the naive one.
+/// Asks for one forecast. Also returns whether the player accepted the naive forecast.
 fn ask_forecast(input: &mut LineSource, weeks: u32, naive: Forecast) -> io::Result<Option<(Forecast, bool)>> {
     let whole = |value: f64| grouped_number(value, 0).replace(',', "");
     let text = format!(
@@ -285,11 +285,11 @@ fn parse_forecast(line: &str, horizon_days: u32) -> Result<Forecast, String> {
         Some([point, lower, upper]) => {
             Ok(Forecast { horizon_days, point: *point, lower: *lower, upper: *upper })
         }
-        _ => Err("give three numbers, point lower upper, for example 931000 902000 960000; or press enter for the naive ones".to_owned()),
+        _ => Err("give three numbers, point lower upper, for example 931000 902000 960000; or press enter for the naive numbers".to_owned()),
     }
 }
 
-/// Reads a line. Returns `None` for a dot and the end of input.
+/// Prompts for a line. Returns `None` for a dot and at the end of input.
 fn ask_line(input: &mut LineSource, text: &str) -> io::Result<Option<String>> {
     loop {
         show_prompt(text)?;
@@ -312,7 +312,7 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
     use novamind_session::{LessonEntry, NewRun};
 
-    /// Creates a lesson of two weeks in memory with this access.
+    /// Creates a lesson of two weeks in memory with these `access` settings.
     fn lesson_session(access: &str) -> Session {
         let place = tempfile::tempdir().expect("a folder");
         let file = place.path().join("two-weeks.toml");

@@ -1,4 +1,4 @@
-//! The commands of plain mode and their answers (docs/interfaces/plain-mode.md#commands).
+//! Executes the commands of plain mode (docs/interfaces/plain-mode.md#commands).
 
 mod breakpoints;
 mod check;
@@ -43,13 +43,13 @@ use novamind_session::{RunDatabase, Session, SettingChange, rows_to_json};
 use novamind_study::CodeCheck;
 use novamind_tools::{AnyTool, ToolId, ToolKind, ToolModule};
 
-/// Commands that simulate a week: the plain-mode command and the names of the tool.
+/// Names of the command that simulates a week, in plain mode and as a tool.
 const NEXT_WEEK_COMMANDS: [&str; 3] = ["next", "next-week", "next_week"];
 
-/// Commands that are not tools, with their help. Aliases have no help.
+/// Commands that are not tools, with their help. Aliases of commands have no help.
 const COMMANDS: &[(&str, &str)] = &[
     ("sql", "sql SELECT …             query the database (also: query)"),
-    ("queries", "queries [NAME]           list the library of queries, or run one of them"),
+    ("queries", "queries [NAME]           list the queries of the library, or run one query"),
     (
         "next",
         "next \"WHY\" naive          submit a rationale and forecasts, simulate a week (also: next-week)",
@@ -63,7 +63,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("thread", "thread NUMBER            show one thread, turn by turn"),
     (
         "rules",
-        "rules [send] RULES       preview what rules would send to waiting threads; with send, send it",
+        "rules [send] RULES       preview the replies of rules to waiting threads; with send, send them",
     ),
     (
         "needs",
@@ -79,9 +79,9 @@ const COMMANDS: &[(&str, &str)] = &[
         "curve GROUP [PRICE QUALITY] show the quality that leads require at a price, and the expected result of a price and a quality",
     ),
     ("changes", "changes                  list settings changed since the last week"),
-    ("check", "check CALL               preview the effect and cost of a call without making it"),
+    ("check", "check CALL               preview the effect and cost of a tool call"),
     ("undo", "undo                     undo the last setting of this week"),
-    ("redo", "redo                     redo what undo reverted"),
+    ("redo", "redo                     apply again the setting that undo reverted"),
     ("history", "history [N]              list the last N confirmed actions and weeks (20)"),
     ("report", "report [week|run]        report on the last week, or on the whole run"),
     (
@@ -90,11 +90,11 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     ("whatif", "whatif from WEEK: EDITS   re-simulate with other decisions; whatif WEEK lists the decisions"),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
-    ("tools", "tools [NAME]             list the tools, or show one of them"),
-    ("tables", "tables [NAME]            list the tables, or show one of them"),
+    ("tools", "tools [NAME]             list the tools, or show one tool"),
+    ("tables", "tables [NAME]            list the tables, or show one table"),
     ("explain", "explain TERM             explain a term, tool, argument, table or column (also: what)"),
-    ("glossary", "glossary [WORD]          list all terms, or those that contain a word"),
-    ("vars", "vars                     show the current day, as get_vars returns it"),
+    ("glossary", "glossary [WORD]          list all terms, or the terms that contain a word"),
+    ("vars", "vars                     show the current day, like the tool get_vars"),
     (
         "branch",
         "branch WEEK [keep]       continue in a branch from the start of that week; keep: with the decisions made since",
@@ -107,23 +107,29 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     (
         "lens",
-        "lens CUSTOMER [DAY]      the same: show the state of a customer, and what would have changed its decision",
+        "lens CUSTOMER [DAY]      debug and finished runs: show the state of a customer, and what would have changed its decision",
     ),
     (
         "break",
-        "break [CONDITION]        the same: stop run when a condition becomes true; list; break clear N|all removes",
+        "break [CONDITION]        debug and finished runs: list the breakpoints, or set one; break clear N|all removes them",
     ),
     ("run", "run DAYS [until …]       debug: simulate days until a breakpoint or the condition becomes true"),
     (
         "since",
         "since [CONDITION|N]      debug and finished runs: show since when a condition or a breakpoint is true or false",
     ),
-    ("find", "find CONDITION           the same: list the days on which a condition became true"),
+    (
+        "find",
+        "find CONDITION           debug and finished runs: list the days on which a condition became true",
+    ),
     (
         "who",
-        "who FIGURE [DAY]         the same: list the mechanisms that changed a figure on a day: who reputation(S3) 84, who cash",
+        "who FIGURE [DAY]         debug and finished runs: list the mechanisms that changed a figure on a day: who reputation(S3) 84, who cash",
     ),
-    ("diff", "diff DAY DAY             the same: list the differences between the ends of two days"),
+    (
+        "diff",
+        "diff DAY DAY             debug and finished runs: list the differences between the ends of two days",
+    ),
     (
         "lesson",
         "lesson [next]            lessons: show the task, its goals and their values; next: start the next part",
@@ -145,7 +151,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("what", ""),
 ];
 
-/// Commands that only show something. Their use is recorded.
+/// Commands that only show information. The use of these commands is recorded as activity.
 const READ_COMMANDS: &[&str] = &[
     "dashboard",
     "status",
@@ -167,24 +173,24 @@ const READ_COMMANDS: &[&str] = &[
 
 /// Executes commands on a session.
 pub struct Interpreter {
-    /// The run.
+    /// Session of the run that the player plays.
     pub session: Session,
     library: QueryLibrary,
     watch: SignalWatch,
-    /// Whether a person types and can be asked.
+    /// Whether a person types the lines and can answer questions.
     pub(super) is_interactive: bool,
-    /// Checks the experimenter's code. `None` if there is no experimenter.
+    /// Function that checks the experimenter's code. `None` if there is no experimenter.
     pub(super) code_check: Option<CodeCheck>,
     /// Whether the player is a participant of a study, for whom some commands are not available.
     pub(super) is_participant: bool,
-    /// Simulations of the last `why` question.
+    /// Cached simulations for the last `why` question.
     cached_causes: AnalysisCache<CauseAnalysis>,
-    /// Simulations of the last `whatif` question.
+    /// Cached simulations for the last `whatif` question.
     cached_branches: AnalysisCache<WhatIf>,
 }
 
 impl Interpreter {
-    /// Creates an interpreter. `prompts` states that a person types and can be asked.
+    /// Creates an interpreter for a session. `prompts` states whether a person types the lines and can answer questions.
     pub fn new(
         mut session: Session,
         library: QueryLibrary,
@@ -204,10 +210,10 @@ impl Interpreter {
         }
     }
 
-    /// Executes a line. Returns `None` for empty lines and comments.
+    /// Executes an input line. Returns `None` for empty lines and comments.
     ///
     /// # Errors
-    /// Reading the answer to a question fails.
+    /// The player's answer to a question cannot be read.
     pub fn execute_line(
         &mut self,
         line: &str,
@@ -236,9 +242,9 @@ impl Interpreter {
         Ok(Some(answer.with_word_from(line)))
     }
 
-    /// Executes a command that takes the rest of its line as text.
+    /// Executes a command whose argument is the rest of the line.
     fn execute_text_command(&mut self, word: &str, rest: &str, line: &str) -> CommandResponse {
-        // Columns are counted in the whole line.
+        // Errors report columns of the whole line.
         let column = line.trim_end().chars().count() - rest.chars().count() + 1;
         match grammar::current_name(word) {
             "inbox" => self.inbox_where(rest, column),
@@ -264,7 +270,7 @@ impl Interpreter {
     fn execute_query(&mut self, sql: &str, via: QuerySource) -> CommandResponse {
         let answer = self.session.up_to_date_database().and_then(RunDatabase::interrupt_handle).and_then(
             |interrupt| {
-                // From here on a signal stops this query, even though it has not started.
+                // After the ticket is issued, a signal stops the query even if the query has not started.
                 let ticket = interrupt.ticket();
                 self.watch.enter_query(interrupt);
                 self.session.query_as(Some(ticket), sql, via)
@@ -288,7 +294,7 @@ impl Interpreter {
         answer
     }
 
-    /// Records that the player viewed something.
+    /// Records a read-only command and its arguments as activity of the player.
     fn record_view(&mut self, word: &str, arguments: &[Argument]) {
         let words = arguments.iter().map(|argument| match &argument.value {
             Value::String(text) => text.clone(),
@@ -388,7 +394,7 @@ impl Interpreter {
         }
     }
 
-    /// Returns a warning if the started project ends after the last day.
+    /// Returns warnings for R&D projects that end after the last day.
     fn late_project_warnings(&self, started: &novamind_tools::Answer) -> Vec<String> {
         let novamind_tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
         let last_day = self.session.manifest().days;
@@ -429,7 +435,7 @@ impl Interpreter {
     }
 }
 
-/// Returns the tool of a name, with or without its module. `next_week` and `query` are separate commands.
+/// Finds a tool by its name, with or without its module. `next_week` and `query` are separate commands.
 fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),
@@ -441,7 +447,7 @@ fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
 
-/// Reads the arguments of a call. The error includes an example call.
+/// Converts the arguments of a tool call to a JSON object. Errors include an example call.
 fn parse_call_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, ParseError> {
     arguments_to_object(arguments, positional_argument(tool)).map_err(|problem| {
         let (spec, text) = (tool.spec(), problem.text);
@@ -449,14 +455,15 @@ fn parse_call_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> R
     })
 }
 
-/// Lists the restored changes, one per line.
+/// Formats a heading and the restored changes, one per line.
 fn describe_changes(what: &str, changes: &[SettingChange]) -> String {
     let lines: String =
         changes.iter().map(|change| format!("{}\n", overview::describe_setting_change(change))).collect();
     format!("{what}\n{lines}")
 }
 
-/// Returns the argument that may be given without its name: the only required one, the whole object, or the only one.
+/// Returns the name of the argument that may be given without a name. This is the only required argument, the tool's
+/// unnamed argument, or the only argument.
 fn positional_argument(tool: &'static dyn AnyTool) -> Option<&'static str> {
     let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
     let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
@@ -480,7 +487,7 @@ fn unknown_command(word: &str, column: usize) -> ParseError {
     }
     let near = similar_names(name, commands.chain(tools));
     let help = if near.is_empty() {
-        "; help lists them all".to_owned()
+        "; help lists all commands".to_owned()
     } else {
         format!("; did you mean {}?", near.join(" or "))
     };
@@ -502,7 +509,7 @@ fn expect_no_arguments(arguments: &[Argument]) -> Result<(), ParseError> {
     }
 }
 
-/// Parses at most one name.
+/// Parses an optional name as the only argument.
 fn optional_name(arguments: &[Argument]) -> Result<Option<&str>, ParseError> {
     match arguments {
         [] => Ok(None),
@@ -511,7 +518,7 @@ fn optional_name(arguments: &[Argument]) -> Result<Option<&str>, ParseError> {
     }
 }
 
-/// Parses at most one whole number from 1.
+/// Parses an optional whole number of at least 1 as the only argument.
 fn optional_count(arguments: &[Argument]) -> Result<Option<u32>, ParseError> {
     let number = |value: &Value| {
         value.as_u64().filter(|number| *number > 0).and_then(|number| u32::try_from(number).ok())

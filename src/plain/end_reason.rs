@@ -1,20 +1,20 @@
-//! The ends of a plain-mode session: names in answers, causes in the record, exit codes.
+//! Reasons why a plain-mode session ended, with their names in responses, causes in the record, and exit codes.
 
 use novamind_record::trajectory::record::LeavingCause;
 
-/// Number of the signal for a closed terminal.
+/// Number of the signal SIGHUP, which a closed terminal sends.
 const HANGUP: i32 = 1;
 
-/// How a session ended.
+/// Reason why a plain-mode session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndReason {
-    /// The player left.
+    /// The player entered `quit` or `exit`.
     Quit,
     /// The input ended.
     EndOfInput,
     /// A line was rejected with `--strict`.
     StrictRejection,
-    /// The trajectory of the run is no longer there.
+    /// The trajectory of the run was removed.
     RecordLost,
     /// A signal was received.
     Signal(i32),
@@ -25,7 +25,7 @@ pub enum EndReason {
 }
 
 impl EndReason {
-    /// Returns the name in answers.
+    /// Returns the name of the reason in responses.
     pub fn id(self) -> &'static str {
         match self {
             EndReason::Quit => "quit",
@@ -38,13 +38,13 @@ impl EndReason {
         }
     }
 
-    /// Returns the cause in the record.
+    /// Returns the cause that the record stores for this reason.
     pub fn leaving_cause(self) -> LeavingCause {
         match self {
             EndReason::Quit | EndReason::RunOver => LeavingCause::Quit,
             EndReason::EndOfInput => LeavingCause::EndOfInput,
             EndReason::StrictRejection => LeavingCause::Strict,
-            // Without its file the record cannot be written.
+            // The cause does not matter, because the record no longer has a file.
             EndReason::RecordLost => LeavingCause::Quit,
             EndReason::Signal(HANGUP) => LeavingCause::Hangup,
             EndReason::Signal(_) => LeavingCause::Signal,
@@ -52,7 +52,7 @@ impl EndReason {
         }
     }
 
-    /// Returns the exit code.
+    /// Returns the exit code of the program for this reason.
     pub fn exit_code(self) -> u8 {
         match self {
             EndReason::Quit | EndReason::EndOfInput | EndReason::RunOver | EndReason::Withdrawn => 0,

@@ -1,34 +1,34 @@
-//! The grammar of a line (docs/interfaces/plain-mode.md#grammar).
+//! Parses input lines of plain mode (docs/interfaces/plain-mode.md#grammar).
 
 use serde_json::{Map, Value};
 
 use novamind_base::formatting::arguments::LineParser;
 pub use novamind_base::formatting::arguments::{Argument, ParseError};
 
-/// A parsed line.
+/// A parsed input line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParsedLine {
     /// An empty line or a comment.
     Empty,
-    /// A command that takes the rest of the line as text.
+    /// A command whose argument is the rest of the line as text.
     TextCommand {
-        /// First word.
+        /// Name of the command, the first word of the line.
         word: String,
-        /// The rest, trimmed.
+        /// Trimmed text after the first word.
         rest: String,
     },
-    /// A command or tool with arguments.
+    /// A command or tool with parsed arguments.
     Call {
-        /// First word, as written.
+        /// Name of the command or tool, as written.
         word: String,
-        /// Column of the first word, from 1.
+        /// Column of the first word, counted from 1.
         column: usize,
-        /// Arguments in order.
+        /// Arguments in the order in which they were written.
         arguments: Vec<Argument>,
     },
 }
 
-/// Names of commands in earlier versions, which still work, with the current ones.
+/// Former names of commands, which still work, and their current names.
 pub const FORMER_NAMES: [(&str, &str); 2] = [("again", "retry"), ("back", "since")];
 
 /// Returns the current name of a command.
@@ -36,13 +36,13 @@ pub fn current_name(word: &str) -> &str {
     FORMER_NAMES.iter().find(|(former, _)| *former == word).map_or(word, |(_, current)| current)
 }
 
-/// Commands that take the rest of the line as text.
+/// Commands whose argument is the rest of the line as text.
 const TEXT_COMMANDS: [&str; 17] = [
     "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "whatif", "pause",
     "resume", "break", "run", "since", "find", "who",
 ];
 
-/// Reads a line.
+/// Parses an input line.
 pub fn parse_line(line: &str) -> Result<ParsedLine, ParseError> {
     let mut reader = LineParser::new(line);
     reader.skip_whitespace();
@@ -76,7 +76,7 @@ pub fn xray_statement(rest: &str) -> Option<&str> {
     (rest.is_empty() || rest.starts_with(char::is_whitespace)).then(|| rest.trim())
 }
 
-/// Returns the statement after `sql` and `query`: the text itself, or the only argument of a call of the tool.
+/// Returns the statement after `sql` or `query`. If the text is a single tool argument, returns the value of the argument.
 pub fn sql_statement(rest: &str) -> String {
     let is_call = rest.starts_with(['{', '(']) || rest.starts_with("sql=");
     if let Some(Ok(ParsedLine::Call { arguments, .. })) = is_call.then(|| parse_line(&format!("call {rest}")))
@@ -88,8 +88,8 @@ pub fn sql_statement(rest: &str) -> String {
     rest.to_owned()
 }
 
-/// Combines arguments into the object that a tool takes. A single unnamed object holds all of them; another single unnamed value is
-/// the argument `positional_argument`.
+/// Combines arguments into the argument object of a tool. A single unnamed object is returned unchanged. Any other
+/// single unnamed value becomes the argument `only_required`.
 pub fn arguments_to_object(arguments: &[Argument], only_required: Option<&str>) -> Result<Value, ParseError> {
     if let [Argument { key: None, value: Value::Object(map), .. }] = arguments {
         return Ok(Value::Object(map.clone()));
@@ -100,7 +100,7 @@ pub fn arguments_to_object(arguments: &[Argument], only_required: Option<&str>) 
             (Some(key), _) => key.clone(),
             (None, Some(required)) if arguments.len() == 1 => required.to_owned(),
             (None, _) => {
-                let text = "write an argument as name=value, or all of them as one {…}".to_owned();
+                let text = "write each argument as name=value, or all arguments as one {…}".to_owned();
                 return Err(ParseError { text, column: argument.column });
             }
         };
@@ -190,7 +190,7 @@ mod tests {
         for (line, column, part) in [
             ("set_prices A=12 A=13", 17, "twice"),
             ("set_prices(A=12", 16, "not closed"),
-            ("set_prices(A=12) B=3", 18, "closing bracket"),
+            ("set_prices(A=12) B=3", 18, "closing parenthesis"),
             ("set_prices A=", 14, "missing"),
             ("set_prices A=)", 14, "not )"),
             ("set_prices ,A=3", 12, "comma"),

@@ -1,42 +1,42 @@
-//! Reads lines: joins continued lines, removes byte order marks and carriage returns, and rejects long or invalid lines.
+//! Reads input lines. Joins continued lines, removes byte order marks and carriage returns, and rejects long or invalid lines.
 
 use std::io::{self, BufRead, Read as _};
 
 /// Maximum length of a line in bytes.
 const MAX_LINE_BYTES: usize = 1 << 20;
 
-/// The result of reading a logical line.
+/// The result of reading a logical line, which may consist of several joined lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum InputLine {
-    /// A line without its end. Continued lines are joined by line breaks.
+    /// A line without its line ending. Continued lines are joined by line breaks.
     Line(String),
     /// A line that cannot be read, with the reason.
     Unreadable(String),
-    /// The end of input.
+    /// The input has ended.
     End,
 }
 
-/// An input with line numbers.
+/// A source of input lines that counts lines.
 pub struct Input<R> {
     source: R,
     line_count: u32,
 }
 
 impl<R: BufRead> Input<R> {
-    /// Creates an input.
+    /// Creates an input that reads from a source.
     pub fn new(source: R) -> Input<R> {
         Input { source, line_count: 0 }
     }
 
-    /// Returns the number of the next line, from 1.
+    /// Returns the number of the next line, counted from 1.
     pub fn next_number(&self) -> u32 {
         self.line_count + 1
     }
 
-    /// Reads a logical line.
+    /// Reads a logical line, including its continuation lines.
     ///
     /// # Errors
-    /// The source fails.
+    /// The source cannot be read.
     pub fn read_line(&mut self) -> io::Result<InputLine> {
         let mut whole: Option<String> = None;
         loop {
@@ -59,7 +59,7 @@ impl<R: BufRead> Input<R> {
         }
     }
 
-    /// Reads one line of the source without joining.
+    /// Reads one line of the source without its continuation lines.
     fn read_physical_line(&mut self) -> io::Result<InputLine> {
         let mut bytes = Vec::new();
         let limit = MAX_LINE_BYTES as u64 + 2;

@@ -1,7 +1,7 @@
 //! Plain mode: the game line by line, for pipes, scripts and screen readers (docs/interfaces/plain-mode.md).
 //!
-//! Each line holds one command and is answered before the next one is read. There are no colors and no cursor movements. Every
-//! answer, including rejections, goes to standard output and ends with an empty line.
+//! Each line contains one command, and the response is printed before the next line is read. There are no colors and
+//! no cursor movements. Every response, including rejections, is printed to standard output and ends with an empty line.
 
 mod advance;
 mod commands;
@@ -37,11 +37,11 @@ use response::CommandResponse;
 /// Output options of plain mode.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct OutputStyle {
-    /// One JSON object per line.
+    /// Whether responses are printed as one JSON object per line.
     pub json: bool,
-    /// Print each input line before its answer.
+    /// Whether each input line is printed before the response.
     pub echo: bool,
-    /// Stop at the first rejected or invalid line.
+    /// Whether the session stops at the first rejected or invalid line.
     pub strict: bool,
 }
 
@@ -54,7 +54,7 @@ pub fn play(session: Session, library: QueryLibrary, style: OutputStyle) -> io::
     run_dialogue(session, library, style, None, &mut lines).map(|(end, _)| end.exit_code())
 }
 
-/// Answers lines until the player or the input ends.
+/// Executes lines until the player leaves or the input ends.
 fn run_dialogue(
     mut session: Session,
     library: QueryLibrary,
@@ -68,22 +68,22 @@ fn run_dialogue(
     interpreter.is_participant = study.is_some();
     let mut out = io::stdout();
     let end = command_loop(&mut interpreter, lines, &mut out, style, study);
-    // If the output fails, the player has gone.
+    // An output error means that the terminal or the reader of the output was closed.
     interpreter
         .session
         .activity()
         .detach(end.as_ref().map_or(LeavingCause::Hangup, |end| end.leaving_cause()));
-    // Every answer `ok` is already on disk. Only derived rows can be missing, and they can be rebuilt.
+    // Every confirmed change is already on disk. Only derived rows can be missing, which the program can rebuild.
     let _ = interpreter.session.save();
     let end = end?;
     if end == EndReason::Withdrawn {
-        // The run was erased, so nothing claims that it was saved.
+        // The run was erased, so do not print that it was saved.
         return Ok((end, interpreter.session));
     }
     let farewell =
         writeln!(out, "{}", farewell_text(&interpreter.session, style, end)).and_then(|()| out.flush());
     match end {
-        // The terminal may have gone.
+        // The terminal may be closed, so ignore output errors.
         EndReason::Signal(_) => {}
         _ => farewell?,
     }
@@ -152,7 +152,7 @@ fn command_loop(
     }
 }
 
-/// Asks the questions of a study that are due. Returns the end of the session if the participant leaves.
+/// Asks the study questions that are due. Returns the end of the session if the participant leaves.
 fn ask_questions(
     interpreter: &mut Interpreter,
     lines: &mut LineSource,
@@ -180,7 +180,7 @@ fn confirm_withdrawal(style: OutputStyle, lines: &mut LineSource) -> io::Result<
     Ok(matches!(lines.read_line()?, InputLine::Line(line) if line.trim() == "withdraw"))
 }
 
-/// Shows a prompt on a stream that the user sees.
+/// Shows a prompt on an output stream that is visible to the user.
 fn show_prompt(text: &str) -> io::Result<()> {
     let write = |out: &mut dyn Write| out.write_all(text.as_bytes()).and_then(|()| out.flush());
     if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }
@@ -216,7 +216,7 @@ fn greet(out: &mut io::Stdout, session: &Session, style: OutputStyle) -> io::Res
     out.flush()
 }
 
-/// Returns the seed after the run id, or nothing if it is hidden.
+/// Formats the seed that follows the run id. Returns an empty text if the seed is hidden.
 fn describe_seed(seed: Option<u64>) -> String {
     seed.map_or(String::new(), |seed| format!(" · seed {seed}"))
 }

@@ -8,20 +8,20 @@ use super::end_reason::EndReason;
 use super::input::{Input, InputLine};
 use super::signals::{Phase, SignalWatch};
 
-/// An event that ends a wait.
+/// An event that ends the wait for a line.
 enum Event {
-    /// A line with its number.
+    /// The number of a line, and the result of reading the line.
     Line(u32, io::Result<InputLine>),
-    /// A signal that asks to leave.
+    /// A signal that ends the session.
     Signal(i32),
 }
 
-/// Input lines, each read on request.
+/// A source of input lines. A separate thread reads each line on request.
 pub struct LineSource {
     requests: Sender<()>,
     events: Receiver<Event>,
     watch: SignalWatch,
-    /// A line was requested and has not arrived.
+    /// Whether a line has been requested and has not arrived yet.
     is_requested: bool,
     number: u32,
 }
@@ -45,17 +45,17 @@ impl LineSource {
         LineSource { requests: wanted, events, watch, is_requested: false, number: 1 }
     }
 
-    /// Returns the signal watch.
+    /// Returns the signal watch of the session.
     pub fn watch(&self) -> SignalWatch {
         self.watch.clone()
     }
 
-    /// Returns how the session ends when there are no more lines.
+    /// Returns the reason for which the session ends when no more lines are available.
     pub fn end_reason(&self) -> EndReason {
         self.watch.caught_signal().map_or(EndReason::EndOfInput, EndReason::Signal)
     }
 
-    /// Returns the number of the last line read, from 1.
+    /// Returns the number of the last line that was read, counted from 1.
     pub fn number(&self) -> u32 {
         self.number
     }
@@ -65,10 +65,10 @@ impl LineSource {
         self.is_requested
     }
 
-    /// Waits for a line. Returns the end of input after a signal, which the watch reports.
+    /// Waits for a line. After a signal, returns the end of input; the signal watch reports the signal.
     ///
     /// # Errors
-    /// The source fails.
+    /// Standard input cannot be read.
     pub fn read_line(&mut self) -> io::Result<InputLine> {
         loop {
             if let Some(read) = self.read_line_timeout(None)? {
@@ -77,16 +77,16 @@ impl LineSource {
         }
     }
 
-    /// Waits for a line at most for a duration. Returns `None` if none arrived.
+    /// Waits for a line for at most this duration. Returns `None` if no line has arrived.
     ///
     /// # Errors
-    /// The source fails.
+    /// Standard input cannot be read.
     pub fn read_line_timeout(&mut self, at_most: Option<Duration>) -> io::Result<Option<InputLine>> {
         if self.watch.caught_signal().is_some() {
             return Ok(Some(InputLine::End));
         }
         if !std::mem::replace(&mut self.is_requested, true) {
-            // The thread ends with the program.
+            // Sending cannot fail, because the reading thread runs until the program ends.
             let _ = self.requests.send(());
         }
         if !self.watch.enter_prompt() {

@@ -1,4 +1,4 @@
-//! A participant's session in a study, line by line: label, consent, practice, session, questions, thanks.
+//! Guides a participant through a study in plain mode: label, consent, practice, session, questions and thanks.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use novamind_study::{DECLINED_NOTICE, NextStep, ParticipantSession, Study};
 
 /// The reason why a visit ends early.
 enum SessionStop {
-    /// The participant or the input left, with the exit code.
+    /// The participant left or the input ended. The value is the exit code.
     Left(u8),
     /// A run or a file cannot be read.
     Run(RunError),
@@ -60,10 +60,10 @@ pub fn run_participant_session(
     }
 }
 
-/// Columns of wrapped text.
+/// Line width of wrapped text in columns.
 const TEXT_COLUMNS: usize = 78;
 
-/// How to leave a run of a study.
+/// Explanation of how to leave or interrupt a run of a study.
 const LEAVE_HELP: &str = "quit leaves the run; everything confirmed is saved.\n\
                         withdraw erases everything you did in this study. Both also work at questions.\n\
                         pause stops the clock for a break, resume restarts it.";
@@ -82,7 +82,7 @@ impl SessionHost<'_> {
         let visit = self.ask_label(study, runs)?;
         loop {
             let step = match visit.next_step()? {
-                // Consent is recorded in the first run, which does not exist yet.
+                // The participant has agreed. Consent is recorded in the first run, which does not exist yet.
                 NextStep::Consent(_) if self.consent.is_some() => visit.next_step_after_consent()?,
                 step => step,
             };
@@ -118,7 +118,7 @@ impl SessionHost<'_> {
         }
     }
 
-    /// Asks for the label until it is valid.
+    /// Asks for the participant's label until the label is valid.
     fn ask_label(&mut self, study: Study, runs: &Path) -> Result<ParticipantSession, SessionStop> {
         let mut refused = 0;
         loop {
@@ -185,7 +185,7 @@ impl SessionHost<'_> {
         self.play_run(visit, session)
     }
 
-    /// Asks until one of two words is typed. Returns `None` if the participant withdrew.
+    /// Repeats a question until the participant types one of two words. Returns `None` if the participant withdrew.
     fn ask_choice(
         &mut self,
         visit: &ParticipantSession,
@@ -233,13 +233,13 @@ impl SessionHost<'_> {
         })
     }
 
-    /// Plays a run until it is over and its questions are answered, or the participant leaves.
+    /// Plays a run until the run is over and all questions are answered, or the participant leaves.
     fn play_run(&mut self, visit: &ParticipantSession, session: Session) -> Result<(), SessionStop> {
         let library = QueryLibrary::load(self.configuration);
         let (end, session) =
             run_dialogue(session, library, self.style, Some(visit.study()), &mut self.lines)?;
         let goes_on = session.ended().is_some() && visit.study().due_questions(&session).is_empty();
-        // The run must be closed before it can be erased.
+        // Close the run, because an open run cannot be erased.
         drop(session);
         match end {
             EndReason::Withdrawn => Ok(visit.withdraw()?),
@@ -286,7 +286,7 @@ impl SessionHost<'_> {
     }
 }
 
-/// Returns whether a line asks to leave.
+/// Returns whether a line is `quit` or `exit`.
 fn is_quit(line: &str) -> bool {
     matches!(line.trim(), "quit" | "exit")
 }

@@ -1,4 +1,4 @@
-//! Stopping the clock, and time limits, in plain mode.
+//! The stopped clock and the time limits in plain mode.
 
 use std::time::Duration;
 
@@ -12,13 +12,13 @@ use novamind_record::trajectory::record::{Limit, LimitEvent};
 use novamind_session::TIME_LIMIT_RATIONALE;
 use novamind_tools::Rejection;
 
-/// Commands that work while the clock is stopped.
+/// Commands that are allowed while the clock is stopped.
 const ALLOWED_WHILE_PAUSED: [&str; 4] = ["resume", "help", "quit", "exit"];
-/// Interval between checks of the limits while waiting for a line.
+/// Interval between checks of the time limits while waiting for a line.
 const LIMIT_CHECK_INTERVAL: Duration = Duration::from_secs(1);
 
 impl Interpreter {
-    /// `pause [REASON]`.
+    /// Executes `pause [REASON]`.
     pub(super) fn pause(&mut self, reason: &str) -> CommandResponse {
         match self.session.activity().stop_clock(Some(reason)) {
             Ok(()) => {
@@ -29,11 +29,11 @@ impl Interpreter {
         }
     }
 
-    /// `resume`, with the experimenter's code if a limit stopped the clock.
+    /// Executes `resume`. If a time limit stopped the clock, the experimenter's code is required.
     pub(super) fn resume(&mut self, code: &str) -> CommandResponse {
         let right = self.code_check.as_ref().is_none_or(|check| check(code));
         if self.session.log().is_stopped_by_limit() && !right {
-            let text = "the time limit is reached; the experimenter starts the clock with resume CODE";
+            let text = "the time limit is reached; the experimenter restarts the clock with resume CODE";
             return CommandResponse::rejected("resume", Rejection::new("code_needed", text));
         }
         match self.session.activity().start_clock() {
@@ -45,7 +45,7 @@ impl Interpreter {
         }
     }
 
-    /// Rejects commands that show the run or act on it while the clock is stopped.
+    /// Rejects commands that show or change the run while the clock is stopped.
     pub(super) fn reject_while_paused(&self, line: &ParsedLine) -> Option<CommandResponse> {
         let word = match line {
             ParsedLine::Empty => return None,
@@ -58,7 +58,7 @@ impl Interpreter {
         Some(CommandResponse::rejected(word, Rejection::new("clock_stopped", text)))
     }
 
-    /// Reports limits that are near or reached, and applies their consequences.
+    /// Reports time limits that are near or reached, and applies the consequences of reached limits.
     pub(super) fn check_limits(&mut self) -> Vec<CommandResponse> {
         let limits = self.session.activity().check_limits();
         limits.into_iter().flat_map(|limit| self.apply_limit(&limit)).collect()
@@ -89,13 +89,13 @@ impl Interpreter {
         }
     }
 
-    /// Returns how long to wait for a line before the limits are checked again. Returns `None` if there are no limits.
+    /// Returns the time to wait for a line before the time limits are checked again. Returns `None` if there are no limits.
     pub(super) fn limit_check_timeout(&self) -> Option<Duration> {
         let limits = !self.session.log().time_left().is_empty() && !self.session.log().is_clock_stopped();
         limits.then_some(LIMIT_CHECK_INTERVAL)
     }
 
-    /// Returns the prompt.
+    /// Returns the text of the prompt, with the day and the state of the clock.
     pub(super) fn prompt_text(&self) -> String {
         if self.session.log().is_clock_stopped() {
             return "clock stopped> ".to_owned();

@@ -1,4 +1,4 @@
-//! Questions of a study, asked between the commands.
+//! Asks the questions of a study between commands.
 
 use std::io::{self, Write};
 
@@ -13,7 +13,8 @@ use novamind_record::clock::monotonic_time;
 use novamind_session::Session;
 use novamind_study::{AnswerFormat, DueQuestion, Study};
 
-/// Asks all questions that are due. Returns the end of the session if the participant leaves before answering all of them.
+/// Asks all questions that are due. Returns the reason for the end of the session if the participant leaves before
+/// answering all questions.
 ///
 /// # Errors
 /// Standard input or output fails.
@@ -42,7 +43,7 @@ pub(super) fn ask_due_questions(
     Ok(None)
 }
 
-/// Reads lines until one is an answer or leaves. Unlike in the console, an answer cannot be changed.
+/// Reads lines until the participant gives a valid answer or leaves. Unlike in the console, an answer cannot be changed.
 fn ask_question(
     due: &DueQuestion,
     session: &mut Session,
@@ -81,7 +82,7 @@ fn ask_question(
     }
 }
 
-/// Prints why a line is not an answer.
+/// Prints why a line is not a valid answer.
 fn show_invalid_answer(due: &DueQuestion, problem: &str, style: OutputStyle) -> io::Result<()> {
     if style.json {
         println!("{}", json!({ "event": "question_refused", "id": due.question.id, "error": problem }));
@@ -119,7 +120,7 @@ fn show_question(due: &DueQuestion, style: OutputStyle) -> io::Result<()> {
     io::stdout().flush()
 }
 
-/// Returns the choices, one per line.
+/// Returns the choices of a question, one text per choice.
 fn list_choices(form: &AnswerFormat) -> Vec<String> {
     match form {
         AnswerFormat::Likert { points, low, high } => {
@@ -133,7 +134,7 @@ fn list_choices(form: &AnswerFormat) -> Vec<String> {
     }
 }
 
-/// Describes valid answers, as the error for an invalid one does.
+/// Describes valid answers with the same words as the error for an invalid answer.
 fn describe_expected_answer(form: &AnswerFormat) -> String {
     form.parse_answer("").err().unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! Answers as text and as JSON (docs/interfaces/plain-mode.md#answers).
+//! Responses to commands, as text and as JSON (docs/interfaces/plain-mode.md#answers).
 
 use serde_json::{Map, Value, json};
 
@@ -6,45 +6,46 @@ use novamind_base::formatting::normalize_json_numbers;
 use novamind_database::text::align_columns;
 use novamind_tools::Rejection;
 
-/// The answer to a line.
+/// The response to an input line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CommandResponse {
     /// The command succeeded.
     Success {
-        /// Command.
+        /// Name of the executed command.
         command: String,
-        /// Complete text.
+        /// Complete text of the response.
         text: String,
-        /// Data.
+        /// Data of the response for JSON output.
         data: Value,
     },
-    /// The command was rejected. Nothing changed.
+    /// The command was rejected. The run is unchanged.
     Rejected {
-        /// Command.
+        /// Name of the rejected command.
         command: String,
-        /// The reason.
+        /// Code and reason of the rejection.
         rejection: Rejection,
     },
-    /// The line could not be read.
+    /// The line has a syntax error.
     SyntaxError {
-        /// The problem, with similar names.
+        /// Description of the error, with suggestions of similar names.
         problem: String,
-        /// Column, from 1.
+        /// Column of the error, counted from 1.
         column: usize,
-        /// The word at this column, if the problem does not name it.
+        /// The word at this column, if the description does not name the word.
         word: Option<String>,
     },
-    /// The line was `quit`.
+    /// The player entered `quit` or `exit`.
     Quit,
 }
 
 impl CommandResponse {
-    /// Returns the answer of a command with text and data.
+    /// Returns the response of a successful command.
     pub fn success(command: &str, text: String, data: Value) -> CommandResponse {
         CommandResponse::Success { command: command.to_owned(), text, data }
     }
 
-    /// Returns the answer of an accepted tool call: the fields of its data, or of `shown` in the text.
+    /// Returns the response of an accepted tool call. The text lists the fields of `shown` if given, otherwise the
+    /// fields of `data`.
     pub fn tool_result(command: &str, data: Value, shown: Option<Value>) -> CommandResponse {
         let mut text = format!("ok {command}\n");
         match normalize_json_numbers(shown.unwrap_or_else(|| data.clone())) {
@@ -57,7 +58,7 @@ impl CommandResponse {
         CommandResponse::success(command, text, data)
     }
 
-    /// Appends notes to the text. The data does not change.
+    /// Appends notes to the text of the response. The data does not change.
     pub fn with_notes(mut self, notes: &[String]) -> CommandResponse {
         if let CommandResponse::Success { text, .. } = &mut self {
             notes.iter().for_each(|note| *text += &format!("note: {note}\n"));
@@ -65,17 +66,17 @@ impl CommandResponse {
         self
     }
 
-    /// Returns the answer of a rejected command.
+    /// Returns the response of a rejected command.
     pub fn rejected(command: &str, refusal: Rejection) -> CommandResponse {
         CommandResponse::Rejected { command: command.to_owned(), rejection: refusal }
     }
 
-    /// Returns the answer to a line that cannot be read.
+    /// Returns the response to a line with a syntax error.
     pub fn syntax_error(problem: impl Into<String>, column: usize) -> CommandResponse {
         CommandResponse::SyntaxError { problem: shorten_long_words(&problem.into()), column, word: None }
     }
 
-    /// Adds the word of the line that is wrong.
+    /// Adds the word at the column of a syntax error.
     pub fn with_word_from(self, line: &str) -> CommandResponse {
         let CommandResponse::SyntaxError { problem, column, .. } = self else { return self };
         let bare = |word: &str| word.trim_matches([',', ';', ':', '?', '.']).to_owned();
@@ -90,12 +91,12 @@ impl CommandResponse {
         matches!(self, CommandResponse::Success { .. })
     }
 
-    /// Returns whether the session ends.
+    /// Returns whether the command ends the session.
     pub fn is_quit(&self) -> bool {
         matches!(self, CommandResponse::Quit)
     }
 
-    /// Formats the answer as text.
+    /// Formats the response as text.
     pub fn to_text(&self) -> String {
         match self {
             CommandResponse::Success { text, .. } => text.clone(),
@@ -114,7 +115,8 @@ impl CommandResponse {
         }
     }
 
-    /// Formats the answer as one object. `day` is the day on which the line was read.
+    /// Converts the response to one JSON object. `line` is the line number, and `day` is the day of the run when the
+    /// line was read.
     pub fn to_json(&self, line: u32, day: u32) -> Value {
         match self {
             CommandResponse::Success { command, data, .. } => {
@@ -156,7 +158,7 @@ fn word_at(line: &str, column: usize) -> String {
     if word.is_empty() { "the end of the line".to_owned() } else { word }
 }
 
-/// Formats a field of an answer. A list of objects becomes a table.
+/// Formats a field of the data as text. A list of objects becomes a table.
 fn format_field(name: &str, value: &Value) -> String {
     match value.as_array() {
         Some(list) if !list.is_empty() && list.iter().all(Value::is_object) => {
@@ -185,7 +187,7 @@ fn format_table(list: &[Value]) -> String {
     align_columns(&columns, &rows)
 }
 
-/// Shortens long words, because a problem quotes the input, which may be a pasted file.
+/// Shortens long words. An error message quotes the input, which may be a pasted file.
 fn shorten_long_words(text: &str) -> String {
     const MAX_WORD_CHARACTERS: usize = 80;
     let cut = |word: &str| match word.char_indices().nth(MAX_WORD_CHARACTERS) {

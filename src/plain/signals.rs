@@ -1,40 +1,41 @@
-//! Ctrl-c and termination: cancels a query or a simulation, waits for the end of a week, and leaves a prompt at once.
+//! Handles ctrl-c and termination signals. A signal cancels a query or a simulation, waits for the end of a week, and
+//! leaves a prompt immediately.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use novamind_database::Interrupt;
 
-/// The current activity of plain mode.
+/// The current activity of plain mode, which determines the effect of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// Waiting for a line.
+    /// Plain mode waits for a line.
     Prompt,
-    /// Working on something that ends soon.
+    /// Plain mode executes a command that ends soon and cannot be stopped.
     Working,
-    /// Querying the database.
+    /// Plain mode queries the database.
     Query,
-    /// Running a simulation that can be stopped.
+    /// Plain mode runs a simulation that can be stopped.
     Simulation,
 }
 
-/// Watches for signals.
+/// Handle of the thread that watches for signals.
 #[derive(Clone)]
 pub struct SignalWatch(Arc<Mutex<WatchState>>);
 
 struct WatchState {
     phase: Phase,
     interrupt: Option<Interrupt>,
-    /// Stops the simulation.
+    /// Flag that stops the running simulation.
     stop: Arc<AtomicBool>,
     caught: Option<i32>,
-    /// Whether a signal asked to leave the prompt.
+    /// Whether a signal that ends the wait at the prompt was received.
     leaving: bool,
 }
 
 impl SignalWatch {
-    /// Starts watching. `prompt` is called for signals at a prompt. If signals cannot be watched, they end the program, which loses
-    /// nothing.
+    /// Starts to watch for signals. `prompt` is called for signals at a prompt. If signals cannot be watched, a signal
+    /// ends the program, and no confirmed data is lost.
     pub fn start(prompt: impl Fn(i32) + Send + 'static) -> SignalWatch {
         let state = WatchState {
             phase: Phase::Working,
@@ -67,7 +68,7 @@ impl SignalWatch {
     fn handle(&self, signal: i32, by_key: bool, prompt: &impl Fn(i32)) {
         let mut state = self.state();
         if state.leaving {
-            // A hanging disk only blocks the last line; everything confirmed is already written.
+            // A second signal ends the program. Only the last line can be lost; everything confirmed is already written.
             std::process::exit(128 + signal);
         }
         if state.phase == Phase::Prompt {
@@ -90,12 +91,12 @@ impl SignalWatch {
         state.caught = Some(signal);
     }
 
-    /// Sets the current activity.
+    /// Sets the current activity of plain mode.
     pub fn set_phase(&self, phase: Phase) {
         self.state().phase = phase;
     }
 
-    /// Sets the activity to waiting for a line. Returns false if a signal came before, because nothing would end the wait.
+    /// Sets the activity to waiting for a line. Returns false if a signal arrived before, because the wait would not end.
     pub fn enter_prompt(&self) -> bool {
         let mut state = self.state();
         let waits = state.caught.is_none();
@@ -105,13 +106,13 @@ impl SignalWatch {
         waits
     }
 
-    /// Sets the activity to a query, which `interrupt` stops.
+    /// Sets the activity to a query. A signal stops the query through `interrupt`.
     pub fn enter_query(&self, interrupt: Interrupt) {
         let mut state = self.state();
         (state.phase, state.interrupt) = (Phase::Query, Some(interrupt));
     }
 
-    /// Sets the activity to a simulation. The returned flag becomes true when it must stop.
+    /// Sets the activity to a simulation. The returned flag becomes true when the simulation must stop.
     pub fn enter_stoppable(&self) -> Arc<AtomicBool> {
         let mut state = self.state();
         (state.phase, state.stop) = (Phase::Simulation, Arc::default());
@@ -123,7 +124,7 @@ impl SignalWatch {
         self.state().caught = Some(signal);
     }
 
-    /// Returns the signal that asked to leave, if any.
+    /// Returns the signal that ends the session, if a signal was received.
     pub fn caught_signal(&self) -> Option<i32> {
         self.state().caught
     }

@@ -1,18 +1,18 @@
-//! Answered questions of a study, read from the record of a run, and the number of breaks.
+//! Questions of a study that a participant has answered, and the number of breaks, both read from the record of a run.
 
 use std::collections::BTreeSet;
 
 use crate::trajectory::record::{Activity, ClockEvent, PresenceEvent, QuestionAnswer};
 use crate::trajectory::{Line, Record};
 
-/// The questions of a study that a run has answered.
+/// The study questions that were answered in a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct AnsweredQuestions {
     /// Questionnaire, occasion and question of each answer.
     answers: BTreeSet<(String, String, String)>,
     /// Number of times the participant reopened the run or restarted the clock.
     pub break_count: u32,
-    /// Whether an `opened` line was read before.
+    /// Whether an `opened` line has already been read.
     was_opened: bool,
 }
 
@@ -28,7 +28,7 @@ impl AnsweredQuestions {
         book
     }
 
-    /// Updates the answers and breaks with one activity.
+    /// Updates the answers and the break count from one activity.
     pub fn record_activity(&mut self, activity: &Activity) {
         match activity {
             Activity::Answer(answer) => {

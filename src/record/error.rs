@@ -1,4 +1,4 @@
-//! Errors that concern a whole run. Messages name the file and line, the data that is safe, and the next step.
+//! Errors that concern a whole run. Their messages name the file and line, the data that is safe, and the next step.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ pub enum RunError {
     /// A file cannot be read or written.
     #[error("{path}: {error}", path = .path.display())]
     Io {
-        /// File or folder.
+        /// Path of the file or folder.
         path: PathBuf,
         /// Error of the operating system.
         error: std::io::Error,
@@ -27,7 +27,7 @@ pub enum RunError {
         path: PathBuf,
         /// Line number, from 1.
         line: usize,
-        /// The defect.
+        /// Description of the defect.
         problem: String,
         /// The data that is still valid, and the next step.
         remedy: String,
@@ -35,7 +35,7 @@ pub enum RunError {
     /// A manifest or configuration is invalid.
     #[error("{0}")]
     Configuration(#[from] ParameterError),
-    /// The run was recorded with parameters that differ from those of this program.
+    /// The run was recorded with parameters that differ from the parameters of this program.
     #[error(
         "run {id} was recorded by version {version} with parameters {recorded}, but this program has {expected}. \
          Nothing was changed; open the run with that version"
@@ -45,12 +45,12 @@ pub enum RunError {
         id: String,
         /// Version that recorded the run.
         version: String,
-        /// Digest in the manifest.
+        /// Parameter digest in the manifest.
         recorded: String,
-        /// Digest of the parameters as loaded by this program.
+        /// Digest of the parameters that this program loaded.
         expected: String,
     },
-    /// The run was recorded with mechanics that differ from those of this program.
+    /// The run was recorded with mechanics that differ from the mechanics of this program.
     #[error(
         "run {id} was recorded by version {version} with mechanics {recorded}, but this program has \
          mechanics {expected}. Nothing was changed; open the run with that version"
@@ -65,7 +65,7 @@ pub enum RunError {
         /// Mechanics number of this program.
         expected: u32,
     },
-    /// The participant has to agree to the consent text first.
+    /// The participant has not agreed to the consent text yet.
     #[error("{}", .0.instructions())]
     ConsentNeeded(ConsentText),
     /// The run has a format that this program cannot read.
@@ -76,9 +76,9 @@ pub enum RunError {
     OtherFormat {
         /// Id of the run.
         id: String,
-        /// Format in the manifest.
+        /// Format number in the manifest.
         format: u32,
-        /// Format of this program.
+        /// Format number of this program.
         known: u32,
     },
     /// Another program is writing the run.
@@ -88,22 +88,22 @@ pub enum RunError {
     InUse {
         /// Id of the run.
         id: String,
-        /// Process that holds the lock.
+        /// Process that has locked the run.
         holder: String,
     },
-    /// The trajectory was moved, removed, linked or changed while the run was open.
+    /// The trajectory file was moved, removed, hard-linked or changed while the run was open.
     #[error(
         "your decisions are no longer on disk: {path} was moved, removed or linked, or another program has written to it. \
-        Nothing more will be saved. {}", describe_saved_copy(.saved_copy), path = .path.display()
+        No more decisions will be saved. {}", describe_saved_copy(.saved_copy), path = .path.display()
     )]
     FileReplaced {
         /// Path of the trajectory.
         path: PathBuf,
-        /// The file to which all confirmed lines were copied, or the error of copying them.
+        /// Path of the copy of all confirmed lines, or the error message if they could not be copied.
         saved_copy: Result<PathBuf, String>,
     },
-    /// The program panicked while it closed a run.
-    #[error("the program has a defect and failed while it closed run {run}. {}", describe_saved_lines(run, folder.as_deref()))]
+    /// The program panicked while closing a run.
+    #[error("the program has a defect and failed while closing run {run}. {}", describe_saved_lines(run, folder.as_deref()))]
     Defect {
         /// Id of the run.
         run: String,
@@ -112,8 +112,8 @@ pub enum RunError {
     },
     /// The folder of a run is not writable.
     #[error(
-        "run {id} cannot be written ({error}): its folder {folder} is on read-only media or belongs to another user; \
-        open it read-only with `novamind play --run {id} --watch`, or copy it to a folder that you can write",
+        "run {id} cannot be written ({error}): its folder {folder} is read-only or belongs to another user; open the \
+         run read-only with `novamind play --run {id} --watch`, or copy it to a folder that you can write",
         folder = .folder.display()
     )]
     NotWritable {
@@ -124,8 +124,8 @@ pub enum RunError {
         /// Error of the operating system.
         error: std::io::Error,
     },
-    /// The folder has no runs, so there is no latest one.
-    #[error("no runs yet in {folder}; `novamind play` starts one", folder = .folder.display())]
+    /// The folder has no runs, so there is no latest run.
+    #[error("there are no runs in {folder} yet; start a run with `novamind play`", folder = .folder.display())]
     NoRuns {
         /// Folder that was searched.
         folder: PathBuf,
@@ -133,7 +133,7 @@ pub enum RunError {
     /// The run does not exist.
     #[error("there is no run {id} in {folder}; `novamind runs` lists the runs", folder = .folder.display())]
     NotFound {
-        /// Requested id.
+        /// Run id that the user requested.
         id: String,
         /// Folder that was searched.
         folder: PathBuf,
@@ -143,65 +143,65 @@ pub enum RunError {
     InvalidArchive {
         /// Path of the archive.
         path: PathBuf,
-        /// The defect, with the name of the file inside the archive.
+        /// Description of the defect, with the name of the file inside the archive.
         problem: String,
         /// The data that is still valid, and the next step.
         remedy: String,
     },
-    /// A file or run would be overwritten.
+    /// The operation would overwrite an existing file or run.
     #[error("{0}")]
     AlreadyExists(String),
     /// The scenario does not exist.
     #[error("there is no scenario {name}; the scenarios are {known}")]
     UnknownScenario {
-        /// Requested name.
+        /// Scenario name that the user requested.
         name: String,
-        /// Existing names, separated by commas.
+        /// Names of the existing scenarios, separated by commas.
         known: String,
     },
     /// The lesson does not exist.
     #[error("there is no lesson {name}; the lessons are {known}")]
     UnknownLesson {
-        /// Requested name.
+        /// Lesson name that the user requested.
         name: String,
-        /// Existing names, separated by commas.
+        /// Names of the existing lessons, separated by commas.
         known: String,
     },
     /// The run cannot be started with these options.
     #[error("{0}")]
     InvalidRequest(String),
-    /// The database cannot be written.
+    /// The SQL tables of the run cannot be written.
     #[error("{0}")]
     Projection(#[from] ProjectionError),
 }
 
-/// Returns where the confirmed lines are, and the next step.
+/// Describes where the confirmed lines were saved, and the next step.
 fn describe_saved_copy(kept: &Result<PathBuf, String>) -> String {
     match kept {
         Ok(file) => format!(
-            "Everything confirmed so far is in {}. Leave the program. If trajectory.jsonl is gone, rename this file to it and open \
+            "All confirmed lines are in {}. Quit the program. If trajectory.jsonl is gone, rename this file to it and open \
             the run again; if it exists, keep both files and inform the experimenter",
             file.display()
         ),
         Err(problem) if problem.is_empty() => {
-            "Leave the program, and look for the file before you open the run again".to_owned()
+            "Quit the program, and find the file before you open the run again".to_owned()
         }
         Err(problem) => format!(
-            "A copy could not be written either ({problem}). Leave the program, and look for the file before you open the \
-            run again"
+            "A copy could not be written either ({problem}). Quit the program, and find the file before you open the \
+             run again"
         ),
     }
 }
 
-/// Returns what is safe after a defect, and the next step.
+/// Describes which data is safe after a defect, and the next step.
 fn describe_saved_lines(run: &str, folder: Option<&Path>) -> String {
     match folder {
         Some(folder) => format!(
-            "Everything that was confirmed is in {}. Open the run again with `novamind play --run {run}`: the program rebuilds \
-            the other files from that file",
+            "All confirmed lines are in {}. Open the run again with `novamind play --run {run}`: the program rebuilds \
+             the other files from that file",
             folder.join("trajectory.jsonl").display()
         ),
-        None => "It was only in memory and is gone".to_owned(),
+        None => "The run was only in memory and is lost".to_owned(),
     }
 }
 

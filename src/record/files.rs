@@ -1,6 +1,6 @@
-//! File operations that survive a power cut: a file is on the disk only if its directory entry is, too.
+//! File operations that survive a power cut. A file is safe only after its content and its directory entry are synced.
 //!
-//! Separate functions open regular files only: opening a pipe in place of a file would block the program.
+//! The `open_regular_file` functions reject other files: opening a pipe would block the program.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -8,10 +8,10 @@ use std::path::Path;
 
 use crate::error::RunError;
 
-/// Replaces a file atomically: after a crash it has the old or the new content.
+/// Replaces a file atomically. After a crash, the file has either the old or the new content.
 ///
 /// # Errors
-/// The file cannot be written. The old file is kept, unless only the sync of the folder failed.
+/// The file cannot be written. The old file is kept, unless only the folder sync failed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let draft = path.with_extension("draft");
     let written = File::create(&draft)
@@ -24,10 +24,10 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     sync_folder(parent_folder(path))
 }
 
-/// Appends bytes to a regular file and syncs it, and its folder if the file is new.
+/// Appends bytes to a regular file and syncs the file. Also syncs the folder if the file is new.
 ///
 /// # Errors
-/// The path is not a regular file, or it cannot be written.
+/// The path is not a regular file, or the file cannot be written.
 pub fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let is_new = !path.exists();
     let mut file = open_regular_file_for_append(path).map_err(RunError::io(path))?;
@@ -47,13 +47,13 @@ pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     synced.inspect_err(|_| missing.iter().for_each(|ancestor| drop(std::fs::remove_dir(ancestor))))
 }
 
-/// Returns the folder of a file; for a bare name, the current directory.
+/// Returns the parent folder of a file. For a bare file name, this is the current directory.
 pub fn parent_folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Syncs the directory entries of a folder, on systems that support it. After an error the caller must create the entry
-/// again: a later successful sync does not cover it.
+/// Syncs the directory entries of a folder, on systems that support it. After an error, the caller must create the
+/// directory entry again: a later successful sync does not cover the entry.
 ///
 /// # Errors
 /// The folder cannot be synced.
@@ -77,7 +77,7 @@ pub fn open_regular_file(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// Opens a regular file for appending and reading; creates it if it does not exist.
+/// Opens a regular file for appending and reading, and creates the file if it does not exist.
 ///
 /// # Errors
 /// The path is not a regular file, or it cannot be opened or created.
@@ -103,22 +103,22 @@ fn not_regular_file_error() -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")
 }
 
-/// Returns the bytes of a regular file.
+/// Reads a regular file and returns its bytes.
 ///
 /// # Errors
-/// As [`open_regular_file`], or the file cannot be read.
+/// [`open_regular_file`] fails, or the file cannot be read.
 pub fn read_regular_file(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_regular_file(path)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Returns the text of a regular file, or an empty text if it cannot be read.
+/// Reads a regular file and returns its text, or an empty text if the file cannot be read.
 pub fn read_regular_text_or_empty(path: &Path) -> String {
     read_regular_file(path).ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
 }
 
-/// Records folder syncs per thread for tests, and lets them fail.
+/// Test support that records the folder syncs of each thread and can make them fail.
 #[cfg(any(test, feature = "test-kit"))]
 pub mod sync_probe {
     use std::cell::{Cell, RefCell};
@@ -143,7 +143,7 @@ pub mod sync_probe {
         Ok(())
     }
 
-    /// Returns whether this thread has synced a directory entry after it was created.
+    /// Returns whether this thread synced the directory entry of a path after creating the path.
     pub fn has_synced(path: &Path) -> bool {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let folder = super::parent_folder(path);
@@ -152,7 +152,7 @@ pub mod sync_probe {
         })
     }
 
-    /// Clears the recorded syncs of this thread, and lets later syncs fail or succeed.
+    /// Clears the recorded syncs of this thread. Later syncs fail if `fails` is true.
     pub fn reset(fails: bool) {
         SYNCED_ENTRIES.with_borrow_mut(Vec::clear);
         SYNC_FAILS.set(fails);

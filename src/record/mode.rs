@@ -4,25 +4,25 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// The purpose of a run. It is recorded and cannot be changed.
+/// The purpose of a run. The mode is recorded and cannot be changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
     /// A human baseline session, with the tools and information of agents.
     Baseline,
-    /// A run for experiments of the player.
+    /// A run for the player's experiments.
     Sandbox,
     /// A run of a lesson.
     Lesson,
-    /// A run for work on the mechanics, with access to hidden state.
+    /// A run for testing and debugging the mechanics, with access to hidden state.
     Debug,
 }
 
 impl Mode {
-    /// All modes.
+    /// All modes of a run.
     pub const ALL: [Mode; 4] = [Mode::Baseline, Mode::Sandbox, Mode::Lesson, Mode::Debug];
 
-    /// The modes that a user can choose for a new run. Lessons set their mode themselves.
+    /// The modes that a user can choose for a new run. A lesson run always has the lesson mode.
     pub const SELECTABLE: [Mode; 3] = [Mode::Baseline, Mode::Sandbox, Mode::Debug];
 
     /// Returns the default mode of a branch. A branch is never a baseline run and never belongs to a lesson.
@@ -30,7 +30,7 @@ impl Mode {
         if matches!(self, Mode::Baseline | Mode::Lesson) { Mode::Sandbox } else { self }
     }
 
-    /// Returns the name in options and manifests.
+    /// Returns the name of the mode in options and manifests.
     pub fn id(self) -> &'static str {
         match self {
             Mode::Baseline => "baseline",
@@ -40,12 +40,12 @@ impl Mode {
         }
     }
 
-    /// Returns the mode with a name.
+    /// Returns the mode with this name, if it exists.
     pub fn parse(id: &str) -> Option<Mode> {
         Mode::ALL.into_iter().find(|mode| mode.id() == id)
     }
 
-    /// Returns the purpose in one line.
+    /// Returns a one-line description of the purpose of the mode.
     pub fn purpose(self) -> &'static str {
         match self {
             Mode::Baseline => "human baseline session: the tools of agents, complete record",

@@ -1,19 +1,19 @@
-//! Rules of a session: information beyond that of agents, recorded activity, and time limits. The first line of a run
-//! records them.
+//! Rules of a session: information that agents do not have, recorded activity, and time limits. The first line of a
+//! run records these rules.
 
 use serde::{Deserialize, Serialize};
 
 use crate::mode::Mode;
 
-/// The rules of a session.
+/// Rules for the information, recording and time limits of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SessionRules {
-    /// Whether alerts recommend an amount and fill in the form. Otherwise they state facts.
+    /// Whether alerts recommend an amount and fill in the form. Otherwise, alerts only state facts.
     pub advice: bool,
-    /// Whether forecast forms show how earlier forecasts performed.
+    /// Whether forecast forms show the accuracy of earlier forecasts.
     pub calibration: bool,
-    /// Content of the final page.
+    /// Results that the final page shows.
     pub results: ResultsShown,
     /// How free text is recorded.
     pub free_text: FreeText,
@@ -25,45 +25,45 @@ pub struct SessionRules {
     /// Whether stopping the clock asks for a reason.
     #[serde(default)]
     pub pause_reason: bool,
-    /// A setting of earlier builds. It is read and never written.
+    /// A setting of earlier builds that is read and never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub code_words: Option<bool>,
-    /// Time limits.
+    /// Time limits of the session.
     #[serde(default)]
     pub limits: TimeLimits,
 }
 
-/// Content of the final page.
+/// Results that the final page of a run shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ResultsShown {
-    /// Only that the run is over.
+    /// No results, only the statement that the run is over.
     None,
-    /// The participant's own result.
+    /// The participant's result.
     Own,
-    /// The own result and published results.
+    /// The participant's result and published results.
     Published,
 }
 
-/// Recording of notes and answers in words. Rationales are always recorded in full.
+/// How notes and free-text answers are recorded. Rationales are always recorded in full.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FreeText {
-    /// Full text.
+    /// The full text is recorded.
     Kept,
-    /// Lengths and digests only.
+    /// Only the length and the digest of a text are recorded.
     Masked,
 }
 
-/// Recording of texts that were edited and abandoned.
+/// How texts that were edited and abandoned are recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DraftsKept {
-    /// Nothing.
+    /// Edits are not recorded.
     None,
-    /// Lengths, pauses and deletions.
+    /// Only lengths, pauses and deletions are recorded.
     Lengths,
-    /// Also the abandoned text.
+    /// Lengths, pauses, deletions and the abandoned text are recorded.
     Text,
 }
 
@@ -71,25 +71,25 @@ pub enum DraftsKept {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeLimits {
-    /// Limit of one week of the company.
+    /// Limit for one simulated week.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub week_minutes: Option<u32>,
-    /// Limit of one session.
+    /// Limit for one session.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub session_minutes: Option<u32>,
-    /// Limit of all sessions together.
+    /// Limit for all sessions together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study_minutes: Option<u32>,
-    /// Minutes before a limit at which the participant is warned.
+    /// Minutes before a limit when the participant is warned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warning_minutes: Option<u32>,
-    /// Action at the limit.
+    /// Action when a limit is reached.
     #[serde(default)]
     pub at_limit: AtLimit,
 }
 
 impl TimeLimits {
-    /// Checks that the warning time is shorter than each limit. Returns the key and the message otherwise.
+    /// Checks that the warning time is shorter than each limit. Otherwise, returns the invalid key and a message.
     pub fn check_warning(&self) -> Result<(), (&'static str, String)> {
         let Some(warning) = self.warning_minutes else { return Ok(()) };
         let limits = [
@@ -104,7 +104,7 @@ impl TimeLimits {
             Some((key, minutes)) => Err((
                 "limits.warning_minutes",
                 format!(
-                    "a warning {warning} minutes before the end of {key} = {minutes} would show from the start"
+                    "a warning {warning} minutes before the end of {key} = {minutes} would be shown from the start"
                 ),
             )),
         }
@@ -115,7 +115,7 @@ impl TimeLimits {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AtLimit {
-    /// Remind the participant.
+    /// Remind the participant of the limit.
     #[default]
     Remind,
     /// Submit the week with naive forecasts.
@@ -125,7 +125,7 @@ pub enum AtLimit {
 }
 
 impl SessionRules {
-    /// Returns whether the final result and figures are hidden: the study withholds results, and the run is over.
+    /// Returns whether the final result and figures are hidden because the run is over and the study withholds results.
     pub fn hides_result(&self, is_over: bool) -> bool {
         self.withholds_results() && is_over
     }
@@ -135,7 +135,7 @@ impl SessionRules {
         self.results == ResultsShown::None
     }
 
-    /// Returns the rules of a run outside of a study.
+    /// Returns the default rules of a mode, for runs outside of a study.
     pub fn for_mode(mode: Mode) -> SessionRules {
         let open = SessionRules {
             advice: true,
@@ -149,7 +149,7 @@ impl SessionRules {
             limits: TimeLimits::default(),
         };
         match mode {
-            // Agents have neither, so baseline participants have neither.
+            // Agents get neither advice nor calibration, so baseline participants get neither.
             Mode::Baseline => {
                 SessionRules { advice: false, calibration: false, results: ResultsShown::Own, ..open }
             }
@@ -159,7 +159,7 @@ impl SessionRules {
         }
     }
 
-    /// Returns whether activity of a kind is recorded.
+    /// Returns whether the rules record activity of this kind.
     pub fn records_activity(&self, kind: &str) -> bool {
         !self.unrecorded.iter().any(|left_out| left_out == kind)
     }

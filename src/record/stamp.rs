@@ -1,26 +1,26 @@
-//! Stamps of the study, lesson and handout of a run in its first line.
+//! Stamps in the first line of a run that identify its study, lesson and handout.
 
 use serde::{Deserialize, Serialize};
 
 use crate::mode::Mode;
 
-/// The study of a run, and the assignment of the participant.
+/// The study to which a run belongs, and the assignment of the participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StudyStamp {
     /// Name of the study.
     pub name: String,
-    /// BLAKE3 digest of its protocol, in hexadecimal digits.
+    /// BLAKE3 digest of the study protocol, in hexadecimal digits.
     pub digest: String,
-    /// Assigned condition.
+    /// Condition to which the participant was assigned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub condition: Option<String>,
-    /// Position in the assignment, from 1.
+    /// Position of the participant in the assignment order, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<u32>,
-    /// Whether this is the practice run.
+    /// Whether the run is the practice run of the participant.
     #[serde(default)]
     pub practice: bool,
-    /// Number of labels that were rejected before this one was accepted.
+    /// Number of labels that were rejected before the participant's label was accepted.
     #[serde(default)]
     pub refused_labels: u32,
 }
@@ -43,27 +43,27 @@ impl StudyStamp {
 /// An earlier run of the same participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EarlierRun {
-    /// Id of the run.
+    /// Id of the earlier run.
     pub run: String,
-    /// Mode.
+    /// Mode of the earlier run.
     pub mode: Mode,
-    /// Seed.
+    /// Seed of the earlier run.
     pub seed: u64,
-    /// Scenario.
+    /// Name of the scenario of the earlier run.
     pub scenario: String,
-    /// Moment of creation, RFC 3339.
+    /// Moment at which the earlier run was created, RFC 3339.
     pub created: String,
 }
 
-/// The lesson of a run.
+/// The lesson and the part that a run plays.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonStamp {
     /// Name of the lesson.
     pub name: String,
-    /// Digest of its plan and texts.
+    /// Digest of the plan and texts of the lesson.
     pub digest: String,
-    /// The part, counted from 1.
+    /// Part that the run plays, from 1.
     pub part: u32,
 }
 
@@ -80,19 +80,19 @@ pub struct HandoutStamp {
 /// Values that a handout sets for a new run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct HandoutEntry {
-    /// The handout.
+    /// Stamp of the handout for the first line of the run.
     pub stamp: HandoutStamp,
-    /// Id of the run; `None` for a new id.
+    /// Id that the new run must have; `None` to generate a new id.
     pub run: Option<String>,
 }
 
 impl HandoutEntry {
-    /// Returns the values for the first run of a handout.
+    /// Returns the values for the first run of a handout, which has the run id in the handout.
     pub fn for_first_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { run: Some(stamp.run.clone()), stamp }
     }
 
-    /// Returns the values for a later run of the same handout.
+    /// Returns the values for a later run of the same handout, which gets a new id.
     pub fn for_later_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { stamp, run: None }
     }

@@ -1,9 +1,9 @@
-//! Anonymized tables of a study: new labels and run names, times relative to the start of each run, no texts written
-//! by people, and renamed machines.
+//! Anonymized tables of a study. Labels, runs and machines are renamed, times are relative to the start of each run,
+//! and texts written by people are removed or masked.
 //!
-//! All new names derive from a secret that the experimenter keeps, so tables collected later are consistent. Each run
-//! contains the hash of its sealed original's last hash. Anyone who has the original can prove that it belongs to the
-//! run.
+//! New names are derived from a secret that the experimenter keeps, so names in tables collected later are consistent.
+//! The table of runs contains a hash of the last hash in each sealed original. Anyone who has the original can prove
+//! that it belongs to the run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,57 +15,56 @@ pub type NamedTable = (String, Vec<Vec<String>>);
 /// Treatment of texts written by people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextHandling {
-    /// Removes them.
+    /// Removes texts written by people.
     Dropped,
-    /// Replaces them with their length in characters.
+    /// Replaces each text with its length in characters.
     Masked,
 }
 
 /// Old and new names of a run, for the experimenter only.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunLink {
-    /// Label of the participant.
+    /// Original label of the participant.
     pub participant: String,
-    /// Their new label.
+    /// New label of the participant.
     pub new_participant: String,
-    /// Run ID.
+    /// Original ID of the run.
     pub run: String,
-    /// New run ID.
+    /// New ID of the run.
     pub new_run: String,
-    /// Hash of the last line of the original.
+    /// Hash of the last line of the original trajectory.
     pub last_hash: String,
-    /// Hash of `last_hash`, as in the anonymized table.
+    /// Hash of `last_hash`, as shown in the anonymized table.
     pub original: String,
 }
 
-/// Column names of the table of links.
+/// Column names of the table that links runs to their originals.
 pub const LINK_COLUMNS: [&str; 6] =
     ["participant", "new_participant", "run", "new_run", "last_hash", "original"];
 
-// People who know a participant could identify them by these columns.
+// Columns by which a person who knows a participant could identify the participant.
 const IDENTIFYING_COLUMNS: [(&str, &str); 4] =
     [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest"), ("visits", "folder")];
 
-// Columns that describe a session's design. Rare combinations can identify a participant.
+// Columns that describe the design of a session. Rare combinations of their values can identify a participant.
 const DESIGN_COLUMNS: [&str; 2] = ["seed", "condition"];
 
-/// Columns that join the tables.
+/// Columns that join the tables and cannot be omitted.
 const REQUIRED_COLUMNS: [&str; 2] = ["run", "participant"];
 
 /// The result of anonymization.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnonymizedTables {
-    /// The tables.
+    /// The anonymized tables.
     pub tables: Vec<NamedTable>,
-    /// The links to the originals.
+    /// Links from the new names to the original runs.
     pub links: Vec<RunLink>,
-    /// Size and shared values of the smallest group of sessions with the same seed and condition, as far as
-    /// these columns are kept.
-    /// `None` if neither is kept or no session exists.
+    /// Size and shared values of the smallest group of sessions with the same seed and condition. Omitted columns are
+    /// ignored. `None` if both columns are omitted or no session exists.
     pub smallest_group: Option<(usize, String)>,
 }
 
-/// Replaces identifying values, keyed by a secret.
+/// Replaces identifying values with names derived from a secret.
 pub struct Anonymizer {
     secret: [u8; 32],
     texts: TextHandling,
@@ -78,7 +77,7 @@ pub struct Anonymizer {
 }
 
 impl Anonymizer {
-    /// Returns an anonymizer that also omits the columns `without` from every table.
+    /// Returns an anonymizer that omits the columns `without` from every table, in addition to the identifying columns.
     pub fn new(secret: [u8; 32], texts: TextHandling, without: Vec<String>) -> Anonymizer {
         Anonymizer {
             secret,
@@ -92,7 +91,7 @@ impl Anonymizer {
     /// Returns the anonymized tables of an export or a collection, and the links to the originals.
     ///
     /// # Errors
-    /// Returns an error if a table or column is missing, or if two names would become the same.
+    /// Returns an error if a table or column is missing, or if two names would be replaced by the same name.
     pub fn anonymize(&mut self, tables: &[NamedTable]) -> Result<AnonymizedTables, String> {
         let all = |name: &str| {
             let found = tables.iter().find(|(text, _)| text == name).map(|(_, rows)| rows.as_slice());
@@ -145,10 +144,10 @@ impl Anonymizer {
             || self.omitted_columns.iter().any(|text| text == column)
     }
 
-    /// Checks that the columns to omit exist and that no table needs them.
+    /// Checks that the columns to omit exist and do not join the tables.
     ///
     /// # Errors
-    /// Names the first column that does not exist or that joins the tables.
+    /// Returns an error with the first column that does not exist or that joins the tables.
     pub fn check_omitted_columns(&self) -> Result<(), String> {
         let known = |name: &str| {
             table_headings().iter().any(|(_, column_headings)| {
@@ -209,7 +208,7 @@ impl Anonymizer {
             let known: BTreeMap<&str, &str> =
                 rows[0].iter().map(String::as_str).zip(row.iter().map(String::as_str)).collect();
             if known.get("run").is_some_and(|run| !self.run_starts.contains_key(*run)) {
-                // A run that could not be read has only a name.
+                // Rows of runs that could not be read are omitted.
                 continue;
             }
             let cells = columns.iter().zip(&places);
@@ -217,7 +216,8 @@ impl Anonymizer {
             let of = |name: &str| known.get(name).copied().unwrap_or_default();
             made.push(((self.new_label(of("participant")), self.new_run_name(of("run"))), cells.collect()));
         }
-        // The original order reveals when participants came. Lines within a run keep theirs.
+        // Sorts the rows by label and run, because the original order reveals when participants played. The order
+        // within a run is kept.
         made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
         let head = columns.iter().map(|heading| anonymized_column_name(heading).to_owned()).collect();
         Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
@@ -269,7 +269,7 @@ impl Anonymizer {
             Some((name @ ("machine" | "boot"), value)) => {
                 format!("{name}={}", self.keyed_name(name, value, 16))
             }
-            // It counts from the start of the machine.
+            // The value is removed because it counts from the start of the machine.
             Some(("monotonic_ms", _)) => "monotonic_ms=".to_owned(),
             _ => part.to_owned(),
         };
@@ -297,7 +297,7 @@ fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
     of("kind") == "call" && of("value") == "accepted" && begins
 }
 
-/// Returns the seconds from `began`, in nanoseconds since 1970, to `at`; empty if `began` is `None`.
+/// Returns the seconds from `began`, in nanoseconds since 1970, to `at`. Returns an empty text if `began` is `None`.
 fn seconds_between(began: Option<&i64>, at: &str) -> String {
     began.map_or(String::new(), |began| {
         let passed = novamind_record::clock::parse_nanoseconds(at) - began;

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::formatting::{format_money, format_whole};
 use novamind_record::figures::WeekFigures;
 
-/// Total of one kind of cost over the run.
+/// One kind of cost and its share of all costs over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostShare {
     pub name: &'static str,
     pub dollars: f64,
-    /// Share of all costs.
+    /// Share of all costs, from 0 to 1.
     pub share: f64,
 }
 
@@ -28,7 +28,7 @@ pub const COST_CATEGORIES: [(&str, &[&str]); 6] = [
 pub const INCOME_CATEGORIES: [(&str, &[&str]); 2] =
     [("payments", &["subscription_payment"]), ("ad revenue", &["ad_revenue"])];
 
-/// Returns costs by kind, highest first. Omits kinds without costs.
+/// Returns costs by kind, highest cost first. Omits kinds without costs.
 pub fn cost_shares(totals: &BTreeMap<&str, f64>) -> Vec<CostShare> {
     let spent = |names: &[&str]| -> f64 { names.iter().filter_map(|name| totals.get(name)).sum() };
     let mut all: Vec<(&'static str, f64)> =
@@ -39,7 +39,7 @@ pub fn cost_shares(totals: &BTreeMap<&str, f64>) -> Vec<CostShare> {
     all.into_iter().map(|(name, dollars)| CostShare { name, dollars, share: dollars / sum }).collect()
 }
 
-/// Describes turning points: the last peak of cash, revenue and subscribers, and the weeks after.
+/// Describes turning points: the peak of subscribers, the last profitable week, and the weeks before the bankruptcy.
 pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     let Some(last) = weeks.last() else { return Vec::new() };
     let mut texts = Vec::new();

@@ -1,5 +1,4 @@
-//! Collection of a study: the verified runs of all machines in one folder, without duplicates, and their
-//! tables.
+//! Collects a study: verifies the runs of all machines, stores each run once in a folder, and returns the tables of the runs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -16,26 +15,26 @@ use novamind_study::{
 /// Inputs and options of a collection.
 #[derive(Clone, Copy)]
 pub struct CollectOptions<'a> {
-    /// Folders of machines, and archives.
+    /// Folders of runs copied from the machines, and archives.
     pub sources: &'a [PathBuf],
-    /// Output folder.
+    /// Folder to which the archives are written.
     pub output_folder: &'a Path,
-    /// The study with its assignment of participants.
+    /// The study, which assigns participants to arms.
     pub study: Option<&'a Study>,
-    /// Replacement labels by run.
+    /// Labels that replace the recorded labels, by run.
     pub labels: &'a BTreeMap<String, String>,
-    /// Keys of the lab.
+    /// Keys of the lab that collects the study.
     pub keys: LabKeys<'a>,
 }
 
-/// Keys of the lab that collects.
+/// Keys of the lab that collects a study.
 #[derive(Clone, Copy, Default)]
 pub struct LabKeys<'a> {
-    /// Signs the archives that are written.
+    /// Key that signs the written archives.
     pub signing_key: Option<&'a LabKey>,
-    /// Verifies the signatures of the archives that are read.
+    /// Key that verifies the signatures of the source archives.
     pub verification_key: Option<&'a LabPublicKey>,
-    /// Seals the snapshots of the runs.
+    /// Key that seals the snapshots of the runs.
     pub sealing_key: Option<&'a SealKey>,
 }
 
@@ -54,12 +53,12 @@ pub struct CollectionResult {
     pub runs: Vec<(Option<String>, Seal, PathBuf)>,
     /// Warnings for the experimenter.
     pub notes: Vec<CollectNote>,
-    /// Number of runs found, by result.
+    /// Number of runs that were found, by result.
     pub visits: VisitSummary,
 }
 
 /// Collects a study: replays every run, verifies it and seals it in an archive. `progress` is called with the number
-/// of finished runs and the total. Replaces archives of earlier collections, because trajectories only grow.
+/// of finished runs and the total number of runs. Archives of earlier collections are replaced, because trajectories only grow.
 ///
 /// # Errors
 /// Returns an error if the output folder cannot be written.
@@ -69,7 +68,7 @@ pub fn collect(
 ) -> Result<CollectionResult, RunError> {
     let CollectOptions { sources, output_folder: out, study, labels, keys } = what;
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
-    // Unpacked archives go to a hidden folder that is deleted at the end.
+    // Archives are unpacked into a hidden folder that is deleted at the end.
     let workshop = TemporaryFolder::create_in(out)?;
     let CollectedRuns { runs, conflicts, mut notes, visits } =
         collect_runs(sources, workshop.path(), out, keys.verification_key);

@@ -1,10 +1,10 @@
-//! Costs of the decisions before a week runs: commitments by day and week, one-time costs, and the resulting runway.
+//! Review of costs before a week runs: committed costs by day and week, one-time costs, and the resulting runway.
 
 use super::formatting::{format_money, pluralize};
 use novamind_base::formatting::{dollars, price_to_cents, signed_dollars};
 use novamind_session::{IdenticalPlans, Observation, Preview};
 
-/// Returns lines about the company's money before its next week.
+/// Describes income, committed costs and runway before the next week, line by line.
 pub fn money_lines(seen: &Observation) -> Vec<String> {
     let (pace, now) = (seen.pace, seen.pace.committed);
     let change = now - seen.committed_before;
@@ -42,7 +42,7 @@ pub fn money_lines(seen: &Observation) -> Vec<String> {
     lines
 }
 
-/// Returns a line for each pair of plans that differ only in price.
+/// Returns a line for each pair of plans that are identical or differ only in price.
 pub fn identical_plan_lines(seen: &Observation) -> Vec<String> {
     seen.alike_plans.iter().map(describe_identical_plans).collect()
 }
@@ -62,7 +62,8 @@ fn describe_identical_plans(plans: &IdenticalPlans) -> String {
     format!("{cheap} and {dear} {since} differ only in price ({low} and {high}); {payers}")
 }
 
-/// Describes the cost of a call and when it takes effect; `None` if there is nothing to report.
+/// Describes the cost of a tool call and the day on which the call takes effect. Returns `None` if the call has no
+/// cost and no delay.
 pub fn cost_line(preview: &Preview) -> Option<String> {
     let parts = [
         (preview.cost_now > 0.0).then(|| format!("costs {} at once", dollars(preview.cost_now))),
@@ -124,7 +125,7 @@ mod tests {
         assert!(on_b > 1.0, "{payers}");
         let text = format!("A and B now differ only in price ($12 and $22); {payers}");
         assert_eq!(identical_plan_lines(&session.company().observe()), [text]);
-        // The more expensive plan is determined by price, not by letter.
+        // The more expensive plan is found by its price, not by its letter.
         call(&mut session, "set_prices", json!({"A": 30.5}));
         let turned = identical_plan_lines(&session.company().observe());
         assert!(turned[0].starts_with("B and A now differ only in price ($22 and $30.50); "), "{turned:?}");

@@ -1,11 +1,10 @@
-//! Text of the participation curve explorer: its basis, the curve at several prices, and the expected
-//! outcome.
+//! Text of the participation curve explorer: the source of the curve, its values at several prices, and the expected outcome.
 
 use novamind_base::formatting::{cents, percent, price_to_cents};
 use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// Interval between the points that become rows.
+/// Number of points of the curve for each row of the table.
 const POINTS_PER_ROW: usize = 6;
 
 const UNREACHABLE: &str = "–";
@@ -27,7 +26,7 @@ pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
     names[..shown].iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Returns the quality that 10%, 50% and 90% of the leads accept, at several prices.
+/// Returns the qualities that 10%, 50% and 90% of the leads accept, in a row for each of several prices.
 pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     let row = |point: &CurvePoint| {
         let (least, most) = point.median_range;
@@ -41,7 +40,7 @@ pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
-/// Explains the dash in the rows and the assumptions.
+/// Explains the dash in [`rows`] and the assumptions of the curve.
 pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {
@@ -58,7 +57,7 @@ pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     lines
 }
 
-/// Describes the expected result: `conversion 31.2% (4.1% to 70.2%), revenue per lead $6.12 ($0.70 to
+/// Describes the expected conversion and revenue: `conversion 31.2% (4.1% to 70.2%), revenue per lead $6.12 ($0.70 to
 /// $20.31)`.
 pub fn describe_outcome(outcome: &CurveOutcome) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 1));
@@ -70,7 +69,7 @@ pub fn describe_outcome(outcome: &CurveOutcome) -> String {
     }
 }
 
-/// Describes the expected result briefly: `31% (4% to 70%) · $6.12 ($0.70 to $20.31) a lead`.
+/// Describes the expected conversion and revenue briefly: `31% (4% to 70%) · $6.12 ($0.70 to $20.31) a lead`.
 pub fn describe_outcome_briefly(outcome: &CurveOutcome) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 0));
     match &outcome.revenue_per_lead {
@@ -79,7 +78,7 @@ pub fn describe_outcome_briefly(outcome: &CurveOutcome) -> String {
     }
 }
 
-/// Writes a figure, with its range if it has one.
+/// Formats an expected value with its range, if any. `write` formats each number.
 pub fn format_range(figure: &ExpectedRange, write: impl Fn(f64) -> String) -> String {
     let likely = write(figure.likely);
     match figure.least < figure.most {
@@ -88,13 +87,13 @@ pub fn format_range(figure: &ExpectedRange, write: impl Fn(f64) -> String) -> St
     }
 }
 
-/// Describes a plan as leads see it: `A $12, quality 0.20, chosen by 12.3%`.
+/// Describes the price, quality and share of a plan at a point of the curve: `A $12, quality 0.20, chosen by 12.3%`.
 pub fn describe_plan(plan: Plan, point: &PlanPoint, takers: Option<&ByPlan<f64>>) -> String {
     let taken = takers.map_or(String::new(), |all| format!(", chosen by {}", percent(all[plan], 1)));
     format!("{plan} {}, quality {}{taken}", price_to_cents(point.list_price), format_quality(point.quality))
 }
 
-/// Writes a quality; a dash if no quality is sufficient.
+/// Formats a quality, or a dash if no quality is sufficient.
 pub fn format_quality(value: f64) -> String {
     if value.is_finite() { format!("{value:.2}") } else { UNREACHABLE.to_owned() }
 }

@@ -1,5 +1,5 @@
-//! Data for reports: money by category and week from the ledger; groups by week and leads by channel from guarded
-//! queries over the visible tables. Queries that fail are listed and their data is omitted.
+//! Data for reports. Money by category and week is read from the ledger. Groups by week and leads by channel are read
+//! by guarded queries of the visible tables. Data of failed queries is omitted, and the queries are listed.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use novamind_record::figures::CategoryTotals;
 use novamind_session::Session;
 use novamind_session::identifiers::Group;
 
-// A deal cancelled early can end after the last day; it counts on the last day.
+// The end of a deal that was cancelled early can be recorded after the last day. The cancellation counts on the last day.
 const GROUP_FLOW_SQL: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status IN ('subscribed', 'cancelled') GROUP BY 1, 2
@@ -19,7 +19,7 @@ SELECT (min(s.end_day, (SELECT max(day) FROM service_day)) + 6) / 7, c.group_id,
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status = 'cancelled' GROUP BY 1, 2";
 
-// Customer 1 is the market observer, the author of news.
+// Excludes customer 1, the market observer, who is the author of news.
 const GROUP_LEADS_SQL: &str = "SELECT group_id, count(*) FROM customers WHERE customer_id > 1 GROUP BY 1";
 
 const GROUP_REVENUE_SQL: &str = "SELECT c.group_id, sum(s.effective_price * s.seat_count)
@@ -32,42 +32,42 @@ const CHANNEL_SQL: &str =
 const OUTAGE_SQL: &str =
     "SELECT day, downtime_minutes FROM service_day WHERE downtime_minutes > 0 ORDER BY day";
 
-/// Advertising of one channel for one group.
+/// Advertising results of one channel for one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelRow {
-    /// Group.
+    /// ID of the group.
     pub group: String,
-    /// Channel.
+    /// Name of the channel.
     pub channel: String,
-    /// Leads of this channel and group.
+    /// Leads of the group that arrived through this channel.
     pub leads: f64,
-    /// Dollars spent on this channel and group.
+    /// Advertising spending on the group in this channel, dollars.
     pub spend: f64,
 }
 
-/// A group over the run.
+/// Leads, subscriptions and revenue of a group over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupHistory {
-    /// Group.
+    /// The customer group.
     pub group: Group,
-    /// All leads.
+    /// Number of leads over the whole run.
     pub leads: f64,
-    /// Subscriptions at the end of each week, week 0 first.
+    /// Number of active subscriptions at the end of each week, week 0 first.
     pub active: Vec<f64>,
-    /// Seats at the end of each week, week 0 first.
+    /// Number of seats at the end of each week, week 0 first.
     pub seats: Vec<f64>,
-    /// Monthly revenue at the end, dollars.
+    /// Monthly revenue at the end of the run, dollars.
     pub revenue: f64,
 }
 
-/// Data of a run that its tables and ledger contain.
+/// Data that is read from the tables and the ledger of a run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DatabaseFigures {
-    /// Groups with at least one lead, in their fixed order.
+    /// Groups with at least one lead, in the fixed order of groups.
     pub groups: Vec<GroupHistory>,
-    /// Advertising by group and channel.
+    /// Advertising results by group and channel.
     pub channels: Vec<ChannelRow>,
-    /// Dollars by week and category of the ledger; costs are negative. Excludes the starting cash.
+    /// Amounts in dollars by week and ledger category. Costs are negative. Excludes the starting cash.
     pub ledger: BTreeMap<u32, BTreeMap<&'static str, f64>>,
     /// Day and duration in minutes of each outage.
     pub outages: Vec<(u32, u32)>,
@@ -108,7 +108,7 @@ impl DatabaseFigures {
         DatabaseFigures { groups, channels, ledger: ledger_by_week(session), outages, missing }
     }
 
-    /// Returns advertising only; empty if the query fails.
+    /// Reads only the advertising results. Returns an empty list if the query fails.
     pub fn load_channels(session: &Session) -> Vec<ChannelRow> {
         let connection = session.wait_for_database().and_then(|()| session.database().open_connection()).ok();
         let rows = connection
@@ -116,7 +116,7 @@ impl DatabaseFigures {
         rows.map(|rows| rows.rows.iter().map(|row| channel_row(row)).collect()).unwrap_or_default()
     }
 
-    /// Returns dollars by category over the whole run.
+    /// Returns the total amount of each ledger category over the whole run, dollars.
     pub fn totals_by_category(&self) -> BTreeMap<&str, f64> {
         let mut totals = BTreeMap::new();
         for (category, amount) in self.ledger.values().flatten() {
@@ -163,7 +163,7 @@ fn channel_row(row: &[Cell]) -> ChannelRow {
     }
 }
 
-/// Returns the entries of each week, and those since the last week.
+/// Returns the ledger amounts of each week, and of the days since the last week.
 fn ledger_by_week(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
     let since = session.company().observe().booked_since;
     let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);

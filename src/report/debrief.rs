@@ -1,4 +1,4 @@
-//! The debrief of a lesson as text and as a page.
+//! Formats the debrief of a lesson as text and as a page.
 
 use serde_json::Value;
 
@@ -21,7 +21,7 @@ const MAX_LISTED_SETTINGS: usize = 6;
 
 const MAX_LISTED_CALLS: usize = 2;
 
-/// Summarizes the result of the part in a sentence.
+/// Summarizes the result of a part of the lesson in a sentence.
 pub fn headline(debrief: &Debrief) -> String {
     let last = |cash: &[f64]| format_money(cash.last().copied().unwrap_or(0.0));
     let day = debrief.cash_by_day.len().saturating_sub(1);
@@ -80,7 +80,7 @@ fn capitalize(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Returns the debrief as paragraphs.
+/// Returns the debrief as paragraphs of text.
 pub fn debrief_paragraphs(debrief: &Debrief) -> Vec<String> {
     let part = debrief.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
     let mut lines = vec![format!("{}{part}", debrief.title), headline(debrief), String::new()];
@@ -108,7 +108,7 @@ pub fn describe_comparison(debrief: &Debrief) -> Vec<String> {
         DecisionComparison::Same => {
             vec!["You made the same decisions as the reference play, week by week.".to_owned()]
         }
-        DecisionComparison::NoDecisions => vec!["There was nothing to decide in this part.".to_owned()],
+        DecisionComparison::NoDecisions => vec!["This part required no decisions.".to_owned()],
         DecisionComparison::NotComparable => {
             vec!["Your decisions cannot be compared with the reference play in this run.".to_owned()]
         }
@@ -193,12 +193,12 @@ fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
     let effect = match parting.effect {
         DecisionEffect::Simulated(effect) => effect,
         DecisionEffect::Rejected => {
-            return "The rules reject the reference play's calls in your run, so their effect was not simulated."
+            return "The reference play's calls are rejected in your run, so their effect was not simulated."
                 .to_owned();
         }
         DecisionEffect::DifferentCustomers => {
-            return "Your later messages name enterprises by number. After other decisions these numbers belong to \
-                    different enterprises, so the effect was not simulated."
+            return "Your later messages refer to enterprises by number. With other decisions, these numbers belong \
+             to different enterprises, so the effect was not simulated."
                 .to_owned();
         }
     };
@@ -220,7 +220,7 @@ fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
     text + &describe_single_or_joint_effect(effect, debrief)
 }
 
-/// Explains the result if the first different decisions of the reference play alone make it worse.
+/// Explains why the first different decisions of the reference play can worsen the result if they are used alone.
 fn describe_single_or_joint_effect(effect: ReferenceEffect, debrief: &Debrief) -> String {
     let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
     if with >= mine {
@@ -283,7 +283,7 @@ fn split_paragraphs(text: &str) -> Vec<String> {
     text.split("\n\n").map(plain).filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Returns the glossary terms that a Markdown text emphasizes, each once.
+/// Returns the glossary terms that a Markdown text emphasizes, without duplicates.
 pub fn named_terms(text: &str) -> Vec<&'static Term> {
     let mut found: Vec<&'static Term> = Vec::new();
     let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");

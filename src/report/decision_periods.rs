@@ -1,4 +1,4 @@
-//! Decisions by week: settings as old → new, purchases and messages, and the first line of the rationale.
+//! Decisions by week: settings with old and new values, purchases and messages, and the first line of the rationale.
 
 use serde_json::Value;
 
@@ -7,36 +7,36 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{Decisions, JournalEntry, SettingChange, week_of};
 use novamind_tools::ToolId;
 
-/// Consecutive weeks under one decision: the first week made it, the others changed nothing.
+/// Consecutive weeks with the same decisions: the player decided before the first week and changed nothing before the others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionPeriod {
-    /// First week.
+    /// Number of the first week.
     pub week: u32,
-    /// Last week.
+    /// Number of the last week.
     pub last_week: u32,
-    /// Decision day.
+    /// Day on which the player decided.
     pub day: u32,
-    /// Last simulated day.
+    /// Last simulated day of the period.
     pub end_day: u32,
-    /// First line of the rationale.
+    /// First line of the player's rationale.
     pub rationale: String,
-    /// Settings, old → new.
+    /// Descriptions of changed settings, with old and new values.
     pub changes: Vec<String>,
-    /// Purchases, posts and offers.
+    /// Descriptions of purchases, posts and offers.
     pub actions: Vec<String>,
-    /// Cash at the end, dollars.
+    /// Cash at the end of the period, dollars.
     pub cash: f64,
-    /// Change of cash, dollars.
+    /// Change of cash over the period, dollars.
     pub cash_change: f64,
 }
 
-/// Describes a change: `price A: 0 → 14 $/month`.
+/// Describes the change of a setting: `price A: 0 → 14 $/month`.
 pub fn describe_change(change: &SettingChange) -> String {
     let text = format!("{}: {} → {}", change.setting, format_number(change.old), format_number(change.new));
     change.setting.unit().map_or(text.clone(), |unit| format!("{text} {unit}"))
 }
 
-/// Describes changes, one line per family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
+/// Describes changed settings, with one line for each family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
 pub fn describe_changes(changes: &[SettingChange]) -> Vec<String> {
     let mut families: Vec<(String, Vec<&SettingChange>)> = Vec::new();
     for change in changes {
@@ -62,7 +62,7 @@ pub fn describe_changes(changes: &[SettingChange]) -> Vec<String> {
     families.into_iter().map(line).collect()
 }
 
-/// Returns the chapters of a run. Weeks without a new decision join the chapter before them.
+/// Returns the decision periods of a run. A week without a new decision extends the previous period.
 pub fn decision_periods(
     decisions: &[Decisions],
     journal: &[JournalEntry],
@@ -124,7 +124,7 @@ fn entry_rationale(entry: &JournalEntry) -> Option<String> {
     }
 }
 
-/// Lists purchases and offers, with repeated ones counted, and posts with their texts.
+/// Lists purchases, offers and posts with their texts. Repeated actions are listed once, with their number.
 fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
     let posts = entries.iter().filter_map(|entry| match entry {
         JournalEntry::Call { tool, args, .. } if *tool == ToolId::PostSocialMedia => {
@@ -133,7 +133,7 @@ fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String
         _ => None,
     });
     let mut deeds: Vec<(String, u32)> = Vec::new();
-    // The text of a post replaces the sentence that it was published.
+    // The text of each post replaces the entry that only reports the post.
     for deed in decided.purchases.iter().filter(|deed| !deed.starts_with("post ")).cloned().chain(posts) {
         match deeds.iter_mut().find(|(known, _)| *known == deed) {
             Some((_, times)) => *times += 1,

@@ -1,34 +1,34 @@
-//! Rates how unusual a change is compared with earlier weeks.
+//! Rates how unusual the change of a figure is compared with earlier weeks.
 
 /// A change of a figure over the last week.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FigureChange {
-    /// Earlier value.
+    /// Value at the end of the previous week.
     pub old: f64,
-    /// Current value.
+    /// Value at the end of the last week.
     pub new: f64,
-    /// Rating of the change: 0 is an ordinary week, above 3 is rare.
+    /// Rating of the change: 0 is usual, above 3 is rare.
     pub unusualness: f64,
-    /// Random variation of the figure.
+    /// Size of the figure's random variation.
     pub noise: f64,
-    /// Weeks since a change in this direction was as large; `None` if there was none.
+    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was.
     pub weeks_since_larger: Option<usize>,
-    /// Number of earlier changes.
+    /// Number of earlier weekly changes.
     pub earlier_changes: usize,
 }
 
-/// Number of earlier changes needed to rate a week against them.
+/// Minimum number of earlier changes with which a change can be compared.
 const MIN_KNOWN_CHANGES: usize = 4;
-/// Factor from the median distance to the standard deviation of a normal distribution.
+/// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
 const MAD_TO_STD: f64 = 1.4826;
 
 impl FigureChange {
-    /// Returns the change relative to the larger of both values.
+    /// Returns the size of the change relative to the larger of both values.
     pub fn relative_size(&self) -> f64 {
         (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
     }
 
-    /// Describes the rank of the change within the run; empty if it is not remarkable.
+    /// Describes a change that is the largest in a number of weeks. Returns an empty text for other changes.
     pub fn describe_rarity(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };
         match self.weeks_since_larger {
@@ -44,9 +44,10 @@ impl FigureChange {
     }
 }
 
-/// Rates the last change of a series, oldest value first. Returns `None` without two values or without a change. With
-/// enough weeks, compares it with the median change and the usual distance from it; otherwise uses its relative size.
-/// A change of about `noise`, the random variation of the figure, is never unusual.
+/// Rates the last change of a series, which starts with the oldest value. Returns `None` if there are fewer than two
+/// values or the value did not change. With enough weeks, the change is compared with the median change and the median
+/// distance from it. Otherwise its relative size is used. A change of about `noise`, the random variation of the
+/// figure, is never unusual.
 pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let [.., old, new] = *series else { return None };
     if old == new || !old.is_finite() || !new.is_finite() {
@@ -58,7 +59,7 @@ pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let since = before.iter().rev().position(as_large).map(|at| at + 1);
     let size = change.abs() / old.abs().max(new.abs());
     let unusual = if before.len() < MIN_KNOWN_CHANGES {
-        // A change by half counts as unusual, by a tenth does not.
+        // With this factor, a change of one half is rated unusual and a change of one tenth is not.
         size * 6.0
     } else {
         let usual = median(&before);
@@ -135,7 +136,7 @@ mod tests {
         let one = last_change(&series, 1.0).expect("it moved");
         assert!(one.unusualness <= 1.0, "{one:?}");
         assert_eq!(one.describe_rarity(), "");
-        // Stalled growth is not a notable change.
+        // A change is not unusual if the figure's growth only slows down.
         let stalled =
             last_change(&[0.0, 600.0, 1200.0, 1800.0, 2400.0, 3000.0, 3072.0], 180.0).expect("it moved");
         assert!(stalled.unusualness < 1.0, "{stalled:?}");

@@ -1,5 +1,6 @@
-//! Fit: a group's estimated requirements compared with the plans. Estimates are ranges around a study's figure, so a
-//! plan's figure lies below, in or above the range. Deficits are stated only where the whole range shows them.
+//! Fit: the plans compared with the estimated requirements of a group. An estimate is a range around the value of a
+//! market study, so the value of a plan is below, in or above the range. A deficit is reported only if it exists for
+//! every value in the range.
 
 use serde::Serialize;
 
@@ -8,36 +9,36 @@ use novamind_base::formatting::{cents, dollars, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
 
-/// Number of weeks in `recent`.
+/// Number of weeks in [`Fit::recent`].
 const RECENT_WEEKS: usize = 4;
 
-/// Smallest and largest true value that an estimate allows.
+/// Smallest and largest true value that are consistent with an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TrueValueRange {
-    /// Smallest.
+    /// Smallest possible true value.
     pub least: f64,
-    /// Largest.
+    /// Largest possible true value.
     pub most: f64,
 }
 
-/// Position of a figure relative to the range of a true value.
+/// Position of a plan's figure relative to a range of true values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RangePosition {
-    /// Below the range.
+    /// The figure is below the range.
     Below,
-    /// In the range: the true value can be on either side.
+    /// The figure is in the range, so the true value can be smaller or larger.
     InRange,
-    /// Above the range.
+    /// The figure is above the range.
     Above,
 }
 
 impl TrueValueRange {
-    /// Returns the range behind an estimate with a relative error of at most `share`.
+    /// Returns the possible true values for an estimate with a relative error of at most `share`.
     pub fn from_estimate(estimate: f64, share: f64) -> TrueValueRange {
         true_value_range(estimate, share).into()
     }
 
-    /// Compares a figure with the range; both ends count as inside.
+    /// Compares a figure with the range, which includes both ends.
     pub fn position_of(&self, figure: f64) -> RangePosition {
         match figure {
             figure if figure < self.least => RangePosition::Below,
@@ -56,7 +57,7 @@ impl TrueValueRange {
         format!("${}", format_range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
-    /// Formats whole units, or dollars if the label has the unit: `180 to 841`.
+    /// Formats the range in whole numbers, if the label already has the unit: `180 to 841`.
     pub fn format_units(&self) -> String {
         format_range(self.least, self.most, 0)
     }
@@ -68,7 +69,7 @@ impl From<(f64, f64)> for TrueValueRange {
     }
 }
 
-/// An aspect in which a group compares a plan.
+/// A criterion by which a plan is compared with the requirements of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FitCriterion {
     /// List price compared with the budget.
@@ -80,10 +81,10 @@ pub enum FitCriterion {
 }
 
 impl FitCriterion {
-    /// All aspects, in the order of display.
+    /// All criteria, in the order of display.
     pub const ALL: [FitCriterion; 3] = [FitCriterion::Price, FitCriterion::Quality, FitCriterion::Quota];
 
-    /// Returns the word for the aspect.
+    /// Returns the name of the criterion.
     pub fn name(self) -> &'static str {
         match self {
             FitCriterion::Price => "price",
@@ -93,65 +94,65 @@ impl FitCriterion {
     }
 }
 
-/// A plan as a group sees it.
+/// Prices, quality and quota of a plan for one group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFit {
-    /// Plan.
+    /// The plan.
     pub plan: Plan,
-    /// List price, dollars a month; 0 if it is not on sale.
+    /// List price, dollars a month; 0 if the plan is not on sale.
     pub list_price: f64,
-    /// List price less the promotion for leads of all channels, which a lead compares with its budget.
+    /// List price less the promotion for leads of all channels. Leads compare this price with their budget.
     /// Enterprises negotiate their price.
     pub lead_price: f64,
-    /// List price less the promotion in force, which a subscriber is billed.
+    /// List price less the current promotion. Subscribers are billed this price.
     pub billed_price: f64,
-    /// Delivered quality.
+    /// Quality that the plan delivers to the group.
     pub quality: f64,
-    /// Quota, units a day and account.
+    /// Quota of the plan, units a day for each customer.
     pub quota: f64,
 }
 
-/// Leads of a group and their outcome over some weeks.
+/// Number of leads and signups of a group over one or more weeks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadFlow {
-    /// All leads.
+    /// Number of all leads.
     pub leads: u32,
-    /// Leads through channels.
+    /// Number of leads that arrived through channels.
     pub channel_leads: u32,
-    /// Leads by word of mouth.
+    /// Number of leads by word of mouth.
     pub word_of_mouth: u32,
-    /// Individuals who signed up, and enterprises that accepted their first deal.
+    /// Number of individuals who signed up, or of enterprises that accepted their first deal.
     pub signups: u32,
 }
 
-/// Estimates of a group compared with the plans.
+/// The plans compared with the estimated requirements of a group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// Group.
+    /// The customer group.
     pub group: Group,
-    /// Study level.
+    /// Study level of the group.
     pub level: u8,
-    /// Largest relative error of its estimates.
+    /// Largest relative error of the estimates at this study level.
     pub max_relative_error: f64,
     /// Day of the estimates of required quality and budget.
     pub study_day: u32,
     /// Days since `study_day`.
     pub age_days: u32,
-    /// Mean required quality of the group, before it rises with the price.
+    /// Mean required quality of the group at low prices. Required quality rises with the price.
     pub floor: TrueValueRange,
-    /// Mean budget, dollars a month; for enterprises, per seat.
+    /// Mean budget of a customer, dollars a month; for enterprises, dollars a month and seat.
     pub budget: TrueValueRange,
-    /// Mean usage of a customer, units a day; for enterprises, of the smallest.
+    /// Mean usage of a customer, units a day; for enterprises, usage of the smallest enterprise.
     pub usage: TrueValueRange,
-    /// The plans.
+    /// The plans that are compared with the group's requirements.
     pub plans: ByPlan<PlanFit>,
-    /// The last week; `None` before the first.
+    /// Leads of the last week; `None` before the first week.
     pub last_week: Option<LeadFlow>,
-    /// The last four weeks.
+    /// Leads of the last four weeks.
     pub recent: LeadFlow,
 }
 
-/// Returns the fit of every known group, in their fixed order.
+/// Returns the fit of every known group, in the fixed order of groups.
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
     let delivered = |group: Group| quality.iter().find(|delivered_quality| delivered_quality.group == group);
@@ -195,7 +196,7 @@ fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> Plan
         plan,
         list_price: list,
         lead_price: less(leads),
-        // No customer has the number 0, so settings of individual customers do not apply.
+        // No customer has the number 0, so discounts for single customers are excluded.
         billed_price: less(settings.promotion.sum(0, group, plan)),
         quality,
         quota: settings.core.quotas[plan].units(),
@@ -221,12 +222,12 @@ impl LeadFlow {
         }
     }
 
-    /// Returns signups divided by leads; `None` without leads.
+    /// Returns signups divided by leads, or `None` if there are no leads.
     pub fn conversion(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.signups) / f64::from(self.leads))
     }
 
-    /// Describes the leads: `120 leads (80 paid, 40 by word of mouth), 12 signed (10.0%)`.
+    /// Describes the leads and signups: `120 leads (80 paid, 40 by word of mouth), 12 signed (10.0%)`.
     pub fn describe(&self) -> String {
         if self.leads == 0 {
             let signed = if self.signups == 0 { String::new() } else { format!(", {} signed", self.signups) };
@@ -245,7 +246,8 @@ impl LeadFlow {
 }
 
 impl Fit {
-    /// Compares a plan in one aspect. Returns `None` for the price of enterprises, which negotiate it.
+    /// Compares a plan with the group's requirements by one criterion. Returns `None` for the price if the group is an
+    /// enterprise group, because enterprises negotiate prices.
     pub fn position(&self, plan: Plan, concern: FitCriterion) -> Option<RangePosition> {
         let plan_fit = &self.plans[plan];
         match concern {
@@ -256,7 +258,7 @@ impl Fit {
         }
     }
 
-    /// Returns the smallest deficit that the whole range allows; `None` if no deficit is certain.
+    /// Returns the smallest deficit over all possible true values, or `None` if no deficit is certain.
     pub fn certain_gap(&self, plan: Plan, concern: FitCriterion) -> Option<f64> {
         let plan_fit = &self.plans[plan];
         match (concern, self.position(plan, concern)?) {
@@ -267,7 +269,7 @@ impl Fit {
         }
     }
 
-    /// Describes what a plan lacks, and the aspects that are uncertain.
+    /// Describes the certain deficits of a plan, and the criteria with an uncertain result.
     pub fn describe_gaps(&self, plan: Plan) -> String {
         let plan_fit = &self.plans[plan];
         if plan_fit.list_price <= 0.0 {
@@ -300,7 +302,7 @@ impl Fit {
         format!("day {} ({age})", self.study_day)
     }
 
-    /// Returns the full comparison as lines of text.
+    /// Returns the comparison of all plans with the group's requirements as lines of text.
     pub fn describe_lines(&self) -> Vec<String> {
         let company = self.group.is_enterprise();
         let error = percent(self.max_relative_error, 0);

@@ -1,4 +1,4 @@
-//! Formats and names used by all reports.
+//! Number formats and names that all reports use.
 
 pub use novamind_base::formatting::pluralize;
 use novamind_base::formatting::{compact_number, grouped_number, signed_dollars};
@@ -36,7 +36,7 @@ pub fn describe_first_change(change: &FirstChange) -> String {
     format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })
 }
 
-/// Describes the lengths of two compared weeks if they differ: `of 3 days, the week before of 7`.
+/// Describes the lengths of two compared weeks if the lengths differ: `of 3 days, the week before of 7`.
 pub fn describe_short_week(days: u32, before: u32) -> Option<String> {
     (days != before).then(|| format!("of {}, the week before of {before}", pluralize(days, "day")))
 }
@@ -70,7 +70,7 @@ pub fn format_number(value: f64) -> String {
     grouped_number(value, if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 })
 }
 
-/// Formats a range, rounded outward: `18 to 87`.
+/// Formats a range, with the lower end rounded down and the upper end rounded up: `18 to 87`.
 pub fn format_range(least: f64, most: f64, decimals: usize) -> String {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
     // Ignores rounding errors in whole numbers of units.
@@ -78,12 +78,13 @@ pub fn format_range(least: f64, most: f64, decimals: usize) -> String {
     format!("{} to {}", grouped_number(least, decimals), grouped_number(most, decimals))
 }
 
-/// Formats a difference of shares in percentage points: `9.3 pt`. Shares are never compared in relative percent.
+/// Formats the difference between two shares in percentage points: `9.3 pt`. Differences between shares are never
+/// given in percent.
 pub fn format_percentage_points(difference: f64, decimals: usize) -> String {
     format!("{} pt", grouped_number(100.0 * difference, decimals))
 }
 
-/// Formats an axis label without trailing zeros: `1.5M`, `200k`, `0`.
+/// Formats the number of an axis label without trailing zeros: `1.5M`, `200k`, `0`.
 pub fn format_tick(value: f64) -> String {
     let text = compact_number(value);
     let (digits, suffix) = match text.find(|letter: char| letter.is_ascii_alphabetic()) {
@@ -97,7 +98,7 @@ pub fn format_tick(value: f64) -> String {
     format!("{digits}{suffix}")
 }
 
-/// Formats an axis label in dollars.
+/// Formats the number of an axis label in dollars.
 pub fn format_dollar_tick(value: f64) -> String {
     let sign = if value < 0.0 { "-" } else { "" };
     format!("{sign}${}", format_tick(value.abs()))

@@ -1,36 +1,36 @@
-//! Enterprises by group and stage: arrived, requested an offer, signed.
+//! Sales funnel of enterprises: number of enterprises by group that arrived, requested an offer and signed.
 
 use super::fit::{RangePosition, TrueValueRange};
 use super::formatting::{format_whole, pluralize};
 use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 
-/// Enterprises of a group over the whole run, by stage.
+/// Number of a group's enterprises that reached each stage of the sales funnel, over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Funnel {
-    /// Group.
+    /// The group of enterprises.
     pub group: Group,
-    /// Enterprises that arrived.
+    /// Number of enterprises that arrived.
     pub enterprises: u32,
-    /// Enterprises that requested an offer. The others found no plan with sufficient quality.
+    /// Number of enterprises that requested an offer. The remaining enterprises found no plan with sufficient quality.
     pub requests: u32,
-    /// Enterprises that signed.
+    /// Number of enterprises that signed a deal.
     pub deals: u32,
-    /// Enterprises that found no sufficient plan in the last four weeks.
+    /// Number of enterprises that found no plan with sufficient quality in the last four weeks.
     pub recently_lost: u32,
-    /// The plan that delivers the highest quality to the group, and that quality.
+    /// The plan that delivers the highest quality to the group, and the delivered quality.
     pub best_quality: Option<(Plan, f64)>,
-    /// Its quota, units a day.
+    /// Quota of the plan with the highest quality, units a day.
     pub quota: f64,
-    /// Usage of the smallest enterprise, units a day.
+    /// Estimated usage of the smallest enterprise, units a day.
     pub usage: TrueValueRange,
-    /// Mean required quality of the group.
+    /// Estimated mean required quality of the group.
     pub floor: TrueValueRange,
     /// Day of the estimate of required quality.
     pub study_day: u32,
 }
 
-/// Returns the funnel of every known group of enterprises, in their fixed order.
+/// Returns the funnel of every known enterprise group, in the fixed order of groups.
 pub fn funnels(session: &Session) -> Vec<Funnel> {
     let (estimates, quality) = (session.company().estimates(), session.company().delivered_quality());
     let known = estimates.iter().filter(|group_estimates| group_estimates.group.is_enterprise());
@@ -77,13 +77,13 @@ fn funnel(
 }
 
 impl Funnel {
-    /// Returns the number of enterprises that found no plan with sufficient quality.
+    /// Returns the number of enterprises that requested no offer because no plan had sufficient quality.
     pub fn lost_before_request(&self) -> u32 {
         self.enterprises.saturating_sub(self.requests)
     }
 
-    /// Describes the funnel in one line. Adds the comparison if enterprises turned away in the last four
-    /// weeks.
+    /// Describes the funnel in one line. Adds the delivered and the required quality if enterprises found no plan with
+    /// sufficient quality in the last four weeks.
     pub fn describe(&self) -> String {
         let mut text = format!(
             "{}: {} arrived, {} found no plan good enough, {} requested an offer, {} signed",

@@ -1,23 +1,23 @@
-//! Notable days of a run.
+//! Highlights: notable days of a run.
 
 use super::formatting::{format_money, format_whole, pluralize};
 use novamind_base::formatting::signed_dollars;
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::RunEndReason;
 
-/// A notable day.
+/// A notable day of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Highlight {
-    /// Day.
+    /// Day of the run.
     pub day: u32,
-    /// Description.
+    /// Description of the event on this day.
     pub text: String,
 }
 
-/// Number of outages that are listed; further ones are counted.
+/// Number of outages that are listed one by one. Further outages are only counted.
 const MAX_LISTED_OUTAGES: usize = 3;
 
-/// Returns the highlights of a run by day.
+/// Returns the highlights of a run, sorted by day.
 pub fn highlights(
     weeks: &[WeekFigures],
     cash_by_day: &[f64],
@@ -61,11 +61,12 @@ fn add_first_times(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
 }
 
 fn add_extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32, String)) {
-    // One week is neither the best nor the worst.
+    // Best and worst weeks are listed only if there are at least three weeks.
     if weeks.len() >= 3 {
         let by_change =
             |left: &&WeekFigures, right: &&WeekFigures| left.cash_change.total_cmp(&right.cash_change);
-        // A week shortened by the end of the run lost less than a full one, so it does not count as the best.
+        // A week that was shortened by the end of the run is not the best week, because it has fewer days in which to
+        // lose cash.
         let whole = weeks.iter().map(|week| week.days_run).max();
         let complete = weeks.iter().filter(|week| Some(week.days_run) == whole);
         if let Some(best) = complete.max_by(by_change) {
@@ -89,7 +90,7 @@ fn add_extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut
     }
 }
 
-/// Returns the first week at whose end a figure was highest.
+/// Returns the first week in which a figure has its highest value.
 pub fn peak_week(weeks: &[WeekFigures], figure: fn(&WeekFigures) -> u32) -> Option<&WeekFigures> {
     weeks.iter().rev().max_by_key(|week| figure(week)).filter(|week| figure(week) > 0)
 }

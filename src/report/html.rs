@@ -1,4 +1,5 @@
-//! Writes a page as one self-contained HTML file without scripts. Light or dark follows the reader's system.
+//! Writes a page as one self-contained HTML file without scripts. Light or dark colors follow the setting of the
+//! reader's system.
 
 use super::page::{Bar, Block, NamedValue, Page, Table};
 use super::svg;
@@ -6,7 +7,7 @@ use novamind_base::formatting::escape_html;
 
 pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 
-/// Returns the page as HTML.
+/// Returns a page as a complete HTML document.
 pub fn to_html(page: &Page) -> String {
     let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escape_html(tag))).collect();
     let mut body = String::new();
@@ -39,7 +40,7 @@ pub fn to_html(page: &Page) -> String {
     )
 }
 
-/// Number of sections that start expanded; with more of them, all start collapsed.
+/// Maximum number of sections that are expanded at first. If a page has more sections, all of them are collapsed.
 const MAX_UNFOLDED: usize = 12;
 
 struct BlockContext {

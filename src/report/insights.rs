@@ -1,5 +1,5 @@
-//! Answers of get_group_insights and get_market_overview for display: each estimate as a range of possible true
-//! values, with its day. Programs receive the unchanged answers.
+//! Converts results of `get_group_insights` and `get_market_overview` for display. Each estimate becomes a range of
+//! possible true values with its day. Programs receive the unchanged results.
 
 use serde_json::{Map, Value, json};
 
@@ -9,7 +9,7 @@ use novamind_session::true_value_range;
 
 const ESTIMATE_FIELDS: [&str; 3] = ["estimates", "network_influence", "reputation_influence"];
 
-/// Returns the answer about a group with ranges in place of estimates, and their day.
+/// Returns the result of `get_group_insights` with ranges instead of estimates, and the day of the estimates.
 pub fn insights_as_ranges(answer: &Value, fit: &Fit) -> Value {
     let Value::Object(fields) = answer else { return answer.clone() };
     let mut shown = Map::new();
@@ -26,7 +26,7 @@ pub fn insights_as_ranges(answer: &Value, fit: &Fit) -> Value {
     Value::Object(shown)
 }
 
-/// Returns the market overview with the day of each group's estimates.
+/// Returns the result of `get_market_overview` with the day of each group's estimates.
 pub fn overview_with_ages(answer: &Value, fits: &[Fit]) -> Value {
     let mut shown = answer.clone();
     let groups = shown.get_mut("known_groups").and_then(Value::as_array_mut);
@@ -49,7 +49,7 @@ fn replace_with_ranges(value: &Value, noise: f64) -> Value {
     }
 }
 
-/// Formats the range with enough decimals for two digits of its lower end.
+/// Formats a range with enough decimals to show two significant digits of the lower end.
 fn format_noise_range(estimate: f64, noise: f64) -> String {
     let (least, most) = true_value_range(estimate, noise);
     let decimals = match least.abs() {

@@ -1,40 +1,38 @@
-//! Cost per lead by channel and group: the last four weeks compared with the cheapest four weeks before them.
+//! Cost per lead by channel and group: the last four weeks compared with the four consecutive earlier weeks of the lowest cost.
 
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{GroupWeek, PaidLeads};
 
-/// Number of weeks that are combined. A single week has too few leads to compare.
+/// Number of weeks over which the cost per lead is computed. A single week has too few leads for a comparison.
 pub const WINDOW_WEEKS: usize = 4;
-/// Minimum number of leads in a period for its cost per lead to be compared.
+/// Minimum number of leads in four weeks whose cost per lead is compared.
 pub const MIN_LEADS: f64 = 20.0;
-/// Minimum ratio to the lowest cost per lead that counts as a rise.
+/// Minimum ratio of the current to the lowest cost per lead that counts as a rise.
 pub const MIN_RISE_FACTOR: f64 = 2.0;
 
-/// Consecutive weeks of advertising of a channel for a group.
+/// Results of advertising for a group in a channel over consecutive weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdWindow {
-    /// First and last week.
+    /// Numbers of the first and the last week.
     pub weeks: (u32, u32),
-    /// Number of leads.
+    /// Number of leads in these weeks.
     pub leads: u32,
-    /// Spending, dollars.
+    /// Advertising spending in these weeks, dollars.
     pub spend: f64,
-    /// Individuals among them who were billed. `None` for enterprises, which are billed weeks after they
-    /// arrive.
+    /// Number of these leads who paid a first bill. `None` for enterprises, which are billed weeks after they arrive.
     pub first_bills: Option<u32>,
 }
 
-/// Costs of a channel and group that were advertised in the last four weeks.
+/// Lead costs of a channel and group with advertising in the last four weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeadCost {
-    /// Channel.
+    /// The advertising channel.
     pub channel: Channel,
-    /// Group.
+    /// The advertised group.
     pub group: Group,
-    /// The last four weeks.
+    /// Results of the last four weeks.
     pub recent: AdWindow,
-    /// The four consecutive earlier weeks with the lowest cost per lead. `None` if no period brought enough
-    /// leads.
+    /// Results of the four consecutive earlier weeks with the lowest cost per lead. `None` if no four weeks had enough leads.
     pub cheapest: Option<AdWindow>,
 }
 
@@ -57,21 +55,21 @@ impl AdWindow {
         }
     }
 
-    /// Returns dollars per lead; `None` without leads.
+    /// Returns the cost per lead in dollars, or `None` if there are no leads.
     pub fn cost_per_lead(&self) -> Option<f64> {
         (self.leads > 0).then(|| self.spend / f64::from(self.leads))
     }
 
-    /// Returns dollars per first bill; `None` without bills.
+    /// Returns the cost per first bill in dollars, or `None` if there are no bills.
     pub fn cost_per_bill(&self) -> Option<f64> {
         self.first_bills.filter(|billed| *billed > 0).map(|billed| self.spend / f64::from(billed))
     }
 }
 
 impl LeadCost {
-    /// Returns the ratio of the current to the lowest cost per lead if it rose by more than chance explains: at the
-    /// lowest cost, the money would have brought enough leads. Without any lead, assumes that the next dollar brings
-    /// one.
+    /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is too small, or if
+    /// the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost, so that chance cannot be ruled out.
+    /// If there are no leads, the whole spending counts as the cost of one lead.
     pub fn cost_rise(&self) -> Option<f64> {
         let before = self.cheapest?.cost_per_lead()?;
         let now = self.recent.cost_per_lead().unwrap_or(self.recent.spend);
@@ -79,7 +77,7 @@ impl LeadCost {
     }
 }
 
-/// Returns the costs of every pair advertised in the last four weeks, highest spending first.
+/// Returns the lead costs of every channel and group with advertising in the last four weeks, highest spending first.
 pub fn lead_costs_by_pair(weeks: &[ByGroup<GroupWeek>]) -> Vec<LeadCost> {
     let last = weeks.len().saturating_sub(WINDOW_WEEKS);
     let pairs = Group::all().flat_map(|group| Channel::ALL.map(|channel| (channel, group)));

@@ -5,7 +5,7 @@ use novamind_base::formatting::{cents, compact_number, parse_number, percent, sh
 use novamind_course::{GoalStatus, LessonQuestion, LessonStatus};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 
-/// Returns the word for an event.
+/// Returns the name of a lesson event.
 pub fn event_name(event: LessonEvent) -> &'static str {
     match event {
         LessonEvent::Begun => "begun",
@@ -17,7 +17,7 @@ pub fn event_name(event: LessonEvent) -> &'static str {
     }
 }
 
-/// Describes a line of kind `lesson` without access to the lesson itself.
+/// Describes a `lesson` event of a trajectory without reading the lesson file.
 pub fn describe_note(note: &LessonNote) -> String {
     let number = note.number.unwrap_or(1);
     let value = note.value.map(compact_number).unwrap_or_else(|| "none".to_owned());
@@ -35,7 +35,7 @@ pub fn describe_note(note: &LessonNote) -> String {
     }
 }
 
-/// Returns a lesson page, as the student sees it, as lines of text.
+/// Returns the lesson page of a student as lines of text.
 pub fn describe_page(page: &LessonStatus) -> Vec<String> {
     let mut lines = vec![step_heading(page)];
     lines.extend(page.text.lines().map(str::to_owned));
@@ -58,7 +58,7 @@ pub fn describe_page(page: &LessonStatus) -> Vec<String> {
     lines
 }
 
-/// Names the lesson, step and week.
+/// Returns a heading with the lesson, the step and the week.
 pub fn step_heading(page: &LessonStatus) -> String {
     let part = page.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
     let again = if page.try_number > 1 { format!(", try {}", page.try_number) } else { String::new() };
@@ -81,7 +81,7 @@ pub fn describe_question(question: &LessonQuestion) -> Vec<String> {
     lines
 }
 
-/// Describes the guess, and the outcome if it is known.
+/// Describes the student's guess, and the outcome if it is known.
 pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let written = |value: f64| format_guess(question, value);
     let is_choice = !question.choices.is_empty();
@@ -108,7 +108,7 @@ pub fn asks_for_share(question: &LessonQuestion) -> bool {
 /// Parses a typed guess: `12,000`, `12k`, `$1.2M`, the number of a choice, or a share such as `0.4` or `40%`.
 ///
 /// # Errors
-/// Returns a message with an example if the text is not such a number.
+/// Returns a message with an example if the text is not a valid guess.
 pub fn parse_guess(question: &LessonQuestion, text: &str) -> Result<f64, String> {
     let text = text.trim();
     let value = match text.strip_suffix('%') {
@@ -154,7 +154,7 @@ pub fn describe_goal(goal: &GoalStatus) -> String {
 pub fn describe_goal_progress(goal: &GoalStatus) -> Option<String> {
     let value = format_goal_amount(goal, goal.value?);
     Some(match (goal.bound, goal.of_good_play) {
-        (None, _) => format!("{value} so far; the target is shown at the end of the step"),
+        (None, _) => format!("{value} now; the target is shown at the end of the step"),
         (Some(bound), Some(share)) => {
             let good = format_goal_amount(goal, bound / share);
             format!(

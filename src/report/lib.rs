@@ -1,8 +1,8 @@
-//! Reports on weeks and runs. A `RunReport` contains the data of a whole run and can be written as Markdown or HTML. Reports
-//! state what the records show; the only causes they name come from re-simulation (`why`).
+//! Reports on weeks and runs. A `RunReport` contains the data of a whole run and can be written as Markdown or HTML.
+//! Reports contain only recorded data. Causes are reported only if a re-simulation has computed them (`why`).
 //!
-//! Everything is computed from data visible to the player: observations, the journal, and guarded queries. Each measure
-//! is one pure function. `outline` converts a story to a `page::BranchesView`, which the writers format.
+//! Reports are computed from data that the player can see: observations, the journal, and guarded queries. Each
+//! measure is one pure function. `outline` converts a report to a `page::Page`, which `html` and `markdown` format.
 
 pub mod action_items;
 pub mod anonymization;
@@ -62,7 +62,7 @@ pub use logbook::Logbook;
 pub use run_report::RunReport;
 pub use week::WeekReport;
 
-/// Returns the report on a run as Markdown.
+/// Formats the report on a run as Markdown.
 pub fn report_to_markdown(report: &RunReport) -> String {
     markdown::to_markdown(&outline::report_page(report))
 }
@@ -102,7 +102,7 @@ pub fn session_to_html(logbook: &Logbook) -> String {
     html::to_html(&logbook::session_page(logbook))
 }
 
-/// Returns the logbook of a short run on disk.
+/// Returns the logbook of a short run that was recorded on disk.
 #[cfg(any(test, feature = "test-kit"))]
 pub fn sample_logbook() -> Logbook {
     let (session, lines) = test_kit::recorded_run();

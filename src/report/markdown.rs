@@ -92,7 +92,7 @@ fn chart_markdown(chart: &Chart) -> String {
     let mut parts = vec![format!("**{}.** {}", escape(&chart.title), escape(&chart.summary))];
     let trends: Vec<(String, String)> = match &chart.plot {
         Plot::Lines { curves, .. } => {
-            // The curves of one chart share a scale so that they can be compared.
+            // All curves of a chart have the same scale so that they can be compared.
             let all: Vec<f64> = curves.iter().flat_map(curve_values).collect();
             let trend = |curve: &Curve| sparkline_between(&curve_values(curve), min_and_max(&all));
             curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
@@ -111,7 +111,8 @@ fn curve_values(curve: &Curve) -> Vec<f64> {
     curve.points.iter().map(|point| point.1).collect()
 }
 
-/// Draws values as one row of bars, scaled from the smallest to the largest; costs count by their amount.
+/// Draws values as one row of bars, scaled from the smallest to the largest value. If no value is positive, the
+/// amounts are drawn.
 fn sparkline(values: &[f64]) -> String {
     let is_cost = values.iter().all(|value| *value <= 0.0);
     let sizes: Vec<f64> =
@@ -129,7 +130,7 @@ fn min_and_max(values: &[f64]) -> [f64; 2] {
     [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// Draws values as one row of bars between two limits.
+/// Draws values as one row of bars, scaled between two limits.
 fn sparkline_between(values: &[f64], [least, most]: [f64; 2]) -> String {
     let height = |value: &f64| match most > least {
         true => sparkline_char((value - least) / (most - least)),
@@ -138,7 +139,7 @@ fn sparkline_between(values: &[f64], [least, most]: [f64; 2]) -> String {
     sample_values(values).iter().map(height).collect()
 }
 
-/// Escapes text for Markdown: one line, without markup.
+/// Escapes text for Markdown, so that it is shown on one line without markup.
 pub fn escape(text: &str) -> String {
     let flat: Vec<&str> = text.split_whitespace().collect();
     let characters: Vec<char> =
@@ -150,7 +151,7 @@ pub fn escape(text: &str) -> String {
         };
         let marks = match letter {
             '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '~' | '&' => true,
-            // Names of tools and channels are easier to read unescaped.
+            // Underscores in names of tools and channels are not escaped, which makes the source easier to read.
             '_' => !(inside_word(at.checked_sub(1)) && inside_word(at.checked_add(1))),
             '#' | '-' | '+' | '=' => {
                 at == 0 && characters.get(1).is_none_or(|next| !next.is_ascii_digit() && *next != '$')

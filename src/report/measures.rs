@@ -1,4 +1,4 @@
-//! The behavior measures of the paper, as far as they follow from visible data. One function for each.
+//! The behavior measures of the paper that can be computed from visible data, with one function for each measure.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,30 +34,30 @@ pub const PLANNING_WORDS: [&str; 16] = [
 /// All behavior measures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BehaviorMeasures {
-    /// Number of days that the company survived.
+    /// Number of days that the company has survived.
     pub survival_days: u32,
     /// Final or current cash, dollars.
     pub cash: f64,
-    /// Share of advertising on each group's best channel; `None` if nothing was spent.
+    /// Share of advertising spending on each group's best channel; `None` without advertising.
     pub channels: Option<ChannelSkill>,
-    /// Targeted share of development spending; `None` if nothing was spent.
+    /// Targeted share of development spending; `None` without development spending.
     pub targeted_development: Option<f64>,
     /// Forecast scores by horizon.
     pub forecasts: Vec<ForecastScore>,
-    /// Number of weeks with naive forecasts, and of all weeks.
+    /// Number of weeks with naive forecasts, and number of all weeks.
     pub filled_naively: (u32, u32),
-    /// Scores of the forecasts filed before the first four weeks, by horizon.
+    /// Scores of the forecasts that were filed before the first four weeks, by horizon.
     pub first_forecasts: Vec<ForecastScore>,
-    /// Share of advertising on the truly best channels. `None` for unfinished runs and if nothing was spent.
+    /// Share of advertising spending on the truly best channels. `None` for unfinished runs and without advertising.
     pub truly_best: Option<TrueBestChannelSpend>,
-    /// Use of tools.
+    /// Number and distribution of tool calls.
     pub tools: ToolUse,
     /// Length and planning words of rationales.
     pub planning: Planning,
 }
 
 impl BehaviorMeasures {
-    /// Computes the measures of a run, given its advertising results.
+    /// Computes the behavior measures of a run from the session and its advertising results.
     pub fn from_session(session: &Session, channels: &[ChannelRow]) -> BehaviorMeasures {
         let (journal, day) = (session.journal(), session.day());
         BehaviorMeasures {
@@ -75,7 +75,7 @@ impl BehaviorMeasures {
     }
 }
 
-/// Returns the number of days that the company survived: to bankruptcy, or so far.
+/// Returns the number of days that the company survived until bankruptcy, or has survived to date.
 pub fn survival_days(ended: Option<RunEndReason>, day: u32, last_day: u32) -> u32 {
     match ended {
         Some(RunEndReason::Horizon) => last_day,
@@ -83,52 +83,53 @@ pub fn survival_days(ended: Option<RunEndReason>, day: u32, last_day: u32) -> u3
     }
 }
 
-/// Minimum number of leads for a channel to be named the best.
+/// Minimum number of leads of a channel that can count as the best channel.
 pub const MIN_CHANNEL_LEADS: f64 = 3.0;
 
 /// The channel with the most leads per dollar for a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BestChannel {
-    /// Channel name.
+    /// Name of the best channel.
     pub channel: String,
-    /// Leads per thousand dollars.
+    /// Leads per thousand dollars on this channel.
     pub leads_per_thousand: f64,
-    /// Share of the group's advertising on this channel.
+    /// Share of the group's advertising spending on this channel.
     pub share: f64,
 }
 
-/// Advertising for one group.
+/// Advertising results of one group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupAds {
-    /// The group.
+    /// ID of the advertised group.
     pub group: String,
-    /// Number of channels with spending.
+    /// Number of channels on which money was spent for the group.
     pub tried: usize,
-    /// Dollars spent on the group.
+    /// Advertising spending on the group, dollars.
     pub spend: f64,
-    /// The best channel with spending; `None` if only one has any, or if the best brought fewer than three leads.
+    /// The best channel with spending. `None` if only one channel has spending, or if the best channel has fewer than
+    /// three leads.
     pub best: Option<BestChannel>,
 }
 
-/// Advertising on the best channels.
+/// Shares of advertising spending on the best channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChannelSkill {
-    /// Share of the spending on groups with a best channel that went to that channel. `None` if no group has one.
+    /// Share of spending on the best channel, over all groups with a best channel. `None` if no group has a best channel.
     pub share: Option<f64>,
-    /// Groups, highest spending first.
+    /// Advertising results by group, highest spending first.
     pub groups: Vec<GroupAds>,
 }
 
 impl ChannelSkill {
-    /// Returns the mean number of channels with spending, over the advertised groups.
+    /// Returns the mean number of channels with spending over the advertised groups.
     pub fn channels_tried(&self) -> f64 {
         let tried: usize = self.groups.iter().map(|group| group.tried).sum();
         tried as f64 / self.groups.len().max(1) as f64
     }
 }
 
-/// Returns the share of advertising on the best channel of each group, measured by leads per dollar. Only channels
-/// with spending can be measured, so a group counts if two or more have spending and the best brought enough leads.
+/// Returns the share of advertising spending on the channel of each group with the most leads per dollar. A group
+/// counts if at least two channels have spending and the best channel has enough leads.
 pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
     let names: BTreeSet<&str> =
         rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
@@ -152,7 +153,7 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
 fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     let yield_of = |row: &ChannelRow| row.leads / row.spend;
     let best = paid.iter().max_by(|left, right| {
-        // Ties: larger spending first, then alphabetical order.
+        // Channels with equal results are ordered by spending, then alphabetically.
         let by_spend = left.spend.total_cmp(&right.spend);
         yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
     })?;
@@ -163,17 +164,18 @@ fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     })
 }
 
-/// Share of advertising on the truly best channels: those with the highest yield of all five at the start of the run,
-/// which is hidden from players.
+/// Share of advertising spending on the truly best channels. The truly best of the five channels has the highest yield
+/// at the start of the run, which is hidden from players.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrueBestChannelSpend {
-    /// Share of all advertising on the truly best channel of its group. Random spending reaches a fifth.
+    /// Share of all advertising spending on the truly best channel of the advertised group. Random spending reaches one fifth.
     pub share: f64,
-    /// The share by group.
+    /// Share of spending on the truly best channel, by group.
     pub groups: BTreeMap<String, f64>,
 }
 
-/// Returns the share of advertising on the truly best channels. `None` if nothing was spent or they are unknown.
+/// Returns the share of advertising spending on the truly best channels. `None` without advertising, or if the best
+/// channel of a group is unknown.
 pub fn true_best_channel_share(
     rows: &[ChannelRow],
     best: impl Fn(Group) -> Option<Channel>,
@@ -190,10 +192,10 @@ pub fn true_best_channel_share(
     (all > 0.0).then(|| TrueBestChannelSpend { share: on_best / all, groups: shares.collect() })
 }
 
-/// Number of weeks that count as the first.
+/// Number of first weeks whose forecasts are scored separately.
 pub const FIRST_WEEK_COUNT: usize = 4;
 
-/// Returns the scores of forecasts filed before the first four weeks, by horizon.
+/// Returns the scores of forecasts that were filed before the first four weeks, by horizon.
 pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ForecastScore> {
     let filed = filed_forecasts(journal, cash_by_day);
     let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
@@ -203,7 +205,7 @@ pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<For
     horizons.into_iter().map(|horizon| ForecastScore::from_forecasts(horizon, &first)).collect()
 }
 
-/// Returns the targeted share of development spending over the simulated days; `None` if nothing was spent.
+/// Returns the targeted share of development spending over the simulated days, or `None` without development spending.
 pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     let mut general = 0.0;
     let mut targeted: BTreeMap<Group, f64> = BTreeMap::new();
@@ -226,21 +228,21 @@ pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
     (all > 0.0).then(|| aimed / all)
 }
 
-/// Use of tools.
+/// Number and distribution of tool calls.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ToolUse {
-    /// All accepted calls that changed something.
+    /// Number of accepted calls that changed the run.
     pub calls: u32,
-    /// Calls per simulated week.
+    /// Number of these calls per simulated week.
     pub per_week: f64,
     /// Number of calls by tool, most used first.
     pub tools: Vec<(String, u32)>,
-    /// Evenness of calls over the tools used; `None` with fewer than two.
+    /// Evenness of the calls over the tools that were used, from 0 to 1; `None` with fewer than two tools.
     pub evenness: Option<f64>,
 }
 
-/// Returns the entropy of the shares divided by that of equal shares: 1 for equal use, near 0 if one dominates.
-/// `None` with fewer than two counts.
+/// Returns the entropy of the counts divided by the entropy of equal counts: 1 for equal counts, near 0 if one count
+/// dominates. `None` with fewer than two positive counts.
 pub fn normalized_entropy(counts: &[u32]) -> Option<f64> {
     let all: f64 = counts.iter().map(|count| f64::from(*count)).sum();
     let used = counts.iter().filter(|count| **count > 0);
@@ -250,7 +252,7 @@ pub fn normalized_entropy(counts: &[u32]) -> Option<f64> {
     (kinds > 1).then(|| (entropy / libm::log(kinds as f64)).min(1.0))
 }
 
-/// Counts calls by tool.
+/// Counts the accepted calls that changed the run, by tool.
 pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
     let mut weeks = 0u32;
@@ -283,9 +285,9 @@ pub struct Planning {
 /// Word counts of a text.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct WordCounts {
-    /// All words.
+    /// Number of all words.
     pub words: usize,
-    /// Number of [`PLANNING_WORDS`].
+    /// Number of words that are [`PLANNING_WORDS`].
     pub planning: usize,
     /// Number of times the word "if" occurs.
     pub ifs: usize,
@@ -303,7 +305,7 @@ impl WordCounts {
         }
     }
 
-    /// Returns planning words per hundred words; `None` without words.
+    /// Returns the number of planning words per hundred words, or `None` without words.
     pub fn planning_per_hundred(&self) -> Option<f64> {
         (self.words > 0).then(|| 100.0 * self.planning as f64 / self.words as f64)
     }
@@ -338,7 +340,7 @@ impl std::ops::AddAssign for WordCounts {
     }
 }
 
-/// Measures the length of rationales and their share of planning words.
+/// Returns the mean length of rationales and their mean number of planning words.
 pub fn planning_measures(journal: &[JournalEntry]) -> Planning {
     let (mut rationales, mut all) = (0u32, WordCounts::default());
     for entry in journal {
@@ -350,7 +352,7 @@ pub fn planning_measures(journal: &[JournalEntry]) -> Planning {
     Planning { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
-/// Returns the number of weeks with naive forecasts, and of all weeks.
+/// Returns the number of weeks with naive forecasts, and the number of all weeks.
 pub fn naive_forecast_weeks(journal: &[JournalEntry]) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
         JournalEntry::Advance { filled_naively, .. } => Some(filled_naively.contains(&true)),
@@ -408,7 +410,7 @@ mod tests {
             (channel_spend.share, channel_spend.groups["S1"], channel_spend.groups["S3"]),
             (0.5, 0.375, 1.0)
         );
-        // All spending on one wrong channel: no comparison, and no share on the best.
+        // If all money is spent on one wrong channel, channels cannot be compared and the share of the best channel is 0.
         let wrong = [ads("S1", "linkedin", 50.0, 100.0)];
         assert_eq!(true_best_channel_share(&wrong, best).map(|spend| spend.share), Some(0.0));
         assert_eq!(best_tried_channel_share(&wrong).and_then(|skill| skill.share), None);

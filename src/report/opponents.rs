@@ -1,4 +1,4 @@
-//! Results of strong policies in the same world as a finished run.
+//! Results of strong policies with the same seed and scenario as a finished run.
 
 use std::path::Path;
 
@@ -8,31 +8,32 @@ use novamind_base::formatting::dollars;
 use novamind_record::folder::configuration::Configuration;
 use novamind_tools::Rejection;
 
-/// Result of a policy in the world of a run.
+/// Result of a policy with the seed and scenario of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpponentResult {
-    /// Policy name.
+    /// Name of the policy.
     pub policy: String,
-    /// Last simulated day.
+    /// Last day that was simulated with the policy.
     pub day: u32,
-    /// Cash on that day, dollars; the score is 0 after a bankruptcy.
+    /// Cash on the last simulated day, dollars. The score is 0 after a bankruptcy.
     pub cash: f64,
-    /// Whether it went bankrupt on that day.
+    /// Whether the company went bankrupt on the last simulated day.
     pub is_bankrupt: bool,
-    /// The rejection that stopped it on that day, if any.
+    /// The rejection that stopped the policy on the last simulated day, if any.
     pub stopped: Option<String>,
 }
 
-/// A run and its opponents.
+/// Results of all opponents of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpponentResults {
-    /// Day of comparison: the last day of the run's world, or of a lesson's part.
+    /// Day on which the opponents are compared: the planned last day of the run, or of the part of a lesson.
     pub day: u32,
-    /// The policies, highest score first.
+    /// Results of the policies, highest score first.
     pub policies: Vec<OpponentResult>,
 }
 
-/// Plays the opponents of the run in a folder while the callback returns true. Returns `None` if it was stopped.
+/// Plays the opponents of the run in a folder while the callback returns `true`. Returns `None` if the callback
+/// stopped the simulation.
 pub type PlayOpponentsFn =
     fn(&Path, &Configuration, &(dyn Fn() -> bool + Sync)) -> Result<Option<OpponentResults>, Rejection>;
 
@@ -42,7 +43,7 @@ impl OpponentResult {
         if self.is_bankrupt { 0.0 } else { self.cash }
     }
 
-    /// Describes the end.
+    /// Describes the final cash of the policy, or the reason why it ended early.
     pub fn describe(&self) -> String {
         match &self.stopped {
             Some(why) => format!("{} when it stopped on day {}: {why}", dollars(self.cash), self.day),
@@ -53,12 +54,12 @@ impl OpponentResult {
 }
 
 impl OpponentResults {
-    /// Describes the comparison.
+    /// Describes how the opponents are compared with the run.
     pub fn describe(&self) -> String {
         format!("each policy plays this run's world from day 0 to day {}, with the same seed", self.day)
     }
 
-    /// Returns how many have a higher score.
+    /// Returns the number of opponents with a higher score.
     pub fn count_ahead_of(&self, score: f64) -> usize {
         self.policies.iter().filter(|opponent_result| opponent_result.score() > score).count()
     }

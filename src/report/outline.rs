@@ -64,7 +64,8 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // The runway from committed settings and recent weeks' income and usage, not from the change since the start.
+    // The runway is computed from the current settings and the income and usage of recent weeks, not from the cash
+    // change since the start.
     let runway = match (seen.ended, seen.whole_runway_weeks()) {
         (Some(_), _) => String::new(),
         (None, None) => "at current costs and income, cash lasts to the last day".to_owned(),
@@ -103,7 +104,7 @@ fn describe_rank(report: &RunReport) -> String {
 }
 
 fn bankruptcy_blocks(ruin: &Bankruptcy) -> Vec<Block> {
-    let mut blocks = vec![Block::Heading("How it ended")];
+    let mut blocks = vec![Block::Heading("Bankruptcy")];
     blocks.push(Block::Text(format!(
         "Cash fell below zero on day {}, which ended the run. {}",
         ruin.day,
@@ -253,13 +254,13 @@ fn forecast_blocks(report: &RunReport) -> Vec<Block> {
     blocks
 }
 
-/// Formats leads per thousand dollars; small values keep decimals.
+/// Formats leads per thousand dollars. Small values are formatted with decimals.
 fn format_leads_per_thousand(leads: f64) -> String {
     grouped_number(leads, if leads < 1.0 { 3 } else { 1 })
 }
 
 fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
-    let mut blocks = vec![Block::Heading("How it was played")];
+    let mut blocks = vec![Block::Heading("Behavior of the player")];
     let none = || "–".to_owned();
     let (least, most) = published_targeted_shares();
     let planning = &measures.planning;

@@ -1,17 +1,17 @@
 //! Format-independent model of a page: headings, sentences, tables and charts.
 
-/// A page.
+/// A page of a report, independent of the output format.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// Title.
+    /// Title of the page.
     pub title: String,
-    /// The main result in one sentence.
+    /// The main result of the report in one sentence.
     pub headline: String,
     /// Short facts about the run.
     pub tags: Vec<String>,
-    /// Content.
+    /// Content of the page, in order.
     pub blocks: Vec<Block>,
-    /// Origin of the page.
+    /// Origin of the page: program version and source of the data.
     pub footer: String,
 }
 
@@ -22,11 +22,11 @@ pub enum Block {
     Heading(&'static str),
     /// A paragraph.
     Text(String),
-    /// A remark in small print.
+    /// A note in small print.
     Note(String),
     /// A warning.
     Warning(String),
-    /// Key figures.
+    /// Key figures with their names.
     Facts(Vec<NamedValue>),
     /// A table.
     Table(Table),
@@ -36,52 +36,52 @@ pub enum Block {
     Chart(Chart),
     /// A section that can be collapsed.
     Folded {
-        /// Title.
+        /// Title of the section.
         title: String,
         /// Summary at the right end of the title line.
         note: String,
-        /// Sentences.
+        /// Paragraphs of the section.
         lines: Vec<String>,
-        /// List items.
+        /// Items of the list in the section.
         points: Vec<String>,
     },
 }
 
-/// A named value.
+/// A value with its name and a note.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedValue {
-    /// Name.
+    /// Name of the value.
     pub name: String,
-    /// Value.
+    /// Formatted value.
     pub value: String,
-    /// Reference value or explanation; can be empty.
+    /// Reference value or explanation of the value; can be empty.
     pub note: String,
 }
 
 impl NamedValue {
-    /// Returns a named value.
+    /// Creates a value with a name and a note.
     pub fn new(name: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> NamedValue {
         NamedValue { name: name.into(), value: value.into(), note: note.into() }
     }
 }
 
-/// A table.
+/// A table of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Column heads, and whether the column is numeric.
+    /// Heading of each column, and whether the column is numeric.
     pub columns: Vec<(&'static str, bool)>,
-    /// Cells by row.
+    /// Cells of the table by row.
     pub rows: Vec<Vec<String>>,
 }
 
-/// A bar.
+/// A horizontal bar.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bar {
-    /// Name.
+    /// Name of the bar.
     pub name: String,
-    /// Formatted value.
+    /// Formatted value of the bar.
     pub value_text: String,
-    /// Length, 0 to 1.
+    /// Length of the bar as a share of the full width, from 0 to 1.
     pub share: f64,
     /// Whether the bar is highlighted.
     pub is_highlighted: bool,
@@ -90,7 +90,7 @@ pub struct Bar {
 /// A chart over days or weeks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// Title.
+    /// Title of the chart.
     pub title: String,
     /// Text alternative of the chart.
     pub summary: String,
@@ -98,27 +98,27 @@ pub struct Chart {
     pub x_label: &'static str,
     /// Whether values are dollars.
     pub is_in_dollars: bool,
-    /// Limits of the vertical axis, if outliers would flatten the rest.
+    /// Limits of the vertical axis, if outliers would flatten the other values.
     pub y_limits: Option<(f64, f64)>,
-    /// Data of the chart.
+    /// Data of the chart as lines or stacked bars.
     pub plot: Plot,
 }
 
 /// Data of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Plot {
-    /// Lines, with an optional interval.
+    /// Lines with an optional shaded interval.
     Lines {
-        /// Lines.
+        /// Lines of the chart.
         curves: Vec<Curve>,
-        /// An interval.
+        /// Shaded interval, if any.
         band: Option<Band>,
     },
-    /// Stacked bars; positive parts go up, negative ones down.
+    /// Stacked bars. Positive values are stacked upwards, negative values downwards.
     Stacks {
         /// Position of each bar on the horizontal axis.
         positions: Vec<f64>,
-        /// Parts.
+        /// Series of values that are stacked.
         series: Vec<StackSeries>,
     },
 }
@@ -126,25 +126,25 @@ pub enum Plot {
 /// A line of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name.
+    /// Name of the line in the legend.
     pub name: String,
-    /// Points.
+    /// Points of the line, as position and value.
     pub points: Vec<(f64, f64)>,
 }
 
-/// An interval of a chart.
+/// A shaded interval of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {
-    /// Name.
+    /// Name of the interval in the legend.
     pub name: String,
-    /// Position, lower end, upper end.
+    /// Position, lower end and upper end of the interval.
     pub points: Vec<(f64, f64, f64)>,
 }
 
-/// A part of stacked bars.
+/// A series of stacked bars.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StackSeries {
-    /// Name.
+    /// Name of the series in the legend.
     pub name: String,
     /// One value for each bar.
     pub values: Vec<f64>,

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use novamind_session::{ChangedParameter, ChangedParameters};
 
-/// Describes a change: `group.S1.c_max_mean: 50 → 300, from day 30`.
+/// Describes the change of a parameter: `group.S1.c_max_mean: 50 → 300, from day 30`.
 pub fn describe_changed_parameter(set: &ChangedParameter, today: u32) -> String {
     let ChangedParameter { key, old, new, from_day } = set;
     let change = if old == new { format!("{new}, unchanged") } else { format!("{old} → {new}") };
@@ -14,7 +14,7 @@ pub fn describe_changed_parameter(set: &ChangedParameter, today: u32) -> String 
     }
 }
 
-/// Describes a recorded change: `set leads.saturation_base: 1 → 0.9 from day 30`.
+/// Describes a recorded change of a parameter: `set leads.saturation_base: 1 → 0.9 from day 30`.
 pub fn describe_parameter_entry(key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> String {
     format!("set {key}: {old} → {new}{}", describe_start_day(from_day))
 }
@@ -24,7 +24,7 @@ pub fn describe_start_day(from_day: Option<u32>) -> String {
     from_day.map_or(String::new(), |day| format!(" from day {day}"))
 }
 
-/// Lists the parameters that differ from the scenario, and those scheduled for a later day.
+/// Lists the parameters that differ from the scenario, and the changes that are scheduled for a later day.
 pub fn describe_changed_parameters(changed: &ChangedParameters) -> Vec<String> {
     let against = match &changed.scenario {
         Some(name) => format!("scenario {name}"),

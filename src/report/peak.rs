@@ -1,21 +1,21 @@
-//! Projected peak usage of next week: the busiest day of the last week times its growth over the busiest day of the
-//! week before. It is labeled as a projection wherever it is shown.
+//! Projected peak usage of next week: usage on the busiest day of the last week, multiplied by the growth since the
+//! week before. Every text labels the value as a projection.
 
 use super::formatting::format_whole;
 use novamind_base::formatting::percent;
 use novamind_record::figures::WeekFigures;
 
-/// Busiest day of the last week, and its growth.
+/// Usage of the busiest day of the last week, and its growth since the week before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakProjection {
     /// Usage of the busiest day of the last week, units.
     pub peak_usage: f64,
-    /// Ratio to the busiest day of the week before.
+    /// Ratio of `peak_usage` to the busiest day of the week before.
     pub growth: f64,
 }
 
 impl PeakProjection {
-    /// Returns the projection if the last two weeks are complete and have usage.
+    /// Returns the projection, or `None` unless the last two weeks are complete and have usage.
     pub fn from_weeks(weeks: &[WeekFigures]) -> Option<PeakProjection> {
         let [.., before, last] = weeks else { return None };
         let is_whole = |week: &WeekFigures| week.days_run == 7 && week.busiest_day > 0;
@@ -30,7 +30,8 @@ impl PeakProjection {
         self.peak_usage * self.growth
     }
 
-    /// Compares the projection with a tier: `at last week's growth (+12%), next week's peak is 61,000 units, 76% of
+    /// Compares the projected peak with a capacity tier: `at last week's growth (+12%), next week's peak is 61,000
+    /// units, 76% of
     /// tier 1`.
     pub fn describe(&self, tier: u32, units: f64) -> String {
         let share = percent(self.next_peak() / units.max(1.0), 0);
@@ -48,7 +49,7 @@ impl PeakProjection {
     }
 }
 
-/// Compares a tier with the busiest day of the last week: `tier 1 serves 80,000 units a day; the busiest day of the
+/// Compares a capacity tier with the busiest day of the last week: `tier 1 serves 80,000 units a day; the busiest day of the
 /// last week had 61,000, 76% of it`.
 pub fn describe_peak_and_tier(weeks: &[WeekFigures], tier: u32, units: f64) -> String {
     let holds = format!("tier {tier} serves {} units a day", format_whole(units));

@@ -1,7 +1,7 @@
-//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on the current model tiers
-//! and on others. Product screen, forms and plain mode share this definition: usage of the last day, 30 days a month,
-//! compared with the monthly price of the subscriptions that were active on it. Subscriptions that started on that
-//! day have no usage yet.
+//! Gross margins of plans: subscription revenue compared with the compute cost of usage, on every model tier. The
+//! product screen, forms and plain mode use the same definition. Compute cost is the usage of the last day multiplied
+//! by 30 days. Revenue is the monthly price of the subscriptions that could use the product on the last day.
+//! Subscriptions that started on the last day have no usage yet.
 
 mod sentences;
 
@@ -19,25 +19,25 @@ use novamind_tools::{Rejection, ToolId};
 const SUBSCRIBERS_SQL: &str = include_str!("../../assets/readings/subscribers.sql");
 const USAGE_SQL: &str = include_str!("../../assets/readings/usage.sql");
 const DAYS_PER_MONTH: f64 = 30.0;
-/// Shown in place of margins until usage has been measured.
+/// Text that is shown instead of margins until usage has been measured.
 const NO_USAGE_MESSAGE: &str = "no margins: usage has not been measured yet";
 
 /// Subscribers of a plan, their payments and their usage on the last day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanUsage {
-    /// Active subscriptions.
+    /// Number of active subscriptions.
     pub customers: f64,
-    /// Seats of the active subscriptions.
+    /// Number of seats of the active subscriptions.
     pub seats: f64,
     /// Revenue of the active subscriptions, dollars a month.
     pub monthly_revenue: f64,
-    /// Subscriptions that could use the product on the last day.
+    /// Number of subscriptions with measured usage, which could use the product on the last day.
     pub measured_subscriptions: f64,
-    /// Their seats.
+    /// Number of seats of the subscriptions with measured usage.
     pub measured_seats: f64,
-    /// Their usage on the last day, units.
+    /// Measured usage on the last day, units.
     pub measured_units: f64,
-    /// Their revenue, dollars a month.
+    /// Revenue of the subscriptions with measured usage, dollars a month.
     pub measured_revenue: f64,
 }
 
@@ -54,18 +54,18 @@ impl PlanUsage {
         }
     }
 
-    /// Returns units a day and seat; `None` without subscriptions on the last day.
+    /// Returns the usage in units a day and seat, or `None` without measured usage.
     pub fn units_per_seat(&self) -> Option<f64> {
         (self.measured_seats > 0.0).then(|| self.measured_units / self.measured_seats)
     }
 
-    /// Returns the compute cost in dollars a month and seat, given dollars a unit.
+    /// Returns the compute cost in dollars a month and seat. `unit_cost` is in dollars a unit.
     pub fn compute_cost(&self, unit_cost: f64) -> Option<f64> {
         self.units_per_seat().map(|usage| usage * DAYS_PER_MONTH * unit_cost)
     }
 
-    /// Returns revenue in dollars a month and seat of the subscriptions with measured usage, or of all if none has
-    /// any.
+    /// Returns the revenue in dollars a month and seat. Only subscriptions with measured usage count, or all
+    /// subscriptions if no usage was measured.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         match self.measured_seats > 0.0 {
             true => Some(self.measured_revenue / self.measured_seats),
@@ -77,12 +77,12 @@ impl PlanUsage {
         self.revenue_per_seat().filter(|_| self.units_per_seat().is_some())
     }
 
-    /// Returns the share of revenue left after compute, given dollars a unit.
+    /// Returns the share of revenue that is left after compute. `unit_cost` is in dollars a unit.
     pub fn margin(&self, unit_cost: f64) -> Option<f64> {
         margin(self.revenue_per_seat()?, self.compute_cost(unit_cost)?)
     }
 
-    /// Returns the margin for accounts that use their full quota, units a day.
+    /// Returns the margin if every customer uses the full quota. `quota` is in units a day.
     fn margin_at_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
         let full = PlanUsage { measured_units: self.measured_subscriptions * quota, ..*self };
         full.margin(unit_cost)
@@ -104,7 +104,7 @@ impl PlanSales {
     /// Reads the database of a run without recording the queries.
     ///
     /// # Errors
-    /// Returns an error if the run has no database or it cannot be read.
+    /// Returns an error if the run has no database or the database cannot be read.
     pub fn load(session: &Session) -> Result<PlanSales, Rejection> {
         session.wait_for_database()?;
         let (connection, limits) = (session.database().open_connection()?, session.company().query_limits());
@@ -114,7 +114,7 @@ impl PlanSales {
         Ok(sales)
     }
 
-    /// Adds rows of group, plan, customers, seats, dollars a month.
+    /// Sets the subscribers from a query result with the columns group, plan, customers, seats and dollars a month.
     pub fn set_subscribers(&mut self, rows: &QueryResult) {
         self.subscribed = by_plan(rows, |row| PlanUsage {
             customers: number_at(row, 2),
@@ -124,7 +124,7 @@ impl PlanSales {
         });
     }
 
-    /// Adds rows of group, plan, accounts, seats, units, dollars a month.
+    /// Sets the usage from a query result with the columns group, plan, subscriptions, seats, units and dollars a month.
     pub fn set_usage(&mut self, rows: &QueryResult) {
         self.used = by_plan(rows, |row| PlanUsage {
             measured_subscriptions: number_at(row, 2),
@@ -139,7 +139,7 @@ impl PlanSales {
         Plan::ALL.into_iter().any(|plan| self.usage_of_plan(plan).units_per_seat().is_some())
     }
 
-    /// Returns the sum over all groups.
+    /// Returns the usage of a plan summed over all groups.
     pub fn usage_of_plan(&self, plan: Plan) -> PlanUsage {
         self.sum(|_, row_plan| row_plan == plan)
     }
@@ -163,37 +163,37 @@ fn by_plan(rows: &QueryResult, read: impl Fn(&[Cell]) -> PlanUsage) -> Vec<(Grou
     rows.rows.iter().filter_map(parse_row).collect()
 }
 
-/// Terms of a plan under a draft.
+/// Price, model tier and quota of a plan in a draft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DraftPlanTerms {
     /// List price, dollars a month and seat.
     pub price: f64,
-    /// Model tier.
+    /// Model tier of the plan.
     pub tier: u8,
-    /// Quota, units a day and account.
+    /// Quota, units a day for each customer.
     pub quota: f64,
 }
 
 impl DraftPlanTerms {
-    /// Returns dollars a unit on the current model tier; `None` if the tier is unknown.
+    /// Returns the compute cost in dollars a unit on the current model tier, or `None` if the tier is unknown.
     fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
         models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
     }
 }
 
-/// Setting that a form changes, which determines the margins to show.
+/// Setting that a form changes. It determines which margins are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarginSetting {
-    /// List prices: also shows margins at the list price.
+    /// List prices. Margins at the list price are also shown.
     Price,
-    /// Model tiers.
+    /// Model tiers of the plans.
     Tier,
-    /// Quotas: also shows margins at full quota.
+    /// Quotas. Margins at full quota are also shown.
     Quota,
 }
 
 impl MarginSetting {
-    /// Returns the setting of a tool if it affects margins.
+    /// Returns the setting that a tool changes, or `None` if the tool does not affect margins.
     pub fn from_tool(tool: ToolId) -> Option<MarginSetting> {
         match tool {
             ToolId::SetPrices => Some(MarginSetting::Price),
@@ -203,7 +203,7 @@ impl MarginSetting {
         }
     }
 
-    /// Returns the terms of plans after a call of the tool with these arguments.
+    /// Returns the terms of the plans after a tool call with these arguments.
     pub fn apply(self, mut terms: ByPlan<DraftPlanTerms>, arguments: &Value) -> ByPlan<DraftPlanTerms> {
         for plan in Plan::ALL {
             let Some(value) = arguments.get(plan.id()).and_then(Value::as_f64) else { continue };
@@ -218,7 +218,7 @@ impl MarginSetting {
     }
 }
 
-/// Returns a table of margins for every plan and model tier: a header, then lines.
+/// Returns a table of margins for every plan and model tier, as a header and lines of text.
 pub fn margin_lines(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
@@ -262,7 +262,7 @@ pub fn margin_lines(
     lines
 }
 
-/// Returns the margins of every plan on its own model tier, for small windows: a header, then one line per plan.
+/// Returns the margin of every plan on its current model tier, for small windows: a header, then one line for each plan.
 pub fn margin_summary(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
@@ -302,12 +302,12 @@ pub fn margin_summary(
     std::iter::once(head).chain(Plan::ALL.into_iter().map(line)).collect()
 }
 
-/// Returns whether a list price differs from the price paid by at least half a cent.
+/// Returns whether the list price and the paid price differ by at least half a cent.
 fn differs_by_a_cent(list: f64, paid: f64) -> bool {
     list > 0.0 && (list - paid).abs() >= 0.005
 }
 
-/// Lists the margins of a plan's groups on its model tier; `None` if only one group has the plan.
+/// Lists the margins of a plan by group on the plan's model tier. Returns `None` if only one group subscribes to the plan.
 fn describe_groups(
     sales: &PlanSales,
     plan: Plan,

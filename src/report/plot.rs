@@ -1,4 +1,4 @@
-//! Text charts with lines, points and bars.
+//! Text charts made of lines, points and bars.
 
 use unicode_width::UnicodeWidthStr;
 
@@ -8,16 +8,16 @@ use novamind_base::formatting::compact_number;
 /// Scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisScale {
-    /// Linear.
+    /// Linear scale.
     Linear,
-    /// Linear, with labels at whole numbers only: days, weeks.
+    /// Linear scale with labels only at whole numbers, for days and weeks.
     Whole,
-    /// Logarithmic; values of zero and below are not drawn.
+    /// Logarithmic scale. Values of zero and below are not drawn.
     Logarithmic,
 }
 
 impl AxisScale {
-    /// Returns its name in machine-readable output.
+    /// Returns the name of the scale in machine-readable output.
     pub fn name(self) -> &'static str {
         match self {
             AxisScale::Linear | AxisScale::Whole => "linear",
@@ -25,7 +25,7 @@ impl AxisScale {
         }
     }
 
-    /// Maps a value to its position on the axis; NaN if it has none.
+    /// Maps a value to its position on the axis, or to NaN if the value cannot be drawn.
     pub fn position(self, value: f64) -> f64 {
         match self {
             AxisScale::Linear | AxisScale::Whole => value,
@@ -41,9 +41,9 @@ pub struct PlotArea {
     pub width: usize,
     /// Height in lines, excluding the labels below.
     pub height: usize,
-    /// Horizontal axis.
+    /// Scale of the horizontal axis.
     pub x_scale: AxisScale,
-    /// Vertical axis.
+    /// Scale of the vertical axis.
     pub y_scale: AxisScale,
 }
 
@@ -61,11 +61,11 @@ pub fn sparkline_char(share: f64) -> char {
     SPARKLINE_CHARS[((share * highest as f64).round() as usize).min(highest)]
 }
 
-/// A series drawn with a character; later ones cover earlier ones.
+/// A series of points that is drawn with one character. Later series cover earlier series.
 pub struct PlotSeries<'a> {
-    /// Character.
+    /// Character with which the points are drawn.
     pub mark: char,
-    /// Points.
+    /// Points of the series, as horizontal and vertical values.
     pub points: &'a [(f64, f64)],
     /// Whether the points are connected.
     pub is_line: bool,
@@ -75,7 +75,7 @@ pub(super) fn plot_report(drawn: &[PlotSeries<'_>]) -> String {
     plot_in(&REPORT_AREA, drawn)
 }
 
-/// Draws series in a frame; empty without points.
+/// Draws series in a frame. Returns an empty text if there are no points.
 pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
     let (columns, rows) = (frame.width.saturating_sub(LABEL_WIDTH).max(8), frame.height.max(2));
     let placed = |(x, y): &(f64, f64)| (frame.x_scale.position(*x), frame.y_scale.position(*y));
@@ -123,7 +123,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
     text + &format!("{:>10} {}{:>width$}\n", "", compact_number(left), compact_number(right))
 }
 
-/// Draws horizontal bars, each between its label and its value.
+/// Draws horizontal bars, each with its label on the left and its value on the right.
 pub fn bars(points: &[(f64, f64)], width: usize) -> String {
     let most = points.iter().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
@@ -143,14 +143,14 @@ fn interpolate(from: f64, to: f64, share: f64) -> f64 {
     from + (to - from) * share
 }
 
-/// Returns the range of the values, widened if it is empty; `None` without values.
+/// Returns the range of the values, or `None` without values. If all values are equal, the range is widened.
 fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (least, most) = values
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
     let apart = most - least > 1e-9 * most.abs().max(least.abs()).min(1.0);
     (least <= most).then_some(match least {
         _ if apart => (least, most),
-        // Widening by a factor keeps a positive level positive for logarithms.
+        // A positive value is widened by factors, so that the range is positive and can be drawn on a logarithmic scale.
         level if level > 0.0 => (0.5 * level, 1.5 * level),
         level => (level - 1.0, level + 1.0),
     })

@@ -1,11 +1,12 @@
-//! Leads by group in the week before and after a post. Only counts: visible data does not record which leads a post
-//! brought.
+//! Number of leads by group in the week before and after a post. Visible data does not show which leads were caused by
+//! the post.
 
 use super::formatting::format_whole;
 use novamind_session::GroupWeek;
 use novamind_session::identifiers::{ByGroup, Group};
 
-/// Returns lines about the leads before and after a decision day; empty until a week has run after it.
+/// Describes the number of leads in the weeks before and after a decision day. Returns no lines until a week has run
+/// after this day.
 pub fn lead_lines_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
     let after = day as usize / 7;
     let Some(later) = weeks.get(after).filter(|_| day.is_multiple_of(7)) else { return Vec::new() };

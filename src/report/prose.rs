@@ -1,23 +1,23 @@
 //! Formats text with simple Markdown for screens: headings, lists, emphasis, quotes and code blocks. Line breaks of
-//! the source become blanks; no word is lost.
+//! the source become spaces, and no word is lost.
 
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Style of a piece of a line.
+/// Style of a segment of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextStyle {
     /// Plain text.
     Text,
-    /// Emphasized.
+    /// Emphasized text.
     Strong,
-    /// A heading.
+    /// Text of a heading.
     Heading,
 }
 
-/// A line of a screen, in styled pieces.
+/// A line of text as segments with a style.
 pub type ProseLine = Vec<(String, TextStyle)>;
 
-/// An element of the source.
+/// A block element of a Markdown text.
 #[derive(Debug, PartialEq)]
 enum MarkdownBlock {
     Heading(String),
@@ -69,7 +69,7 @@ pub fn to_plain_text(text: &str, width: usize) -> String {
 fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
     let mut blocks: Vec<MarkdownBlock> = Vec::new();
     let mut fenced = false;
-    // Whether the line before ended a block.
+    // Whether the previous line ended a block.
     let mut ends = true;
     for line in text.lines() {
         let (bare, indent) = (line.trim(), line.len() - line.trim_start().len());
@@ -129,7 +129,7 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
     blocks
 }
 
-/// Returns the element that a line starts, by its first characters; `None` for ordinary text.
+/// Returns the block element that starts with this line, determined by the first characters. Returns `None` for ordinary text.
 fn line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     if bare.is_empty() {
         return Some(MarkdownBlock::Blank);
@@ -139,7 +139,7 @@ fn line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
         return Some(MarkdownBlock::Heading(text.trim().trim_end_matches('#').trim_end().to_owned()));
     }
     if bare.len() >= 3 && ["-", "*", "_", "="].iter().any(|rule| bare.replace(rule, "").trim().is_empty()) {
-        // A rule, or the underline of a heading, has no text.
+        // A horizontal rule or the underline of a heading contains no text.
         return Some(MarkdownBlock::Blank);
     }
     if bare.starts_with('|') {
@@ -157,7 +157,7 @@ fn line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     numbered.map(|text| MarkdownBlock::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
 }
 
-/// Returns the characters of a text without marks, each with its style.
+/// Returns the characters of a text without emphasis marks, each character with its style.
 fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
     let characters: Vec<char> = text.chars().collect();
     let mut found = Vec::new();
@@ -184,13 +184,13 @@ fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
     found
 }
 
-/// Returns the characters between two equal marks at the start of a text, and the length including the marks.
+/// Returns the characters between two equal emphasis marks at the start of a text, and the length including both marks.
 fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
     const MARKS: [&[char]; 5] = [&['*', '*'], &['_', '_'], &['*'], &['_'], &['`']];
     let mark = MARKS.into_iter().find(|mark| rest.starts_with(mark))?;
     let inner = &rest[mark.len()..];
     let opens = inner.first().is_some_and(|letter| !letter.is_whitespace());
-    // Underscores within a name like `filled_naively` are not marks.
+    // Underscores within a name like `filled_naively` are not emphasis marks.
     let in_word = mark[0] == '_' && before.is_some_and(char::is_alphanumeric);
     if !opens || in_word {
         return None;
@@ -206,7 +206,7 @@ fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usiz
     Some((&inner[..end], end + 2 * mark.len()))
 }
 
-/// Breaks characters into lines, between words if possible. `first` precedes the first line, `next` the others.
+/// Breaks characters into lines, between words if possible. The first line starts with `first`, all other lines with `next`.
 fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
     let width_of = |word: &[(char, TextStyle)]| {
         word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>()
@@ -218,7 +218,7 @@ fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: u
         let row = rows.last_mut().filter(|row| !row.is_empty());
         match row {
             Some(row) if width_of(row) + 1 + width_of(word) <= room => {
-                // A blank between two words of the same style has that style.
+                // The space between two words of the same style has this style.
                 let face = row.last().map(|(_, face)| *face).filter(|face| *face == word[0].1);
                 row.push((' ', face.unwrap_or(TextStyle::Text)));
                 row.extend(word);
@@ -296,7 +296,7 @@ mod tests {
             for width in 1..60 {
                 let shown = to_plain_text(text, width);
                 assert_eq!(bare(&shown), bare(text), "{width}: {shown}");
-                // The minimum width is a list marker and one double-width character.
+                // A line can be no narrower than a list marker and one double-width character.
                 let widest = shown.lines().map(UnicodeWidthStr::width).max().unwrap_or(0);
                 assert!(widest <= width.max(6), "{width}: {shown}");
             }

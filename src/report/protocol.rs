@@ -12,7 +12,7 @@ use novamind_study::{
     Study, load_lab_public_key,
 };
 
-/// Returns the protocol as Markdown.
+/// Returns the protocol of a study as Markdown.
 ///
 /// # Errors
 /// Returns an error if the scenario of the session or the practice cannot be read.
@@ -98,8 +98,8 @@ fn participants_section(study: &Study) -> String {
     let conditions = match seeds.conditions.as_slice() {
         [] => String::new(),
         some => format!(
-            " Conditions: {}. They label and balance participants. The program is the same under all of them; \
-             differences between them are outside of it.",
+            " Conditions: {}. They label and balance participants. The program is the same under all conditions; \
+             their differences are outside the program.",
             some.join(", ")
         ),
     };
@@ -109,7 +109,7 @@ fn participants_section(study: &Study) -> String {
     format!("## Participants\n\n{places} {plan}{conditions} Participants do not see seeds.\n")
 }
 
-/// Describes how the assignment was drawn, as far as it can be reproduced, and its digest.
+/// Describes the assignment: number of labels, random draw if it can be reproduced, and digest.
 fn describe_assignment(study: &Study, assignment: &Assignment) -> String {
     let seeds = &study.protocol.seeds;
     let labels: Vec<String> = assignment.rows.iter().map(|place| place.label.clone()).collect();
@@ -290,7 +290,7 @@ fn form_questions(form: &AnswerFormat) -> String {
     }
 }
 
-/// Returns the definition of every column of every table. Measures are defined where they are computed.
+/// Returns the definition of every column of every table. The columns are defined where their values are computed.
 fn measures_section() -> String {
     let mut text =
         "## Measures\n\nComputed by the program; `columns.csv` is exported with the tables.\n".to_owned();
@@ -310,7 +310,8 @@ fn exclusion_section() -> String {
     format!(
         "## Exclusion\n\nRun `novamind study audit` before inspecting any result. It reads only the records: it cannot detect a run \
          whose lines were rewritten with correct hashes, or that was continued in a copy of its folder. A \
-         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. Decide before the first session: the number of failed \
+         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. Decide \
+         before the first session: the number of failed \
          attention checks, of naive weeks and of weeks decided in less than ten active seconds at which a session is excluded.\n",
         grave.join(", ")
     )

@@ -1,4 +1,4 @@
-//! A run's result compared with the published results.
+//! Ranking of a run's result among the published results.
 
 use std::cmp::Ordering;
 use std::sync::OnceLock;
@@ -31,13 +31,13 @@ pub struct PublishedResults {
 /// Results of one agent.
 #[derive(Debug, Deserialize, Serialize)]
 pub struct PublishedAgent {
-    /// Model.
+    /// Name of the agent's model.
     pub name: String,
-    /// Number of runs that ended with cash below zero.
+    /// Number of the agent's runs that ended with cash below zero.
     pub bankruptcies: u32,
-    /// Number of runs.
+    /// Number of the agent's runs.
     pub runs: u32,
-    /// Cash of the best run, dollars.
+    /// Final cash of the agent's best run, dollars.
     pub best_cash: f64,
     /// Longest survival of a run, days.
     pub max_survival_days: f64,
@@ -68,38 +68,38 @@ pub enum ResultOwner {
     Agent,
     /// The published rule-based baseline.
     Baseline,
-    /// This run.
+    /// The run that is ranked.
     ThisRun,
 }
 
-/// A result with its origin.
+/// A ranked result with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RankedRun {
-    /// Name.
+    /// Name of the player or agent.
     pub name: String,
     /// Cash at the end, dollars.
     pub cash: f64,
-    /// Origin.
+    /// Origin of the result.
     pub owner: ResultOwner,
 }
 
-/// All results, the best first.
+/// Ranking of a run among the published results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranking {
-    /// Results, including this run's if it has a comparable score.
+    /// Results, best first. Includes the run's result if its score is comparable.
     pub entries: Vec<RankedRun>,
-    /// Rank of this run, from 1.
+    /// Rank of the run, counted from 1; `None` if the run is not ranked.
     pub rank: Option<usize>,
-    /// Reasons not to rank this run; empty if it is ranked, or will be when it has a score.
+    /// Reasons why the run is not ranked. Empty if the run is ranked or will be ranked as soon as it has a score.
     pub obstacles: Vec<RankingObstacle>,
-    /// Terms of the published runs, if this run has a different seed.
+    /// Seed and length of the published runs, if the run has a different seed.
     pub caveat: Option<String>,
     /// Source of the published results.
     pub source: String,
 }
 
 impl Ranking {
-    /// Returns the best results and those around this run's.
+    /// Returns the best results, and the results directly above and below the run.
     pub fn top_and_neighbors(&self, best: usize, neighbors: usize) -> Vec<&RankedRun> {
         let number = self.entries.iter().position(|place| place.owner == ResultOwner::ThisRun);
         let wanted =
@@ -107,7 +107,7 @@ impl Ranking {
         self.entries.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
     }
 
-    /// Describes the rank.
+    /// Describes the rank of the run, or the reasons why it is not ranked.
     pub fn describe(&self) -> String {
         match self.rank {
             Some(rank) => format!("rank {rank} of {} among the published results", self.entries.len()),
@@ -119,7 +119,7 @@ impl Ranking {
     }
 }
 
-/// Ranks a score among the published results; in ties, published results come first.
+/// Ranks a score among the published results. A published result is ranked above an equal score.
 pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
     let place =
         |name: &str, cash: f64, whose: ResultOwner| RankedRun { name: name.to_owned(), cash, owner: whose };
@@ -143,13 +143,13 @@ pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
     }
 }
 
-/// Compares two results of cash and days survived: more cash is greater, then longer survival. The published tables
-/// choose an agent's best run this way; a bankrupt company has no cash.
+/// Compares two results, given as cash and days survived: by cash, then by survival. The published tables select an
+/// agent's best run in the same way. The cash of a bankrupt company is 0.
 pub fn compare_results(one: (f64, u32), other: (f64, u32)) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
-/// Returns how many of the published best runs ended with less cash, and how many there are.
+/// Returns the number of published best runs that ended with less cash, and the number of all published best runs.
 pub fn count_beaten(cash: f64) -> (usize, usize) {
     let agents = &published_results().agent;
     (agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len())
@@ -170,7 +170,7 @@ fn caveat(seen: &Observation) -> Option<String> {
     Some(format!("{}; this run: {text}.", describe_published_conditions()))
 }
 
-/// Describes the terms of the published runs, without a full stop.
+/// Describes seed, length and starting cash of the published runs, without a full stop.
 pub fn describe_published_conditions() -> String {
     let start = format_dollar_tick(published_results().start_cash);
     format!("Published: seed {PUBLISHED_SEED}, {PUBLISHED_DAYS} days, {start} at the start")

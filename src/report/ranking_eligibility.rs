@@ -1,5 +1,5 @@
-//! Eligibility of a run for the ranking among the published results, for the final page, the menu, reports
-//! and the laboratory.
+//! Checks whether a run can be ranked among the published results. Used by the final page, the menu, reports and the
+//! laboratory.
 
 use super::formatting::{format_dollar_tick, format_whole};
 use super::logbook::Logbook;
@@ -15,7 +15,8 @@ pub const PUBLISHED_DAYS: u32 = 500;
 /// Seed of the published runs.
 pub const PUBLISHED_SEED: u64 = 42;
 
-/// Scenarios with the rules of the published results: any seed, and the seed of the release.
+/// Scenarios with the rules of the published results: the default scenario for any seed, and the scenario of the
+/// published seed.
 const COMPARABLE_SCENARIOS: [&str; 2] = [DEFAULT_SCENARIO, "reference-seed42"];
 
 /// Properties that decide whether a run can be ranked among the published results.
@@ -25,22 +26,22 @@ pub struct RankingCriteria<'a> {
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: &'a str,
-    /// The parameters differ, or differed for some days, from those of the bundled scenario of that name.
+    /// Whether the parameters differ, or differed on some days, from the bundled scenario of the same name.
     pub has_changed_parameters: bool,
-    /// A language model judges the posts of the player.
+    /// Whether a language model judges the posts of the player.
     pub judged_by_model: bool,
-    /// The run belongs to a lesson.
+    /// Whether the run belongs to a lesson.
     pub is_lesson: bool,
-    /// The run continues weeks of another run, whose end may be known.
+    /// Whether the run is a branch. The player may know how the parent run ended.
     pub is_branch: bool,
-    /// The run was played in debug mode, which shows hidden state. Policies never see hidden state.
+    /// Whether the run was played by a person in debug mode, which shows hidden state. Policies have no access to hidden state.
     pub showed_hidden_state: bool,
 }
 
 impl<'a> RankingCriteria<'a> {
-    /// Returns the terms of an open run.
+    /// Returns the ranking criteria of an open run.
     pub fn from_observation(seen: &'a Observation) -> RankingCriteria<'a> {
         RankingCriteria {
             days: seen.last_day,
@@ -54,7 +55,7 @@ impl<'a> RankingCriteria<'a> {
         }
     }
 
-    /// Returns the terms of a run in a list.
+    /// Returns the ranking criteria of a run from its summary in a list.
     pub fn from_summary(run: &'a RunSummary) -> RankingCriteria<'a> {
         RankingCriteria {
             days: run.days,
@@ -68,7 +69,7 @@ impl<'a> RankingCriteria<'a> {
         }
     }
 
-    /// Returns the terms of a run that was read from its record.
+    /// Returns the ranking criteria of a run from its logbook.
     pub fn from_logbook(book: &'a Logbook) -> RankingCriteria<'a> {
         RankingCriteria {
             days: book.days,
@@ -82,7 +83,8 @@ impl<'a> RankingCriteria<'a> {
         }
     }
 
-    /// Returns the reasons not to rank the run; empty if it can be ranked. A different seed is not a reason.
+    /// Returns the reasons why the run cannot be ranked, or an empty list if it can be ranked. A different seed is not
+    /// an obstacle.
     pub fn obstacles(&self) -> Vec<RankingObstacle> {
         let mut obstacles = Vec::new();
         if self.is_lesson {
@@ -113,29 +115,29 @@ impl<'a> RankingCriteria<'a> {
     }
 }
 
-/// A reason not to rank a run among the published ones.
+/// A reason why a run cannot be ranked among the published results.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RankingObstacle {
     /// The run belongs to a lesson.
     Lesson,
-    /// Different number of days.
+    /// Number of days of the run, which differs from the published runs.
     Length(u32),
-    /// Different starting cash, dollars.
+    /// Starting cash of the run in dollars, which differs from the published runs.
     StartCash(f64),
-    /// Different scenario.
+    /// Name of the run's scenario, whose rules differ from the published runs.
     Scenario(String),
-    /// Parameters were changed.
+    /// Parameters of the scenario were changed.
     Parameters,
     /// A language model judges the posts of the player.
     ModelVoice,
-    /// The run continues weeks of another run, whose outcome may be known.
+    /// The run is a branch. The player may know how the parent run ended.
     Branch,
     /// The run was played in debug mode, which shows hidden state.
     Debug,
 }
 
 impl RankingObstacle {
-    /// Describes the reason: `28 days instead of 500`.
+    /// Describes why the run cannot be ranked: `28 days instead of 500`.
     pub fn describe(&self) -> String {
         match self {
             RankingObstacle::Lesson => "part of a lesson".to_owned(),
@@ -171,13 +173,13 @@ impl RankingObstacle {
     }
 }
 
-/// Lists reasons in one line.
+/// Lists the reasons in one line.
 pub fn describe_obstacles(obstacles: &[RankingObstacle]) -> String {
     obstacles.iter().map(RankingObstacle::describe).collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the number of runs with obstacles, and the reasons: those of a single run, or counts by kind.
-/// `None` if no run has any.
+/// Returns the number of runs with obstacles and a text with the reasons. The text lists the reasons of a single run,
+/// or counts reasons by kind. Returns `None` if no run has an obstacle.
 pub fn describe_excluded(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String)> {
     let left_out: Vec<&Vec<RankingObstacle>> =
         runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
@@ -202,7 +204,7 @@ pub fn describe_excluded(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String
     }
 }
 
-/// Explains in a sentence why finished runs are not ranked. `None` if all of them are ranked.
+/// Explains in a sentence why finished runs are not ranked. Returns `None` if all finished runs are ranked.
 pub fn describe_not_ranked(runs: &[Vec<RankingObstacle>]) -> Option<String> {
     describe_excluded(runs).map(|(count, why)| match count {
         1 => format!("One finished run is not ranked: {why}."),

@@ -5,7 +5,7 @@ use serde_json::Value;
 use novamind_base::formatting::grouped_number;
 use novamind_session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
-/// Returns lines about a project before it is started: duration first, then gain.
+/// Describes the expected duration and gain of a project before it is started.
 pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
     let ResearchOutlook { earliest, last_day, spread, .. } = outlook;
     if earliest > last_day {
@@ -25,7 +25,7 @@ fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> S
             "half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}"
         );
     }
-    // The minimum duration hides the lower quartiles.
+    // A quartile that equals the minimum duration is not reported separately.
     let mut parts = vec![format!(
         "{} chance of finishing on day {earliest}, the earliest",
         format_of_100(spread.at_earliest)
@@ -67,7 +67,7 @@ pub fn format_mean_gain(means: &ResearchMeans, decimals: usize) -> String {
     format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }
 
-/// Returns the answer of `list_research_projects` for display: means that include the minimum duration and gain.
+/// Returns the result of `list_research_projects` for display, with means that include the minimum duration and gain.
 pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     let mut shown = answer.clone();
     let tiers = shown.get_mut("tiers").and_then(Value::as_array_mut).into_iter().flatten();
@@ -85,7 +85,7 @@ pub fn late_project_lines(seen: &Observation) -> Vec<String> {
     new.map(line).collect()
 }
 
-/// States that a project finishes after the last day.
+/// Describes a project that finishes after the last day of the run.
 pub fn describe_late_project(project: &str, due_day: u32, last_day: u32) -> String {
     format!("R&D project {project} finishes on day {due_day}, after the last day ({last_day})")
 }
@@ -158,7 +158,7 @@ mod tests {
             projects_with_means(&answer, &session.company().research_means()),
             json!({"tiers": [{"tier": 1, "mean_days": "30", "mean_quality_boost": "+0.0402"}]})
         );
-        // Agents receive the means without the spread.
+        // In a baseline run, only lower bounds of the means are shown.
         assert_eq!(
             mean_texts(Mode::Baseline),
             [

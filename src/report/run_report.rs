@@ -1,4 +1,4 @@
-//! Data of a run report: result, course, decisions and behavior.
+//! Data of a run report: result, figures by week, decisions and behavior measures.
 
 use super::bankruptcy::{CostShare, cost_shares, describe_turning_points};
 use super::database_figures::DatabaseFigures;
@@ -18,7 +18,7 @@ pub struct Bankruptcy {
     pub day: u32,
     /// Costs by kind, highest first.
     pub costs: Vec<CostShare>,
-    /// Sentences about the turning points.
+    /// Sentences that describe the turning points of the run.
     pub turning_points: Vec<String>,
 }
 
@@ -27,36 +27,36 @@ pub struct Bankruptcy {
 pub struct RunReport {
     /// Current state of the run.
     pub observation: Observation,
-    /// Program version that recorded it.
+    /// Version of the program that recorded the run.
     pub version: String,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Cash at the end of each day, day 0 first.
+    /// Cash in dollars at the end of each day, day 0 first.
     pub cash_by_day: Vec<f64>,
-    /// Figures of every week.
+    /// Figures of every simulated week.
     pub weeks: Vec<WeekFigures>,
-    /// Comparison with the published results.
+    /// Ranking of the run among the published results.
     pub ranking: Ranking,
-    /// Every forecast, in the order of filing.
+    /// Every filed forecast, in the order of filing.
     pub forecasts: Vec<ScoredForecast>,
-    /// Data from the run's tables.
+    /// Data from the tables and the ledger of the run.
     pub database: DatabaseFigures,
-    /// Decisions by chapter.
+    /// Decisions of the player by decision period.
     pub decision_periods: Vec<DecisionPeriod>,
-    /// Notable days.
+    /// Notable days of the run.
     pub highlights: Vec<Highlight>,
-    /// Behavior measures.
+    /// Behavior measures of the run.
     pub measures: BehaviorMeasures,
-    /// Analysis of the bankruptcy, if there was one.
+    /// Analysis of the bankruptcy; `None` if the company is not bankrupt.
     pub bankruptcy: Option<Bankruptcy>,
     /// Rules of the session.
     pub rules: SessionRules,
-    /// Origin of the run if it is a branch.
+    /// Parent run and first difference, if the run is a branch.
     pub origin: Option<BranchOrigin>,
 }
 
 impl RunReport {
-    /// Collects the data of a run so far. Queries the database, so do not call it on the drawing thread.
+    /// Collects the data of a run up to the current day. Queries the database, so it must not be called on the drawing thread.
     pub fn from_session(session: &Session) -> RunReport {
         let seen = session.company().observe();
         let start_cash = session.manifest().cash;
@@ -86,18 +86,17 @@ impl RunReport {
         }
     }
 
-    /// Returns whether published results are shown. If the study excludes them from the session, they are shown after
-    /// its end.
+    /// Returns whether published results are shown. A study can hide them until the session has ended.
     pub fn shows_published(&self) -> bool {
         self.rules.results == ResultsShown::Published || self.observation.ended.is_some()
     }
 
-    /// Returns whether scores of the player's forecasts are shown, under the same condition.
+    /// Returns whether scores of the player's forecasts are shown. A study can hide them until the session has ended.
     pub fn shows_calibration(&self) -> bool {
         self.rules.calibration || self.observation.ended.is_some()
     }
 
-    /// Summarizes the result in one sentence.
+    /// Summarizes the result of the run in one sentence.
     pub fn headline(&self) -> String {
         use super::formatting::format_money;
         let day = self.observation.day;

@@ -1,5 +1,5 @@
-//! Charts as SVG: in a page whose style sets the colors, or as a self-contained file. Names and summaries are
-//! included.
+//! Charts as SVG, either for a page whose style sets the colors, or as a self-contained file. Every chart contains its
+//! title and summary as text.
 
 use std::fmt::Write;
 
@@ -17,27 +17,27 @@ const LEGEND_ROW_HEIGHT: f64 = 20.0;
 /// Approximate width of a character in the legend.
 const LEGEND_LETTER_WIDTH: f64 = 6.6;
 
-/// Scales of a chart's axes.
+/// Scales of the two axes of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisScales {
-    /// Horizontal axis.
+    /// Scale of the horizontal axis.
     pub x: AxisScale,
-    /// Vertical axis.
+    /// Scale of the vertical axis.
     pub y: AxisScale,
 }
 
-/// Axes of charts in reports: weeks or days on the horizontal axis.
+/// Scales of charts in reports. The horizontal axis shows whole days or weeks.
 const REPORT_AXES: AxisScales = AxisScales { x: AxisScale::Whole, y: AxisScale::Linear };
 
-/// A chart of a self-contained file.
+/// A chart in a self-contained file, with the scales of its axes.
 pub struct ScaledChart {
     /// The chart.
     pub chart: Chart,
-    /// Its axes.
+    /// Scales of the chart's axes.
     pub axes: AxisScales,
 }
 
-/// A range of values with round steps. On a logarithmic axis it holds logarithms.
+/// A range of values with round steps. For a logarithmic axis, the range contains logarithms.
 pub(super) struct Scale {
     pub(super) from: f64,
     pub(super) to: f64,
@@ -46,7 +46,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Returns a scale over values with about `steps` steps, widened to round ends if requested.
+    /// Creates a scale over values with about `steps` steps. The range is widened to round ends if `round_ends` is set.
     pub(super) fn new(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let (mut from, mut to) = values
             .filter(|value| value.is_finite())
@@ -89,7 +89,7 @@ impl Scale {
         (first..=last).map(|at| at as f64 * self.step).collect()
     }
 
-    /// Returns powers of ten; if there are few, also 2 and 5 times them.
+    /// Returns the powers of ten in the range. If there are few, also returns twice and five times each power.
     fn decade_ticks(&self) -> Vec<f64> {
         let factors: &[f64] = if self.to - self.from <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = self.from.floor() as i32..=self.to.ceil() as i32;
@@ -136,7 +136,7 @@ pub fn draw(chart: &Chart, number: usize) -> String {
     )
 }
 
-/// Style of a self-contained file, with plain colors that every SVG viewer supports.
+/// Style sheet of a self-contained file, with plain colors that every SVG viewer supports.
 const STYLE: &str = include_str!("../../assets/chart.css");
 
 /// Draws charts below each other in one self-contained SVG file, without external scripts or fonts.
@@ -182,7 +182,7 @@ fn draw_plot(chart: &Chart, kinds: AxisScales) -> (String, f64) {
     (svg, sheet.top + PLOT_HEIGHT + BOTTOM)
 }
 
-/// Returns the width of one bar: the distance between neighbors.
+/// Returns the smallest distance between neighboring bars, which limits the width of a bar.
 fn bar_spacing(at: &[f64]) -> f64 {
     let least = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
     if least.is_finite() && least > 0.0 { least } else { 1.0 }
@@ -194,7 +194,7 @@ fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
             let of_band = band.iter().flat_map(|band| band.points.iter().map(|point| point.0));
             curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)).chain(of_band).collect()
         }
-        // Half a bar extends beyond each end.
+        // The first and the last bar extend beyond the range by half a bar width.
         Plot::Stacks { positions: at, .. } => {
             let half = bar_spacing(at) / 2.0;
             at.iter().flat_map(|place| [place - half, place + half]).collect()
@@ -222,7 +222,7 @@ fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     }
     let most = values.iter().copied().fold(0.0, f64::max);
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    // Includes zero if the values are close to it.
+    // Includes zero in the range if the smallest value is less than half of the largest value.
     if least > 0.0 && least < 0.5 * most {
         values.push(0.0);
     }
@@ -501,7 +501,7 @@ mod tests {
         let upper = values.iter().map(|(x, _)| (*x, 100.0));
         let around: Vec<(f64, f64)> = upper.chain(values.into_iter().rev()).collect();
         assert_eq!(points(&svg, "band"), expected(&around));
-        // The axes themselves are evenly spaced and correctly oriented.
+        // The ticks of both axes are evenly spaced and correctly oriented.
         assert!(down.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1), "{down:?}");
         assert!(across.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 < pair[1].1), "{across:?}");
     }

@@ -1,4 +1,4 @@
-//! Small pictures that illustrate glossary terms with figures visible to the player. If the run has no figure,
+//! Small pictures that illustrate glossary terms with figures that the player can see. Without figures of a run,
 //! published parameters or an invented customer are used. No picture contains hidden values.
 
 use super::fit::{Fit, fits};
@@ -11,13 +11,13 @@ use novamind_session::{DeliveredQuality, GroupWeek, Session};
 use novamind_tools::ParameterNumbers;
 
 const EXAMPLE_REPUTATION_CHANGE: f64 = 0.1;
-/// Weeks over which a cohort is followed.
+/// Number of weeks for which the remaining cohort is shown.
 const COHORT_WEEKS: u32 = 26;
 const MAX_BAR_WIDTH: f64 = 30.0;
 
-/// Figures of a run that are visible to its player.
+/// Figures of a run that the player can see.
 pub struct VisibleFigures<'a> {
-    /// Figures of every week.
+    /// Company figures of every week.
     pub weeks: &'a [WeekFigures],
     /// Figures of the groups for every week.
     pub group_weeks: &'a [ByGroup<GroupWeek>],
@@ -25,38 +25,38 @@ pub struct VisibleFigures<'a> {
     pub fits: &'a [Fit],
     /// Delivered quality of every known group.
     pub quality: &'a [DeliveredQuality],
-    /// Base quality before any improvement, and the development bonus shared by all groups.
+    /// Base quality before any improvement, and the general bonus from development.
     pub quality_base: (f64, f64),
-    /// Documented parameters.
+    /// Parameters that the manual documents.
     pub numbers: &'a ParameterNumbers,
 }
 
-/// A picture of a term.
+/// A picture that illustrates a glossary term.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermPicture {
-    /// Caption.
+    /// Caption of the picture.
     pub caption: String,
-    /// Drawing; `None` if the run has no figure for it yet.
+    /// Drawing of the picture; `None` if the run has no figures to draw yet.
     pub drawing: Option<TermDrawing>,
 }
 
-/// Kind of drawing.
+/// Drawing of a picture as lines or bars.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TermDrawing {
-    /// Lines between axes.
+    /// Lines in a chart with axes.
     Lines(TermLines),
-    /// Named amounts.
+    /// Bars with a name and an amount.
     Bars(Vec<(String, f64)>),
 }
 
-/// Lines between axes.
+/// Lines in a chart with axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermLines {
-    /// Name, which can be empty, and points of each line.
+    /// Name and points of each line. The name can be empty.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
-    /// Shaded interval: position, lower and upper end.
+    /// Shaded interval, as position, lower end and upper end.
     pub band: Vec<(f64, f64, f64)>,
-    /// Positions of the plans.
+    /// Plans that are drawn as points, with their positions.
     pub plans: Vec<(Plan, f64, f64)>,
     /// Unit of the horizontal axis.
     pub x_axis: TermXAxis,
@@ -65,9 +65,9 @@ pub struct TermLines {
 /// Unit of the horizontal axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TermXAxis {
-    /// Dollars.
+    /// Amounts in dollars.
     Dollars,
-    /// Weeks.
+    /// Number of weeks.
     Weeks,
     /// Shares from 0 to 1.
     Share,
@@ -87,7 +87,7 @@ pub fn has_picture(term: &str) -> bool {
     )
 }
 
-/// Returns the picture of a term, if it has one.
+/// Returns the picture of a glossary term, or `None` if the term has no picture.
 pub fn term_picture(term: &str, seen: &VisibleFigures<'_>) -> Option<TermPicture> {
     Some(match term {
         "participation-curve" | "required-quality" => participation_curve(),
@@ -111,7 +111,7 @@ fn participation_curve() -> TermPicture {
     }
 }
 
-/// Compares the plans with the first group among those with the narrowest estimates.
+/// Compares the plans with the group of individuals that has the narrowest estimates.
 fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     let individuals = fits.iter().filter(|fit| !fit.group.is_enterprise());
     let Some(fit) =
@@ -138,10 +138,10 @@ fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     }
 }
 
-/// Projects how much of a cohort remains at last week's churn.
+/// Draws the share of a cohort that remains after each week at last week's churn.
 fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     let Some(churn) = last_week_churn(weeks) else {
-        let caption = "No week after one with subscribers has run yet.".to_owned();
+        let caption = "Churn is unknown until a week with subscribers has run.".to_owned();
         return TermPicture { caption, drawing: None };
     };
     let left = |week: u32| (f64::from(week), libm::pow(1.0 - churn, f64::from(week)));
@@ -154,7 +154,7 @@ fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     }
 }
 
-/// Charts how much of a reputation change reaches a group, by the influence between groups.
+/// Draws the share of a reputation change that reaches a group, by the influence between the groups.
 fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     let value = |key| numbers.value(key);
     let both = value("reputation.cross_group_spillover_factor").zip(value("reputation.cross_delta_min_abs"));
@@ -174,7 +174,7 @@ fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     }
 }
 
-/// Charts the quality added to the product. How much of it competitors have copied is hidden.
+/// Draws the base quality and the quality that was added. The share that competitors have copied is hidden.
 fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
     let of_group = |delivered_quality: &DeliveredQuality| {
@@ -183,13 +183,13 @@ fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let groups = seen.quality.iter().map(of_group).filter(|bonus| bonus.1 > 0.0);
     let first = [("base quality".to_owned(), base), ("added for all groups".to_owned(), shared)];
     TermPicture {
-        caption: "Base quality and additions so far. How much of it competitors have copied is never shown."
+        caption: "Base quality and added quality. The share that competitors have copied is never shown."
             .to_owned(),
         drawing: Some(TermDrawing::Bars(first.into_iter().chain(groups).collect())),
     }
 }
 
-/// Charts the leads of all groups by week: by word of mouth and paid.
+/// Draws the leads of all groups by week: leads by word of mouth and leads through channels.
 fn word_of_mouth(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     if weeks.is_empty() {
         return TermPicture {
@@ -262,7 +262,7 @@ fn bars_to_text(bars: &[(String, f64)]) -> String {
     bars.iter().map(line).collect()
 }
 
-/// Returns the picture of a term with figures of a run, if the term has one.
+/// Returns the picture of a glossary term with the figures of a run, or `None` if the term has no picture.
 pub fn term_picture_for_session(term: &str, session: &Session) -> Option<TermPicture> {
     if !has_picture(term) {
         return None;

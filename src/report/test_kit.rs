@@ -1,4 +1,4 @@
-//! Recorded runs shared by tests.
+//! Recorded runs that several tests share.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,8 @@ use novamind_record::trajectory::record::Via;
 use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{NewRun, Session, Storage};
 
-/// Plays a run in memory for some weeks, with sensible beginner's decisions and one change in the third week.
+/// Plays a run in memory for the given number of weeks, with the decisions of a sensible beginner and one change in
+/// the third week.
 pub fn play_weeks(weeks: usize) -> Session {
     play_run(200, 1_000_000.0, weeks, &opening_calls())
 }
@@ -17,7 +18,7 @@ pub fn finished_run() -> Session {
     play_run(35, 1_000_000.0, 5, &opening_calls())
 }
 
-/// Returns a run in memory that goes bankrupt from spending.
+/// Returns a run in memory that goes bankrupt because of high spending.
 pub fn bankrupt_run() -> Session {
     let mut calls = opening_calls();
     calls.push(("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 16000}})));

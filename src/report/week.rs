@@ -1,5 +1,5 @@
-//! Weekly report: change of cash and its parts, the most unusual changes of figures, decisions before the week, news,
-//! and the outcome of due forecasts.
+//! Weekly report: the cash change with its components, the most unusual changes of figures, decisions before the week,
+//! news, and the outcome of due forecasts.
 
 use std::ops::Range;
 
@@ -14,30 +14,31 @@ use novamind_session::{
     Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT_RATIONALE, filed_forecasts,
 };
 
-/// A figure that changed.
+/// A figure that changed over the week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MovedFigure {
-    /// Name.
+    /// Name of the figure.
     pub name: &'static str,
-    /// Value of the week before.
+    /// Formatted value of the previous week.
     pub old: String,
-    /// Value of the week.
+    /// Formatted value of the week.
     pub new: String,
     /// Whether the figure rose.
     pub is_increase: bool,
-    /// Whether the change is good for the company; `None` if it depends.
+    /// Whether the change is favorable for the company; `None` if it can be either.
     pub is_favorable: Option<bool>,
     /// Whether the figure is a share from 0 to 1.
     pub is_share: bool,
     /// Comparison with the changes of earlier weeks.
     pub change: FigureChange,
-    /// Ledger categories whose changes add up to this one, largest first. Empty if the figure is not from the ledger.
+    /// Changes by ledger category that add up to the change of the figure, largest first. Empty if the figure is not
+    /// from the ledger.
     pub category_changes: Vec<(&'static str, f64)>,
 }
 
 impl MovedFigure {
-    /// Formats the size of the change: percentage points for shares, otherwise percent of the value before. `None` if
-    /// that was 0.
+    /// Formats the size of the change: percentage points for shares, otherwise percent of the previous value. Returns
+    /// `None` if the previous value was 0.
     pub fn format_size(&self) -> Option<String> {
         let (old, new) = (self.change.old, self.change.new);
         if self.is_share {
@@ -53,18 +54,18 @@ impl MovedFigure {
     }
 }
 
-/// The report on a week.
+/// The report on a simulated week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeekReport {
     /// Figures of the week.
     pub week: WeekFigures,
-    /// Lengths of this week and the one before, if they differ: the last week of a run can be short.
+    /// Lengths of this week and the previous week, if they differ. The last week of a run can be short.
     pub short_week_note: Option<String>,
-    /// Parts of the change of cash by ledger category: income, then costs from the largest.
+    /// Amounts by ledger category that add up to the cash change: income first, then costs from the largest.
     pub cash_components: Vec<(&'static str, f64)>,
-    /// Changed figures, the most unusual first.
+    /// Changed figures, starting with the most unusual change.
     pub moved_figures: Vec<MovedFigure>,
-    /// Changed settings as old → new, then purchases, posts and offers.
+    /// Descriptions of changed settings with old and new values, then of purchases, posts and offers.
     pub decisions: Vec<String>,
     /// Forecasts for the last day of the week, shortest horizon first.
     pub due_forecasts: Vec<ScoredForecast>,
@@ -78,7 +79,7 @@ pub struct WeekReport {
     limit_days: Vec<u32>,
 }
 
-/// A figure: name, reader, unit, whether higher is better, and its ledger categories.
+/// A figure of the report: name, function that reads the value, unit, whether higher is better, and ledger categories.
 struct FigureRow(&'static str, fn(&WeekFigures) -> f64, WeekFigureUnit, Option<bool>, &'static [Category]);
 
 /// Unit of a figure, which determines its format and random variation.
@@ -107,12 +108,13 @@ impl WeekFigureUnit {
         matches!(self, WeekFigureUnit::ShareOfLeads | WeekFigureUnit::Share)
     }
 
-    /// Returns the random variation of a weekly value, or the amount too small to matter to the company.
+    /// Returns the random variation of a weekly value. For amounts in dollars, returns an amount that is insignificant
+    /// for the company.
     fn noise(self, value: f64, week: &WeekFigures) -> f64 {
         match self {
-            // A hundredth of the company's turnover.
+            // One hundredth of the company's income and costs.
             WeekFigureUnit::Dollars => 0.01 * (week.payments + week.costs).max(100.0),
-            // Counts of independent events.
+            // Counts of independent events vary by about their square root.
             WeekFigureUnit::Count | WeekFigureUnit::Units | WeekFigureUnit::Minutes => value.max(1.0).sqrt(),
             WeekFigureUnit::ShareOfLeads => 0.5 / f64::from(week.new_individual_leads.max(1)).sqrt(),
             WeekFigureUnit::Share => 0.01,
@@ -187,22 +189,22 @@ const FIGURES: [FigureRow; 14] = [
     FigureRow("open issues", |week| f64::from(week.open_issues), WeekFigureUnit::Count, Some(false), &[]),
 ];
 
-/// Data for a weekly report.
+/// Data from which a weekly report is computed.
 pub struct WeekReportInput<'a> {
-    /// Figures of every week.
+    /// Figures of every simulated week.
     pub weeks: &'a [WeekFigures],
     /// Decisions before each week.
     pub decisions: &'a [Decisions],
-    /// All actions.
+    /// Journal with all actions of the run.
     pub journal: &'a [JournalEntry],
-    /// Cash at the end of each day, day 0 first.
+    /// Cash in dollars at the end of each day, day 0 first.
     pub cash_by_day: &'a [f64],
-    /// Days of posts: by customers, comments on the company's posts, and news items.
+    /// Days on which posts were published: customers' posts, comments on the company's posts, and news items.
     pub posts: [&'a [u32]; 3],
 }
 
 impl WeekReport {
-    /// Returns the report on the last week; `None` before the first.
+    /// Returns the report on the last week of a session, or `None` before the first week.
     pub fn from_session(session: &Session) -> Option<WeekReport> {
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.company().posts() {
@@ -223,7 +225,7 @@ impl WeekReport {
         })
     }
 
-    /// Returns the report on the last of these weeks; `None` before the first.
+    /// Returns the report on the last week of the input, or `None` before the first week.
     pub fn from_input(sources: &WeekReportInput<'_>) -> Option<WeekReport> {
         let week = *sources.weeks.last()?;
         let first_day = week.day - week.days_run.min(week.day) + 1;
@@ -249,19 +251,19 @@ impl WeekReport {
         self.limit_days.contains(&(self.week.day - self.week.days_run.min(self.week.day)))
     }
 
-    /// Returns whether a time limit filed a forecast.
+    /// Returns whether a time limit filed this forecast.
     pub fn was_forecast_filed_at_limit(&self, forecast: &ScoredForecast) -> bool {
         self.limit_days.contains(&forecast.day)
     }
 }
 
-/// Describes the lengths of the last two weeks if they differ.
+/// Describes the lengths of the last two weeks if the lengths differ.
 fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
     let [.., before, week_figures] = weeks else { return None };
     describe_short_week(week_figures.days_run, before.days_run)
 }
 
-/// Returns the day on which a time limit filed a week.
+/// Returns the day of a journal entry if it is a week that a time limit filed.
 fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
@@ -273,7 +275,7 @@ fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     }
 }
 
-/// Returns ledger entries: income, then costs from the largest.
+/// Returns the amounts by ledger category: income first, then costs from the largest.
 fn cash_components(booked: &CategoryTotals) -> Vec<(&'static str, f64)> {
     let mut parts: Vec<(&'static str, f64)> =
         booked.entries().map(|(category, dollars)| (category_name(category), dollars)).collect();
@@ -283,7 +285,7 @@ fn cash_components(booked: &CategoryTotals) -> Vec<(&'static str, f64)> {
     parts
 }
 
-/// Describes the decisions of some days: before a week, and between its single days if it was run day by day.
+/// Describes the decisions of a range of days: before a week, and between the days of the week if the days were run one by one.
 fn describe_decisions(sources: &WeekReportInput<'_>, days: Range<u32>) -> Vec<String> {
     let found = sources.decisions.iter().filter(|decided| days.contains(&decided.day));
     found
@@ -303,7 +305,7 @@ fn moved_figures(sources: &WeekReportInput<'_>, week: &WeekFigures) -> Vec<Moved
         let movement = last_change(&series, noise)?;
         let up = movement.new > movement.old;
         let (old, new) = (unit.format(movement.old), unit.format(movement.new));
-        // Values that are displayed alike, or changed by less than a thousandth, count as unchanged.
+        // A figure counts as unchanged if its displayed value is unchanged, or if it changed by less than one thousandth.
         let moved = old != new && movement.relative_size() >= 0.001;
         moved.then(|| MovedFigure {
             name,
@@ -444,7 +446,7 @@ mod tests {
             assert_eq!(names, ["payments", "cancellations"], "after {more} weeks");
             assert_eq!(report.moved_figures[1].change.describe_rarity(), "", "after {more} weeks");
         }
-        // Many cancellations rank above a minor change of money.
+        // Many cancellations rank above a minor change of payments.
         let wave = WeekFigures { cancellations: 90, payments: 4_100.0, ..before };
         assert_eq!(two_weeks(before, wave, 5).moved_figures[0].name, "cancellations");
     }

@@ -10,10 +10,10 @@ use novamind_insight::{
 };
 use novamind_record::figures::FigureUnit;
 
-// Its simulation can continue beyond the end of the record, with unchanged settings.
+// Name of the branch without edits. Its simulation can continue beyond the end of the record, with unchanged settings.
 const UNCHANGED_BRANCH_NAME: &str = "your decisions unchanged";
 
-/// Names a branch by its edits.
+/// Returns the name of a branch, which lists its edits.
 pub fn branch_name(edits: &[DecisionEdit]) -> String {
     match edits {
         [] => UNCHANGED_BRANCH_NAME.to_owned(),
@@ -21,7 +21,7 @@ pub fn branch_name(edits: &[DecisionEdit]) -> String {
     }
 }
 
-/// Describes the period, and where recorded decisions end.
+/// Describes the compared period, and the day on which recorded decisions end.
 pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
     let BranchComparison { from, until, recorded_until, .. } = comparison;
     let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
@@ -37,7 +37,7 @@ pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
     )
 }
 
-/// Describes a branch: number, name and the first day on which it differs.
+/// Describes a branch by its number, its name and the first day on which it differs from the unchanged run.
 pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
     let name = branch_name(&branch.edits);
     let since = match (branch.first_different_day, branch.edits.is_empty()) {
@@ -48,7 +48,7 @@ pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
     format!("{number}  {name}{since}")
 }
 
-/// Lists all changed decisions, newly rejected ones, and rejected ones that would now be accepted.
+/// Lists the changed decisions of a branch, decisions that are now rejected, and rejected decisions that would now be accepted.
 pub fn describe_decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     let week = |day: u32| day / days_per_week + 1;
     let differing = group_equal_differences(&branch.call_differences)
@@ -100,7 +100,7 @@ fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDiffe
     all
 }
 
-/// Describes calls that differ in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
+/// Describes calls that differ from the recorded calls in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
 fn describe_call_differences(calls: &[&CallDifference], week: impl Fn(u32) -> u32) -> String {
     let [first, .., last] = calls else {
         return calls.first().map_or(String::new(), |only| {
@@ -126,13 +126,14 @@ fn describe_call_difference(call: &CallDifference) -> String {
     }
 }
 
-/// Returns the week after which figures are shown, marked `ahead` if the record ends before it does.
+/// Returns the number of the week after which figures are shown, marked `ahead` if the record ends before the end of this week.
 pub fn milestone_label(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
     let ahead = if day > comparison.recorded_until { " ahead" } else { "" };
     format!("{}{ahead}", day.div_ceil(days_per_week))
 }
 
-/// Returns headers and rows: one figure at each milestone, by branch, with its difference from the unchanged run.
+/// Returns the headers and rows of the comparison. Each row has one figure at one milestone, with a column for each
+/// branch. Cells show the difference from the unchanged run.
 pub fn comparison_table(
     comparison: &BranchComparison,
     days_per_week: u32,
@@ -160,7 +161,7 @@ fn build_table(
     (headers.collect(), rows)
 }
 
-/// Formats a value and its difference from the unchanged run.
+/// Formats a figure of a branch and its difference from the unchanged run.
 pub fn comparison_cell(
     comparison: &BranchComparison,
     branch: &BranchFigures,
@@ -171,7 +172,7 @@ pub fn comparison_cell(
     if more.is_empty() { value } else { format!("{value} {more}") }
 }
 
-/// Formats a cell as two short lines: the value, and its difference in brackets.
+/// Formats a cell of the comparison as two short lines: the figure, and the difference in brackets.
 pub fn comparison_cell_lines(
     comparison: &BranchComparison,
     branch: &BranchFigures,
@@ -193,7 +194,7 @@ pub fn comparison_cell_lines(
     [format_figure(figure.unit(), value), more]
 }
 
-/// Describes the number of futures and their first redrawn day.
+/// Describes the number of futures and the day after which random draws are new.
 pub fn futures_heading(futures: &Futures) -> String {
     format!(
         "{} with new random draws after day {}; median, and in brackets the 10th to 90th percentile",
@@ -202,7 +203,8 @@ pub fn futures_heading(futures: &Futures) -> String {
     )
 }
 
-/// Describes how many futures of a branch end in bankruptcy, and how they are counted; `None` without bankruptcies.
+/// Describes the number of futures of a branch that end in bankruptcy, and how their figures are counted. Returns
+/// `None` without bankruptcies.
 pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String> {
     let ended = futures.bankruptcy_count(branch);
     (ended > 0).then(|| {
@@ -213,7 +215,7 @@ pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String>
     })
 }
 
-/// Returns headers and rows: one figure at each milestone, by branch, over the futures.
+/// Returns the headers and rows of the futures. Each row has one figure at one milestone, with a column for each branch.
 pub fn futures_table(
     comparison: &BranchComparison,
     futures: &Futures,
@@ -222,14 +224,14 @@ pub fn futures_table(
     build_table(comparison, days_per_week, |at, figure, day| futures_cell(futures, at, figure, day))
 }
 
-/// Formats a figure over the futures: median, 10th and 90th percentile.
+/// Formats the median, 10th and 90th percentile of a figure over the futures.
 pub fn futures_cell(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> String {
     let Some(band) = futures.interval(branch, figure, day) else { return "—".to_owned() };
     let value = |value| format_figure(figure.unit(), value);
     format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
 }
 
-/// Formats a cell of the futures as two short lines: the median, and the percentiles.
+/// Formats a cell of the futures as two short lines: the median, and the 10th and 90th percentile.
 pub fn futures_cell_lines(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> [String; 2] {
     let Some(band) = futures.interval(branch, figure, day) else { return ["—".to_owned(), String::new()] };
     let short = |value: f64| match figure.unit() {
@@ -240,7 +242,8 @@ pub fn futures_cell_lines(futures: &Futures, branch: usize, figure: BranchFigure
     [format_figure(figure.unit(), band.median), format!("{}–{}", short(band.low), short(band.high))]
 }
 
-/// Describes the difference of a branch at the end and its uncertainty; `None` if no future has a value.
+/// Describes the mean difference of a figure between a branch and the unchanged run on the last day, with its
+/// interval. Returns `None` if no future has a value.
 pub fn difference_line(
     comparison: &BranchComparison,
     futures: &Futures,

@@ -1,4 +1,4 @@
-//! Text and figures for the causes of a change.
+//! Text for the explanation of a change by its causes.
 
 use super::decision_periods::describe_change;
 use super::formatting::{
@@ -8,23 +8,23 @@ use novamind_base::formatting::{grouped_number, percent};
 use novamind_insight::{CauseDetail, ChangeExplanation, InputDetail};
 use novamind_record::figures::FigureUnit;
 
-/// Name of the part that no cause explains.
+/// Name of the part of a change that no cause explains.
 pub const RESIDUAL_NAME: &str = "residual";
 
-/// A cause with its contribution, or the residual.
+/// A cause with its contribution to the change, or the residual.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseLine {
-    /// Name of the cause.
+    /// Name of the cause, or [`RESIDUAL_NAME`].
     pub name: &'static str,
     /// Contribution to the change.
     pub amount: f64,
-    /// Contribution with its sign, formatted.
+    /// Formatted contribution with its sign.
     pub amount_text: String,
-    /// Inputs that differ, old → new.
+    /// Inputs of the cause that differ, with old and new values.
     pub details: Vec<String>,
 }
 
-/// Returns all causes, largest first, and the residual.
+/// Returns all causes of a change, largest contribution first, then the residual.
 pub fn cause_lines(why: &ChangeExplanation) -> Vec<CauseLine> {
     let line = |name, amount, details| {
         let written = format_signed_change(why.quantity.unit(), amount);
@@ -36,7 +36,7 @@ pub fn cause_lines(why: &ChangeExplanation) -> Vec<CauseLine> {
     why.contributions.iter().map(part).chain([line(RESIDUAL_NAME, why.residual, Vec::new())]).collect()
 }
 
-/// Writes the change and its causes: `cancellations +942 = price +938 · competitors +4 · residual 0`.
+/// Formats the change and its causes as an equation: `cancellations +942 = price +938 · competitors +4 · residual 0`.
 pub fn equation(why: &ChangeExplanation) -> String {
     let parts: Vec<String> =
         cause_lines(why).iter().map(|line| format!("{} {}", line.name, line.amount_text)).collect();
@@ -48,7 +48,7 @@ pub fn equation(why: &ChangeExplanation) -> String {
     )
 }
 
-/// Writes the figure in both weeks, and their lengths if they differ: `week 20: 195 → 1,137`.
+/// Formats the figure of both weeks, and the lengths of the weeks if they differ: `week 20: 195 → 1,137`.
 pub fn heading(why: &ChangeExplanation) -> String {
     let value = |value| format_figure(why.quantity.unit(), value);
     let [before, number] = why.days;
@@ -56,7 +56,7 @@ pub fn heading(why: &ChangeExplanation) -> String {
     format!("{}, week {}: {} → {}{short}", why.quantity.name(), why.week, value(why.before), value(why.after))
 }
 
-/// Formats a value in a unit.
+/// Formats a value in the unit of a figure.
 pub fn format_figure(unit: FigureUnit, value: f64) -> String {
     match unit {
         FigureUnit::Dollars => novamind_base::formatting::dollars(value + 0.0),
@@ -67,7 +67,7 @@ pub fn format_figure(unit: FigureUnit, value: f64) -> String {
     }
 }
 
-/// Formats a change with its sign; shares in percentage points.
+/// Formats a change with its sign. Changes of shares are in percentage points.
 pub fn format_signed_change(unit: FigureUnit, change: f64) -> String {
     let size = change.abs();
     let text = match unit {

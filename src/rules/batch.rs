@@ -1,4 +1,4 @@
-//! Applies rules to all waiting threads: each thread is answered by the first rule that matches it.
+//! Applies rules to all waiting threads. The first matching rule answers a thread.
 
 use serde_json::{Value, json};
 
@@ -9,45 +9,45 @@ use novamind_session::identifiers::Plan;
 use novamind_session::{EnterpriseNames, Session};
 use novamind_tools::{Rejection, ToolId};
 
-/// Answer to a thread.
+/// The reply of a rule to a thread.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RuleReply {
-    /// An offer of plans and prices.
+    /// An offer of plans with their prices.
     Offer(Vec<(Plan, f64)>),
     /// A rejection, which ends the thread.
     Rejection,
 }
 
-/// A thread with its matching rule and answer.
+/// A thread with the matching rule and its reply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RuleOutcome {
-    /// The thread.
+    /// Fields of the waiting thread.
     pub thread: ThreadContext,
     /// Index of the matching rule; `None` if no rule matches.
     pub rule_index: Option<usize>,
-    /// The answer, or the reason for sending none.
+    /// The reply, or the reason why no reply is sent.
     pub reply: Result<RuleReply, &'static str>,
 }
 
-/// Totals over the threads of a rule.
+/// Totals over the threads that a rule matches.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RuleTotals {
-    /// Number of threads that receive an answer.
+    /// Number of threads that receive a reply.
     pub thread_count: u32,
-    /// Seats of these threads.
+    /// Number of seats in the threads that receive a reply.
     pub seats: u32,
-    /// Largest possible revenue from them, dollars a month.
+    /// Largest possible revenue from the offers, in dollars per month.
     pub monthly_revenue: f64,
-    /// Part of this revenue from enterprises with known compute cost, and that cost, dollars a month.
+    /// Revenue from enterprises with known compute cost, and the compute cost, both in dollars per month.
     known_margin: (f64, f64),
     /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,
-    /// Number of threads that receive no answer.
+    /// Number of threads that receive no reply.
     pub skipped: u32,
 }
 
 impl RuleTotals {
-    /// Returns the share of revenue left after compute; `None` if no compute cost is known.
+    /// Returns the share of revenue that remains after compute cost, or `None` if no compute cost is known.
     pub fn margin(&self) -> Option<f64> {
         (self.known_margin.0 > 0.0).then(|| 1.0 - self.known_margin.1 / self.known_margin.0)
     }
@@ -95,18 +95,18 @@ impl RuleTotals {
     }
 }
 
-/// Result of applying rules to all waiting threads.
+/// The result of applying rules to all waiting threads.
 #[derive(Debug, Clone)]
 pub struct RuleBatch {
-    /// The rules, in order.
+    /// The applied rules, in order.
     pub rules: Vec<Rule>,
-    /// All threads, by deadline.
+    /// All waiting threads, ordered by deadline.
     pub threads: Vec<RuleOutcome>,
-    /// Totals by rule, followed by those of threads without a rule.
+    /// Totals of each rule, followed by the totals of threads without a matching rule.
     pub totals: Vec<RuleTotals>,
 }
 
-/// Returns the tool calls with which rules answer all waiting enterprises.
+/// Returns the tool calls that send the replies of rules to all waiting enterprises.
 ///
 /// # Errors
 /// Returns `rules_not_readable`, or the error of a failed database query.
@@ -121,7 +121,7 @@ pub fn calls_for_waiting_threads(
 }
 
 impl RuleBatch {
-    /// Applies rules to threads.
+    /// Applies rules to waiting threads.
     pub fn new(rules: Vec<Rule>, threads: Vec<ThreadContext>, market: &PlanEconomics) -> RuleBatch {
         let threads: Vec<RuleOutcome> =
             threads.into_iter().map(|thread| apply_rules(&rules, thread, market)).collect();
@@ -132,7 +132,7 @@ impl RuleBatch {
         RuleBatch { rules, threads, totals: sums }
     }
 
-    /// Returns the tool calls: offers, then rejections. Empty if nothing is sent.
+    /// Returns the tool calls that send the offers and then the rejections. The list is empty if no reply is sent.
     pub fn tool_calls(&self) -> Vec<(ToolId, Value)> {
         let (mut offers, mut ends) = (Vec::new(), Vec::new());
         for ruled in &self.threads {
@@ -152,7 +152,7 @@ impl RuleBatch {
         calls.map(|(tool, deals)| (tool, json!({ "deals": deals }))).collect()
     }
 
-    /// Returns a line for each rule, and one for threads without a rule.
+    /// Returns a line for each rule, and a line for threads without a matching rule.
     pub fn summary(&self) -> Vec<String> {
         let rule = |(at, rule): (usize, &Rule)| {
             let sums = self.totals[at].describe(rule.action == Action::Reject);
@@ -188,7 +188,7 @@ fn rounded_json(value: f64, steps: f64) -> f64 {
 }
 
 impl RuleOutcome {
-    /// Describes the answer.
+    /// Describes the reply, or the reason why no reply is sent.
     pub fn describe_reply(&self) -> String {
         match &self.reply {
             Ok(RuleReply::Offer(lines)) => {
@@ -200,7 +200,7 @@ impl RuleOutcome {
         }
     }
 
-    /// Returns the fields as JSON.
+    /// Converts the thread, the matching rule and the reply to JSON.
     pub fn to_json(&self, names: &EnterpriseNames) -> Value {
         let mut row = json!({ "rule": self.rule_index.map(|at| at + 1), "sends": self.describe_reply() });
         if let (Value::Object(row), Value::Object(fields)) = (&mut row, self.thread.to_json(names)) {
@@ -223,7 +223,7 @@ fn apply_rules(rules: &[Rule], thread: ThreadContext, market: &PlanEconomics) ->
     RuleOutcome { thread, rule_index: rule, reply }
 }
 
-/// Computes the prices of all lines of an offer. If one has no price, no offer is sent.
+/// Computes the prices of all lines of an offer. Returns the reason for skipping the thread if a line has no price.
 fn price_offer(
     lines: &[OfferLine],
     thread: &ThreadContext,
@@ -372,7 +372,7 @@ mod tests {
         let accepted = batch.totals[0];
         assert_eq!((accepted.thread_count, accepted.seats, accepted.above_quota), (2, 500, 1));
         assert_eq!(accepted.monthly_revenue, 200.0 * 20.0 + 300.0 * 10.0);
-        // B has a quota of 1,000 units, C of 3,000.
+        // Plan B has a quota of 1,000 units, plan C a quota of 3,000 units.
         let compute = 1_000.0 * 30.0 * 0.01 + 3_000.0 * 30.0 * 0.1;
         assert_eq!(accepted.margin(), Some(1.0 - compute / accepted.monthly_revenue));
         assert_eq!(batch.totals[1].monthly_revenue, 10.0 * 150.0);

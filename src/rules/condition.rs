@@ -1,4 +1,4 @@
-//! Conditions of rules: comparisons with the fields of a thread.
+//! Conditions of rules, which compare fields of a thread with values.
 
 use super::thread::ThreadContext;
 use novamind_session::identifiers::Plan;
@@ -18,7 +18,7 @@ pub(super) enum Field {
     Customer,
 }
 
-/// Names of the fields, in the order of the documentation; two have an alias.
+/// Names of the fields, in the order of the documentation. Two fields also have an alias.
 pub(super) const FIELDS: [(&str, Field); 13] = [
     ("group", Field::Group),
     ("type", Field::Type),
@@ -42,12 +42,12 @@ pub(super) enum Value {
 }
 
 impl Field {
-    /// Returns whether the values are words.
+    /// Returns whether the values of the field are words rather than numbers.
     pub(super) fn is_word(self) -> bool {
         matches!(self, Field::Group | Field::Type | Field::AskedPlan)
     }
 
-    /// Returns the value of a thread; `None` if it has none.
+    /// Returns the value of this field in a thread, or `None` if the thread has no value.
     fn value_of(self, thread: &ThreadContext) -> Option<Value> {
         let (waiting_thread, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
         Some(match self {
@@ -98,7 +98,7 @@ impl Comparison {
     }
 }
 
-/// A condition. Only `is null` matches a missing value.
+/// A condition on a field of a thread. Only `is null` matches a missing value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Condition {
     Compared(Field, Comparison, Value),

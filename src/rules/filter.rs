@@ -1,10 +1,10 @@
-//! A filter of threads, with the conditions that rules have after `where`.
+//! A filter of threads that uses the conditions of rules.
 
 use super::condition::Condition;
 use super::grammar::{self, RuleError};
 use super::thread::ThreadContext;
 
-/// Conditions that a thread must all meet.
+/// Conditions, all of which a thread must meet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filter(Vec<Condition>);
 

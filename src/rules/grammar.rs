@@ -1,4 +1,4 @@
-//! The grammar of rules (docs/interfaces/rules.md#grammar).
+//! Parses rules (docs/interfaces/rules.md#grammar).
 
 use super::condition::{Comparison, Condition, FIELDS, Field, Value};
 use super::thread::ThreadContext;
@@ -6,15 +6,15 @@ use novamind_base::similar_names;
 use novamind_session::identifiers::Plan;
 
 const MAX_OFFER_LINES: usize = 3;
-/// Enterprise groups that every run knows. Discovered ones start with `D_E`.
+/// Enterprise groups that are known in every run. The ids of discovered enterprise groups start with `D_E`.
 const INITIAL_GROUPS: [&str; 3] = ["E1", "E2", "E3"];
-/// Kinds of threads that can wait for an answer.
+/// Types of threads that can wait for a reply.
 const THREAD_TYPES: [&str; 4] = ["new_lead", "churn_prevention", "plan_change", "renegotiation"];
 
-/// A rule: conditions and an action.
+/// A rule: conditions and the action for threads that meet all conditions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// Source text.
+    /// Source text of the rule.
     pub text: String,
     pub(super) conditions: Vec<Condition>,
     pub(super) action: Action,
@@ -35,7 +35,7 @@ pub(super) enum Action {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OfferLine {
-    /// `None` for the plan that the enterprise asked for.
+    /// Offered plan; `None` means the plan that the enterprise asked for.
     pub(super) plan: Option<Plan>,
     pub(super) price: Price,
 }
@@ -48,12 +48,12 @@ pub(super) enum Price {
     Last(f64),
 }
 
-/// A problem of rules and its column.
+/// A syntax error in rules.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RuleError {
-    /// Description, with similar names.
+    /// Description of the error, with suggestions of similar names.
     pub text: String,
-    /// Column in characters, from 1.
+    /// Column of the error in characters, counted from 1.
     pub column: usize,
 }
 
@@ -81,7 +81,7 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, RuleError> {
     }
 }
 
-/// Parses conditions without a rule, as they occur after `where`.
+/// Parses conditions without a rule, in the form that follows `where`.
 pub(super) fn parse_conditions(text: &str) -> Result<Vec<Condition>, RuleError> {
     let tokens = tokenize(text)?;
     let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
@@ -178,7 +178,7 @@ impl RuleParser<'_> {
         RuleError { text: text.into(), column: column(self.text, at) }
     }
 
-    /// Returns a problem with the previous word.
+    /// Returns an error at the previous word.
     fn error_at_previous(&mut self, text: impl Into<String>) -> RuleError {
         self.at -= 1;
         self.error_here(text)
@@ -209,10 +209,14 @@ impl RuleParser<'_> {
         let named = self.accept("where");
         match self.peek() {
             None | Some(";") => {
-                return Err(self.error_here(format!("{action} needs a condition, or rest for all others")));
+                return Err(
+                    self.error_here(format!("{action} needs a condition, or rest for all other threads"))
+                );
             }
             Some(":") if !named => {
-                return Err(self.error_here("the condition is missing: use where …, or rest for all others"));
+                return Err(
+                    self.error_here("the condition is missing: use where …, or rest for all other threads")
+                );
             }
             _ => {}
         }
@@ -314,7 +318,7 @@ impl RuleParser<'_> {
             return Ok(Value::Number(self.parse_number()?));
         }
         let Some(word) = self.next_word() else { return Err(self.error_here("a value is missing")) };
-        // Does not reveal whether an undiscovered group exists.
+        // Any group that begins with `D_E` is accepted, so that errors do not reveal which undiscovered groups exist.
         let word = if field == Field::Group { word.to_uppercase() } else { word };
         if word.starts_with("D_E") {
             return Ok(Value::Word(word));
@@ -401,7 +405,7 @@ impl RuleParser<'_> {
     }
 }
 
-/// Suggests similar names, or lists the known ones.
+/// Returns a suggestion of similar names, or a list of the known names if none is similar.
 fn suggestion(near: Vec<&str>, known: &[&str]) -> String {
     match near.is_empty() {
         true => format!("known: {}", known.join(", ")),
@@ -445,7 +449,7 @@ mod tests {
             ("offer where type = new: B 3", 20, "new_lead"),
             ("offer where group > E1: B 3", 19, "= or !="),
             ("offer rest", 11, "colon"),
-            ("offer: B 3", 6, "rest for all others"),
+            ("offer: B 3", 6, "rest for all other threads"),
             ("offer rest: D 3", 13, "unknown plan"),
             ("offer rest: B -3", 15, "number is expected"),
             ("offer rest: B 0", 15, "above 0"),

@@ -1,8 +1,8 @@
-//! Rules that answer enterprises (docs/interfaces/rules.md), with one grammar for the console and plain mode. Rules
-//! send nothing themselves: they produce ordinary calls of the two tools for deals.
+//! Rules that answer enterprises (docs/interfaces/rules.md). The console and plain mode use the same grammar. Rules do
+//! not send replies themselves: they produce ordinary calls of the two tools for deals.
 //!
-//! `grammar` parses rules, `condition` matches threads, `filter` parses conditions alone, `thread` contains the
-//! fields of a thread, `batch` applies rules to all threads, and `offer_row` reads offers from database rows.
+//! `grammar` parses rules, `condition` matches threads, and `filter` parses conditions without a rule. `thread`
+//! contains the fields of a thread, `batch` applies rules to all threads, and `offer_row` parses offers in database rows.
 //! Conditions use only data that is visible to players.
 
 mod batch;

@@ -1,11 +1,11 @@
-//! Reads the offer of a negotiation's row.
+//! Parses the offer in a database row of a negotiation.
 
 use serde_json::Value;
 
 use novamind_session::identifiers::Plan;
 
-/// Returns the plans and prices that the player offered, and the price that an enterprise asked for, in dollars a
-/// month and seat, from the JSON of a row.
+/// Parses the JSON of a row. Returns the plans and prices that the player offered, and the price that the enterprise
+/// asked for, in dollars per month and seat.
 pub fn parse_offer(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
     let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
     let one = |offer: &Value| {

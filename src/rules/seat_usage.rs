@@ -1,14 +1,14 @@
-//! Usage per seat of a group: measured on the last day, or estimated by the last study.
+//! Usage per seat of a group, measured on the last day or estimated by the last market study.
 
 use std::collections::BTreeMap;
 
 use novamind_database::{QueryResult, number_at, text_at};
 use novamind_session::identifiers::Group;
 
-/// Query for the measurement: group, plan, users, seats, units of the last day.
+/// SQL query for the usage of the last day. Columns: group, plan, users, seats, units.
 pub const SEAT_USAGE_SQL: &str = include_str!("../../assets/readings/usage.sql");
 
-/// Seats of enterprises that used the product on the last day, and their units, by group.
+/// By group: seats of the enterprises that used the product on the last day, and the units that they used.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SeatUsage(BTreeMap<String, (f64, f64)>);
 
@@ -25,8 +25,8 @@ impl SeatUsage {
         SeatUsage(groups)
     }
 
-    /// Returns units a day and seat of a group; `None` if no enterprise of the group used the product on the last
-    /// day.
+    /// Returns the usage of a group in units per day and seat, or `None` if no enterprise of the group used the
+    /// product on the last day.
     pub fn measured_usage(&self, group: &str) -> Option<f64> {
         self.0.get(group).filter(|(seats, _)| *seats > 0.0).map(|(seats, units)| units / seats)
     }

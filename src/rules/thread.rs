@@ -1,4 +1,4 @@
-//! Data that rules use: waiting threads and the plans on sale.
+//! Data that rules use: waiting threads, and prices and costs of the plans.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,12 @@ use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{EnterpriseNames, Session, WaitingThread};
 use novamind_tools::{Rejection, ToolId};
 
-/// Query for the last messages of enterprises. A thread ends a week after its last message.
+/// SQL query for the last messages of enterprises. A thread ends a week after the last message.
 pub const LAST_MESSAGES_SQL: &str = include_str!("../../assets/readings/last_letters.sql");
 
 const DAYS_PER_MONTH: f64 = 30.0;
 
-/// The plan that enterprises named in their latest message, by thread: with a price, or as a wish.
+/// By thread: the plan that the enterprise named in its latest message, with a price or as a request.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RequestedPlans(BTreeMap<u32, Plan>);
 
@@ -36,7 +36,7 @@ pub fn first_plan_in(text: &str) -> Option<Plan> {
     plans_in(text).first().copied()
 }
 
-/// Returns the first plan that a text names other than the enterprise's current one, because a wish may name both.
+/// Returns the first plan in a text that is not the enterprise's current plan. A request may name both plans.
 fn other_plan_in(text: &str, present: Option<Plan>) -> Option<Plan> {
     plans_in(text).into_iter().find(|plan| Some(*plan) != present)
 }
@@ -52,23 +52,23 @@ fn plans_in(text: &str) -> Vec<Plan> {
     lower.match_indices("plan ").filter_map(named).collect()
 }
 
-/// Plans on sale and the usage of a seat.
+/// Prices, quotas and costs of the plans, and the usage per seat of each group.
 #[derive(Debug, Clone, Default)]
 pub struct PlanEconomics {
-    /// List prices, dollars a month.
+    /// List price of each plan, in dollars per month and seat.
     pub list_prices: [f64; 3],
-    /// Quotas, units a day and customer.
+    /// Quota of each plan, in units per day and customer.
     pub quotas: [f64; 3],
-    /// Compute cost, dollars a unit.
+    /// Compute cost of each plan, in dollars per unit.
     pub unit_costs: [f64; 3],
-    /// Measured usage.
+    /// Usage per seat measured on the last day, by group.
     pub usage: SeatUsage,
-    /// Usage estimated by the last study, units a day and seat.
+    /// Usage estimated by the last market study, in units per day and seat.
     pub estimated_usage: BTreeMap<Group, f64>,
 }
 
 impl PlanEconomics {
-    /// Returns the plans and usage of a run today.
+    /// Returns the plans and the usage on the current day of a run.
     pub fn from_session(session: &Session, usage: SeatUsage) -> PlanEconomics {
         let (core, terms) = (&session.settings().core, session.company().tool_limits());
         let unit_cost = |plan: Plan| {
@@ -90,13 +90,13 @@ impl PlanEconomics {
         }
     }
 
-    /// Returns the usage of all seats of an enterprise, units a day.
+    /// Returns the expected usage of all seats of an enterprise, in units per day.
     pub fn required_usage(&self, group: &str, seats: u32) -> Option<f64> {
         let studied = || Group::parse(group).and_then(|group| self.estimated_usage.get(&group)).copied();
         self.usage.measured_usage(group).or_else(studied).map(|units| units * f64::from(seats))
     }
 
-    /// Returns the compute cost of an enterprise on a plan, dollars a month. All its seats share one quota.
+    /// Returns the compute cost of an enterprise on a plan, in dollars per month. All seats of an enterprise share one quota.
     pub fn compute_cost(&self, plan: Plan, wanted: f64) -> f64 {
         wanted.min(self.quotas[plan as usize]) * DAYS_PER_MONTH * self.unit_costs[plan as usize]
     }
@@ -105,16 +105,16 @@ impl PlanEconomics {
 /// A waiting thread with all fields that rules use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreadContext {
-    /// The thread in the session.
+    /// The waiting thread of the session.
     pub waiting: WaitingThread,
     /// Plan that the enterprise named with its price, or whose price it asked for.
     pub asked_plan: Option<Plan>,
-    /// Usage of all its seats, units a day: the quota that covers them.
+    /// Quota that covers the usage of all seats, in units per day.
     pub required_quota: Option<f64>,
 }
 
 impl ThreadContext {
-    /// Collects the fields of a waiting thread.
+    /// Collects the fields of a waiting thread that rules use.
     pub fn new(waiting: &WaitingThread, plans: &RequestedPlans, market: &PlanEconomics) -> ThreadContext {
         let only = || match waiting.last_offer.as_slice() {
             [(plan, _)] if waiting.asked.is_some() => Some(*plan),
@@ -127,7 +127,7 @@ impl ThreadContext {
         }
     }
 
-    /// Returns all waiting threads and the plans on sale. Runs two queries, which are not recorded.
+    /// Returns all waiting threads and the plan data. Runs two queries, which are not recorded.
     ///
     /// # Errors
     /// Returns an error if the database cannot be read.
@@ -141,7 +141,7 @@ impl ThreadContext {
         Ok((threads.collect(), market))
     }
 
-    /// Returns the fields as JSON, with the name of the enterprise.
+    /// Converts the fields to JSON, including the name of the enterprise.
     pub fn to_json(&self, names: &EnterpriseNames) -> Value {
         let mut row = json!({ "company": names.name(self.waiting.customer) });
         if let (Value::Object(row), Value::Object(fields)) = (&mut row, json!(self.waiting)) {

@@ -1,7 +1,7 @@
-//! Instructions for an agent: a page with goal, rules and calls, and the documentation of tools and tables.
+//! Instructions for an agent: a page that describes goal, rules and requests, and the documentation of tools and tables.
 //!
-//! Everything is generated from the catalog and the current parameters. The page contains what agents in the benchmark are told,
-//! without hidden state and without advice on how to play well.
+//! Everything is generated from the catalog and the current parameters. The page contains the same information as the
+//! instructions of the benchmark, without hidden state and without advice on how to play well.
 
 use std::path::Path;
 
@@ -19,24 +19,24 @@ const PAGE: &str = include_str!("../../assets/agent/page.md");
 const SHELL: &str = include_str!("../../assets/agent/shell.md");
 const ERRORS: &str = include_str!("../../assets/agent/errors.md");
 
-/// The heading that follows goal, calendar and rules.
+/// The heading of the page section that follows goal, calendar and rules.
 const HOW_TO_CALL: &str = "## How to call";
 
-/// File name of the page.
+/// File name of the instructions.
 const PAGE_FILE: &str = "AGENT.md";
 
-/// The run that a page describes.
+/// Data of the run that a page describes.
 #[derive(Debug, Clone)]
 pub struct PageContext<'a> {
-    /// Last day.
+    /// Last day of the run.
     pub days: u32,
     /// Cash on day 0, in dollars.
     pub cash: f64,
-    /// Current parameters.
+    /// Current parameters of the run.
     pub numbers: &'a ParameterNumbers,
 }
 
-/// Returns the page as Markdown.
+/// Returns the instructions for an agent as Markdown.
 pub fn agent_page(of: &PageContext<'_>) -> String {
     let filled = of.numbers.substitute(PAGE);
     let parts = [
@@ -52,13 +52,13 @@ pub fn agent_page(of: &PageContext<'_>) -> String {
     parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
 }
 
-/// Returns the goal, the calendar and the rules of the page, for clients that receive the tools separately.
+/// Returns the goal, the calendar and the rules from the page, for clients that receive the tools separately.
 pub fn goal_and_rules(of: &PageContext<'_>) -> String {
     let whole = agent_page(of);
     whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()
 }
 
-/// Writes the page and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
+/// Writes the instructions and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
 ///
 /// # Errors
 /// The folder cannot be written.

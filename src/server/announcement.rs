@@ -1,5 +1,5 @@
-//! The announcement of a server: a file in the run folder by which other processes find the server or see that a program plays
-//! the run.
+//! The announcement of a server: a file in the run folder. Other processes use the file to find the server or to
+//! detect that a program plays the run.
 
 use std::path::{Path, PathBuf};
 
@@ -9,23 +9,23 @@ use novamind_record::error::RunError;
 use novamind_record::files::write_atomically;
 use novamind_record::folder::lock::SERVER_FILE;
 
-/// The address of a served run.
+/// The address at which a server plays a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Announcement {
-    /// Run id.
+    /// Id of the served run.
     pub run: String,
-    /// Port on 127.0.0.1. `None` if a client plays over standard input and output, and no other process can connect.
+    /// Port on 127.0.0.1. `None` if the client uses standard input and output, so that no other process can connect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub port: Option<u16>,
     /// Process id of the server.
     pub pid: u32,
-    /// File with the token that requests must carry, if one is required.
+    /// File with the token that requests must include, if a token is required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub token: Option<PathBuf>,
 }
 
 impl Announcement {
-    /// Writes the announcement to the run folder atomically. The caller must hold the lock of the run.
+    /// Writes the announcement to the run folder atomically. The caller must have locked the run.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -36,11 +36,12 @@ impl Announcement {
 
     /// Removes the announcement from a run folder.
     pub fn remove(folder: &Path) {
-        // Readers of a leftover file check the port first.
+        // Ignore errors, because readers of a leftover file check whether the server responds.
         let _ = std::fs::remove_file(folder.join(SERVER_FILE));
     }
 
-    /// Reads the announcement of a run folder. The server may have gone. Returns `None` if there is no readable file.
+    /// Reads the announcement in a run folder, which may be left over from a server that ended. Returns `None` if
+    /// there is no readable file.
     pub fn read(folder: &Path) -> Option<Announcement> {
         serde_json::from_slice(&std::fs::read(folder.join(SERVER_FILE)).ok()?).ok()
     }

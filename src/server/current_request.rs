@@ -1,28 +1,30 @@
-//! The request being executed, and how to stop its script or statement.
+//! The request that is being executed, and the interrupt that stops its script or statement.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use novamind_database::Interrupt;
 
-/// A request being executed.
+/// A request that is being executed and can be interrupted.
 struct RunningRequest {
     number: u64,
-    /// Whether it only runs code, whose result is not needed after the client has disconnected.
+    /// Whether the request only runs a script or statement. The result of such a request is not needed after the
+    /// client has disconnected.
     is_code: bool,
     interrupt: Interrupt,
 }
 
-/// The running request and its interrupt. A week is simulated to its end, but its calculations stop when the server stops.
+/// The running request and its interrupt. When the server stops, a running week is still simulated to its end, but the
+/// week's calculations are stopped.
 #[derive(Clone, Default)]
 pub(super) struct CurrentRequest(Arc<Mutex<Option<RunningRequest>>>);
 
 impl CurrentRequest {
-    /// Sets the running request.
+    /// Records the start of a request.
     pub fn begin(&self, number: u64, is_code: bool, interrupt: Option<Interrupt>) {
         self.set(interrupt.map(|interrupt| RunningRequest { number, is_code, interrupt }));
     }
 
-    /// Clears the running request.
+    /// Records the end of the running request.
     pub fn end(&self) {
         self.set(None);
     }
@@ -32,7 +34,7 @@ impl CurrentRequest {
         self.stop_if(|_| true);
     }
 
-    /// Returns a guard that stops the request if it is dropped before the response.
+    /// Returns a guard that stops the request if the guard is dropped before the response.
     pub fn watch(&self, number: u64) -> RequestWatch {
         RequestWatch { running: self.clone(), number, is_answered: false }
     }
@@ -47,7 +49,7 @@ impl CurrentRequest {
     }
 }
 
-/// A guard of a client that waits for a response.
+/// A guard that stops a request if the client no longer waits for the response.
 pub(super) struct RequestWatch {
     running: CurrentRequest,
     number: u64,
@@ -55,7 +57,7 @@ pub(super) struct RequestWatch {
 }
 
 impl RequestWatch {
-    /// Disarms the guard after the response.
+    /// Disarms the guard after the response was received.
     pub fn mark_answered(mut self) {
         self.is_answered = true;
     }

@@ -1,18 +1,18 @@
-//! Calls of tools in an evaluation log of Inspect, as JSON or in Inspect's `.eval` archive.
+//! Reads tool calls from an evaluation log of Inspect, in JSON or in Inspect's `.eval` archive.
 
 use serde_json::Value;
 
 use super::transcript::{ForeignCall, ForeignTranscript, tool_name};
 use super::zip::ZipArchive;
 
-/// How to convert an unsupported log.
+/// Instruction for converting an unsupported log.
 const CONVERT_HELP: &str =
-    "`inspect log convert --to json --output-dir FOLDER LOG` writes it as JSON, which can be imported";
+    "`inspect log convert --to json --output-dir FOLDER LOG` converts the log to JSON, which can be imported";
 
-/// Reads the calls of an `.eval` archive.
+/// Reads the tool calls in an `.eval` archive.
 ///
 /// # Errors
-/// It is damaged, or does not have exactly one sample with calls of tools of this program.
+/// The archive is damaged, or does not contain exactly one sample that calls tools of this program.
 pub(super) fn parse_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, String> {
     let archive =
         ZipArchive::open(bytes).ok_or("the archive has no readable directory; it may be cut short")?;
@@ -33,10 +33,10 @@ pub(super) fn parse_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscrip
     parse_log(&header, &samples)
 }
 
-/// Reads the calls of a log in JSON.
+/// Reads the tool calls in a JSON log.
 ///
 /// # Errors
-/// It does not have exactly one sample with calls of tools of this program.
+/// The log does not contain exactly one sample that calls tools of this program.
 pub(super) fn parse_json(log: &Value) -> Result<ForeignTranscript, String> {
     parse_log(log, log["samples"].as_array().map_or(&[], Vec::as_slice))
 }
@@ -49,7 +49,7 @@ fn parse_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, Str
         let name = |sample: &Value| format!("{} (epoch {})", text_content(&sample["id"]), sample["epoch"]);
         let names: Vec<String> = calls.iter().map(|(sample, _)| name(sample)).collect();
         return Err(format!(
-            "the log has {} samples that call tools of this program: {}. Import a log of one sample",
+            "the log has {} samples that call tools of this program: {}. Import a log with one sample",
             names.len(),
             names.join(", ")
         ));
@@ -67,7 +67,7 @@ fn parse_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, Str
     })
 }
 
-/// Returns the calls in the messages of a sample, in order.
+/// Returns the tool calls in the messages of a sample, in order.
 fn tool_calls(sample: &Value) -> Vec<ForeignCall> {
     let messages = sample["messages"].as_array().map_or(&[][..], Vec::as_slice);
     let mut found = Vec::new();
@@ -82,7 +82,7 @@ fn tool_calls(sample: &Value) -> Vec<ForeignCall> {
     found
 }
 
-/// Returns whether the answer to a call says that the call was accepted, or `None` if it does not say.
+/// Returns whether the message that answers a tool call reports acceptance, or `None` if the message is missing or unclear.
 fn is_accepted(after: &[Value], id: &Value) -> Option<bool> {
     let answer = after.iter().find(|message| message["role"] == "tool" && message["tool_call_id"] == *id)?;
     if !answer["error"].is_null() {

@@ -1,17 +1,17 @@
-//! Bodies with `NaN` or `Infinity`, which are not JSON but which Python's `json.dumps` writes. They are rejected like a wrong
-//! argument, so that every client shows the name of the argument.
+//! Parses bodies that contain `NaN` or `Infinity`. These literals are not valid JSON, but Python's `json.dumps` writes
+//! them. The rejection is the same as for a wrong argument, so that every client shows the name of the argument.
 
 use serde_json::Value;
 
 use novamind_tools::Rejection;
 
-/// The literals, longest first.
+/// The non-finite literals, longest first.
 const LITERALS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
-/// Prefix of a literal that was converted to a text.
+/// Prefix that marks a text as a converted literal.
 const MARK: &str = "\u{1}not a number: ";
 
-/// Reads such a body. The literals become texts, and the rejection names the first one. Returns `None` if the body contains no
-/// literal or is invalid for another reason.
+/// Parses a body with non-finite literals. Returns the body with the literals as texts, and a rejection that names the
+/// first literal. Returns `None` if the body contains no such literal or is invalid for another reason.
 pub fn parse_with_literals(bytes: &[u8]) -> Option<(Value, Rejection)> {
     let mut value = serde_json::from_str(&mark_literals(std::str::from_utf8(bytes).ok()?)).ok()?;
     let (path, literal) = restore_literals(&mut value)?;
@@ -20,7 +20,7 @@ pub fn parse_with_literals(bytes: &[u8]) -> Option<(Value, Rejection)> {
     Some((value, Rejection::for_field(argument, "wrong_type", message)))
 }
 
-/// Converts each literal outside of texts to a marked text.
+/// Converts each non-finite literal outside of strings to a marked string.
 fn mark_literals(body: &str) -> String {
     let (mut text, mut rest, mut in_text) = (String::new(), body, false);
     while let Some(letter) = rest.chars().next() {
@@ -41,7 +41,8 @@ fn mark_literals(body: &str) -> String {
     text
 }
 
-/// Converts marked texts back to literals. Returns the path of the first one and the literal.
+/// Converts marked strings back to strings that contain only the literal. Returns the path and the literal of the
+/// first marked string.
 fn restore_literals(value: &mut Value) -> Option<(String, String)> {
     let join = |name: String, (path, literal): (String, String)| match path.is_empty() {
         true => (name, literal),

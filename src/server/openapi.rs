@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::schema;
 use novamind_tools::{ParameterNumbers, ToolId};
 
-/// Returns the description.
+/// Returns the OpenAPI document.
 pub fn document(numbers: &ParameterNumbers) -> Value {
     json!({
         "openapi": "3.1.0",
@@ -33,7 +33,7 @@ fn paths(numbers: &ParameterNumbers) -> Value {
     let script = retries(ToolId::RegisterScript, script);
     let sql = json!({ "type": "object", "required": ["sql"], "properties": { "sql": { "type": "string" } } });
     json!({
-        "/health": { "get": get_operation("Whether the server accepts requests, and the id of its run") },
+        "/health": { "get": get_operation("Whether the server accepts requests, and the id of the run") },
         "/shutdown": { "post": { "summary": "Finish pending requests and close the run",
             "responses": { "200": { "description": "success, run" } } } },
         "/vars": { "get": get_operation("The current day") },
@@ -48,7 +48,7 @@ fn paths(numbers: &ParameterNumbers) -> Value {
         "/query": { "post": post_operation("Run one SQL statement", sql, "columns, rows, row_count") },
         "/daily-scripts": {
             "get": get_operation("Names and sizes of the stored scripts"),
-            "post": post_operation("Store a script; it is never executed", script.clone(), "name, registered"),
+            "post": post_operation("Store a script, which is never executed", script.clone(), "name, registered"),
             "delete": post_operation("Delete a script", script, "removed"),
         },
     })

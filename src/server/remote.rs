@@ -13,37 +13,37 @@ use tokio::net::TcpStream;
 use super::announcement::Announcement;
 use novamind_record::folder::lock::is_locked;
 
-/// Time limit for the health check, which a working server answers at once, even during a week.
+/// Time limit for the health check. A working server responds immediately, even during a week.
 const HEALTH_DEADLINE: Duration = Duration::from_secs(10);
-/// Time limit for other requests. A week of a large company takes seconds; a script may take minutes.
+/// Time limit for all requests except the health check. A week of a large company takes seconds, a script can take minutes.
 const REQUEST_DEADLINE: Duration = Duration::from_secs(1800);
 /// Maximum size of a response in bytes.
 const MAX_RESPONSE_BYTES: usize = 256 * 1024 * 1024;
 
-/// A server that plays a run.
+/// A running server that plays a run.
 #[derive(Debug, Clone)]
 pub struct RemoteServer {
-    /// Its announcement.
+    /// Announcement of the server.
     pub announcement: Announcement,
-    /// Port on 127.0.0.1.
+    /// Port of the server on 127.0.0.1.
     pub port: u16,
-    /// Token for requests, if one is required.
+    /// Token for requests, if the server requires a token.
     pub token: Option<String>,
 }
 
 /// A response of a server.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServerResponse {
-    /// HTTP status.
+    /// HTTP status code of the response.
     pub status: u16,
-    /// The body.
+    /// JSON body of the response.
     pub body: Value,
 }
 
 impl RemoteServer {
     /// Finds the server that plays the run of a folder. Returns `None` if no server responds for this run over HTTP.
     ///
-    /// A leftover announcement of a killed server is detected without a request, because nothing holds the lock of the run.
+    /// The announcement of a killed server is detected without a request, because no process has locked the run.
     pub fn find(folder: &Path, run: &str) -> Option<RemoteServer> {
         let announcement = Announcement::read(folder).filter(|announcement| announcement.run == run)?;
         if !is_locked(folder) {
@@ -55,7 +55,8 @@ impl RemoteServer {
         };
         let remote = RemoteServer { port: announcement.port?, announcement, token };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
-        // A server with too many connections does not name its run, and rejects the actual request, too.
+        // A server with too many connections rejects the health check and does not name its run. The server also
+        // rejects the actual request.
         let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
         (is_full || health.status == 200 && health.body["run"] == run).then_some(remote)
     }
@@ -63,7 +64,7 @@ impl RemoteServer {
     /// Sends a GET request.
     ///
     /// # Errors
-    /// The server does not respond, or not with JSON. The error is a description.
+    /// The server does not respond, or the response is not valid JSON. The error describes the problem.
     pub fn get(&self, path: &str) -> Result<ServerResponse, String> {
         self.send(Method::GET, path, None, REQUEST_DEADLINE)
     }
@@ -71,7 +72,7 @@ impl RemoteServer {
     /// Sends a POST request with an object.
     ///
     /// # Errors
-    /// As [`RemoteServer::get`]. The request may have been executed.
+    /// The errors of [`RemoteServer::get`]. The server may have executed the request.
     pub fn post(&self, path: &str, body: &Value) -> Result<ServerResponse, String> {
         self.send(Method::POST, path, Some(body), REQUEST_DEADLINE)
     }
@@ -79,7 +80,7 @@ impl RemoteServer {
     /// Asks the server to finish pending requests and close the run.
     ///
     /// # Errors
-    /// As [`RemoteServer::get`].
+    /// The errors of [`RemoteServer::get`].
     pub fn shut_down(&self) -> Result<ServerResponse, String> {
         self.post("/shutdown", &json!({}))
     }
@@ -106,7 +107,7 @@ impl RemoteServer {
         let runtime = runtime.map_err(|error| error.to_string())?;
         runtime.block_on(async {
             let asked = tokio::time::timeout(deadline, exchange(self.port, request));
-            asked.await.map_err(|_| format!("it did not respond within {} s", deadline.as_secs()))?
+            asked.await.map_err(|_| format!("no response within {} s", deadline.as_secs()))?
         })
     }
 }
@@ -118,7 +119,7 @@ async fn exchange(port: u16, request: Request<Body>) -> Result<ServerResponse, S
         .await
         .map_err(|error| in_words(&error))?;
     tokio::spawn(async move {
-        // Errors on the connection are reported by the request that waits for the response.
+        // Ignore errors of the connection, because the request that waits for the response reports them.
         let _ = connection.await;
     });
     let response = sender.send_request(request).await.map_err(|error| in_words(&error))?;
@@ -127,6 +128,6 @@ async fn exchange(port: u16, request: Request<Body>) -> Result<ServerResponse, S
         .await
         .map_err(|error| in_words(&error))?;
     let body =
-        serde_json::from_slice(&bytes).map_err(|error| format!("its response is not valid JSON: {error}"))?;
+        serde_json::from_slice(&bytes).map_err(|error| format!("the response is not valid JSON: {error}"))?;
     Ok(ServerResponse { status, body })
 }

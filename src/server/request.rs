@@ -1,4 +1,4 @@
-//! Requests of programs and their answers.
+//! Requests of programs and the responses to these requests.
 
 use serde_json::{Map, Value, json};
 
@@ -6,30 +6,30 @@ use super::schema::REQUEST_ID;
 use novamind_record::trajectory::record::RejectionRecord;
 use novamind_tools::{Rejection, ToolId, find};
 
-/// A request of a program.
+/// A request that a program sends through HTTP or the Model Context Protocol.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ApiRequest {
-    /// Call a tool.
+    /// Request to call a tool.
     Call {
-        /// Name of the tool.
+        /// Name of the called tool.
         tool: String,
         /// Arguments as they were sent.
         args: Value,
         /// Request id, or null.
         request_id: Value,
     },
-    /// Record a call that was rejected before it reached a tool.
+    /// Request to record a tool call that was rejected before it reached the tool.
     RejectedCall {
-        /// Name of the tool.
+        /// Name of the called tool.
         tool: String,
         /// Arguments as they were sent.
         args: Value,
-        /// The reason.
+        /// Rejection that the response contains.
         refusal: Rejection,
     },
-    /// Submit rationale and forecasts, and simulate a week.
+    /// Request to submit a rationale and forecasts and to simulate a week.
     NextWeek {
-        /// Rationale.
+        /// Rationale of the week.
         rationale: Value,
         /// Forecasts for four horizons.
         predictions: Value,
@@ -38,43 +38,44 @@ pub enum ApiRequest {
         /// Request id, or null.
         request_id: Value,
     },
-    /// Run a statement.
+    /// Request to run an SQL statement.
     Query {
-        /// One statement.
+        /// Text of one SQL statement.
         sql: Value,
     },
-    /// The current day.
+    /// Request for the current day.
     CurrentDay,
-    /// The dashboard of the last week.
+    /// Request for the dashboard of the last week.
     Dashboard,
-    /// Day, cash, subscribers, and whether the run is over.
+    /// Request for day, cash, subscribers, and whether the run is over.
     GameStatus,
-    /// Names and sizes of the stored scripts.
+    /// Request for the names and sizes of the stored scripts.
     DailyScripts,
-    /// Store a script.
+    /// Request to store a script.
     SaveDailyScript {
-        /// Name.
+        /// Name of the script to store.
         name: Value,
-        /// Text.
+        /// Text of the script.
         content: Value,
         /// Request id, or null.
         request_id: Value,
     },
-    /// Delete a script.
+    /// Request to delete a stored script.
     DeleteDailyScript {
-        /// Name.
+        /// Name of the script to delete.
         name: Value,
         /// Request id, or null.
         request_id: Value,
     },
-    /// The notes of the run.
+    /// Request for the notes of the run.
     Notes,
 }
 
 impl ApiRequest {
-    /// Returns the request of a tool call. Statements and weeks become their own requests in all interfaces.
+    /// Returns the request of a tool call. Calls of `query` and `next_week` become [`ApiRequest::Query`] and
+    /// [`ApiRequest::NextWeek`].
     ///
-    /// The request id may be among the arguments.
+    /// The arguments may contain the request id.
     pub fn for_tool(name: &str, args: Value, request_id: Value) -> ApiRequest {
         let mut fields = match args {
             Value::Object(fields) => fields,
@@ -108,7 +109,7 @@ impl ApiRequest {
         ApiRequest::Call { tool: name.to_owned(), args: fields.into(), request_id }
     }
 
-    /// Returns whether the request only runs a script or a statement, which changes nothing and may be stopped.
+    /// Returns whether the request only runs a script or a statement. Such a request changes nothing and can be stopped.
     pub fn runs_code(&self) -> bool {
         match self {
             ApiRequest::Query { .. } => true,
@@ -118,7 +119,7 @@ impl ApiRequest {
     }
 }
 
-/// Rejects a week with an unknown argument, because a misspelled `expected_day` would protect nothing.
+/// Rejects a week with an unknown argument, because a misspelled `expected_day` would have no effect.
 fn unknown_week_argument(fields: &Map<String, Value>) -> Option<Rejection> {
     const KNOWN: [&str; 3] = ["rationale", "predictions", "expected_day"];
     let unknown = fields.keys().find(|name| !KNOWN.contains(&name.as_str()))?;
@@ -128,7 +129,8 @@ fn unknown_week_argument(fields: &Map<String, Value>) -> Option<Rejection> {
     Some(Rejection::for_field(unknown.clone(), "unknown_argument", message))
 }
 
-/// Returns the text of an error. If several deals are all rejected, it has one line each, as in the released simulator.
+/// Returns the text of an error. If a call has several deals and all were rejected, the text has one line per deal, as
+/// in the released simulator.
 fn error_text(message: &str, results: &Value) -> String {
     let line = |result: &Value| {
         let who = result["customer_id"].as_i64().map(|customer| format!("customer {customer}"));
@@ -141,59 +143,59 @@ fn error_text(message: &str, results: &Value) -> String {
     }
 }
 
-/// The kind of an answer, from which its HTTP status follows.
+/// The kind of a response, which determines the HTTP status code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResponseStatus {
-    /// Success, or a rejection by a tool.
+    /// The request succeeded, or a tool rejected the call.
     Done,
-    /// The request is invalid.
+    /// The request is malformed.
     BadRequest,
     /// The token is missing or wrong.
     Unauthorized,
     /// The request is not allowed.
     Forbidden,
-    /// The named object does not exist.
+    /// The route, tool or script that the request names does not exist.
     NotFound,
     /// Another week is being simulated.
     Busy,
-    /// An internal error.
+    /// An internal error occurred.
     Failed,
-    /// The answer took too long.
+    /// The execution of the request exceeded a time limit.
     TimedOut,
-    /// The request took too long to arrive.
+    /// The request did not arrive within the time limit.
     TooSlow,
     /// The request is too large.
     TooLarge,
 }
 
-/// The answer to a request.
+/// The response to a request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ApiResponse {
-    /// Kind of the answer.
+    /// Kind of the response.
     pub status: ResponseStatus,
-    /// Body.
+    /// JSON body of the response.
     pub body: Value,
 }
 
 impl ApiResponse {
-    /// Returns the fields with `success: true`.
+    /// Returns a successful response with these fields and `success: true`.
     pub fn success(fields: Map<String, Value>) -> ApiResponse {
         let mut body = Map::from_iter([("success".to_owned(), true.into())]);
         body.extend(fields);
         ApiResponse { status: ResponseStatus::Done, body: body.into() }
     }
 
-    /// Returns the data of a tool.
+    /// Returns a successful response with the data of a tool.
     pub fn tool_data(data: Value) -> ApiResponse {
         ApiResponse::success(Map::from_iter([("data".to_owned(), data)]))
     }
 
-    /// Returns an object unchanged.
+    /// Returns a successful response whose body is `body`.
     pub fn raw(body: Value) -> ApiResponse {
         ApiResponse { status: ResponseStatus::Done, body }
     }
 
-    /// Returns a rejection. Programs for the released simulator read `error` and `data`.
+    /// Returns the response for a rejection. Programs for the released simulator read the fields `error` and `data`.
     pub fn rejected(status: ResponseStatus, refusal: impl Into<RejectionRecord>) -> ApiResponse {
         let refusal = refusal.into();
         let error = error_text(&refusal.message, &json!(refusal.results));
@@ -206,7 +208,8 @@ impl ApiResponse {
         ApiResponse { status, body }
     }
 
-    /// Returns the same answer as for a tool call, where a rejection is a normal answer, including rejected statements and weeks.
+    /// Converts the response to the response of a tool call, in which every rejection is a normal result. This
+    /// includes rejected statements and weeks.
     pub fn into_tool_response(mut self) -> ApiResponse {
         let is_of_tool = match self.status {
             ResponseStatus::BadRequest | ResponseStatus::Forbidden | ResponseStatus::TimedOut => true,
@@ -219,7 +222,7 @@ impl ApiResponse {
         self
     }
 
-    /// Returns an error of a request that did not reach a tool.
+    /// Returns the response for an invalid request, which did not reach a tool.
     pub fn invalid_request(
         status: ResponseStatus,
         code: &'static str,

@@ -1,4 +1,4 @@
-//! Executes requests on the session, in the same way for all interfaces.
+//! Executes requests of all interfaces on the session.
 
 use serde_json::{Map, Value, json};
 
@@ -7,10 +7,10 @@ use novamind_record::trajectory::record::{QuerySource, Via};
 use novamind_session::{Session, WeekRequest, rows_to_json};
 use novamind_tools::{NotebookSection, Rejection, ToolId};
 
-/// Tools for which older programs send null for omitted arguments.
+/// Tools that ignore null arguments, because older programs send null for omitted arguments.
 const TOOLS_IGNORING_NULLS: [ToolId; 3] = [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetDailySpend];
 
-/// Executes a request. `via` is the channel that the record names.
+/// Executes a request. `via` is the interface that the record names.
 pub fn handle_request(session: &mut Session, request: ApiRequest, via: Via) -> ApiResponse {
     match request {
         ApiRequest::Call { tool, args, request_id } => handle_call(session, &tool, args, &request_id, via),
@@ -57,7 +57,7 @@ fn handle_call(
     {
         fields.retain(|_, value| !value.is_null());
     }
-    // The released simulator reads the arguments as the map by group, so a call without arguments clears it.
+    // The released simulator treats the arguments as the map by group, so a call without arguments clears this map.
     if tool == ToolId::SetTargetedOpsSpend.name() && args.as_object().is_some_and(Map::is_empty) {
         args = json!({ "targeted_spend": {} });
     }
@@ -102,7 +102,7 @@ fn handle_query(session: &mut Session, sql: &Value) -> ApiResponse {
     }
 }
 
-/// Returns the status with which the released server answers each kind of failed statement.
+/// Returns the status that the released simulator's server uses for this error of a statement.
 fn query_error_status(code: &str) -> ResponseStatus {
     match code {
         "sql_empty" => ResponseStatus::BadRequest,

@@ -1,4 +1,4 @@
-//! JSON Schema of the arguments of tools, generated from the catalog.
+//! JSON Schema of tool arguments, generated from the catalog.
 
 use serde_json::{Map, Value, json};
 
@@ -6,14 +6,14 @@ use novamind_tools::{
     Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, NumberRange, ParameterNumbers, ToolId, ToolSpec,
 };
 
-/// Field of a request with its id.
+/// Name of the request field that contains the request id.
 pub const REQUEST_ID: &str = "request_id";
 
-/// Returns the fields of a tool call that make retries safe.
+/// Returns the schema fields with which a client can retry a tool call safely.
 pub fn retry_fields(tool: ToolId) -> Map<String, Value> {
     let mut fields = Map::new();
     if tool == ToolId::NextWeek {
-        let description = "Refuses the week unless the run is on this day";
+        let description = "Rejects the week unless the run is on this day";
         fields.insert(
             "expected_day".to_owned(),
             json!({ "type": "integer", "minimum": 0, "description": description }),
@@ -30,7 +30,7 @@ pub fn retry_fields(tool: ToolId) -> Map<String, Value> {
     fields
 }
 
-/// Returns every tool, in the order of the catalog.
+/// Returns the specifications of all tools, in the order of the catalog.
 pub fn specs() -> impl Iterator<Item = &'static ToolSpec> {
     CATALOGUE.iter().map(|tool| tool.spec())
 }
@@ -58,7 +58,7 @@ pub fn arguments_schema(spec: &ToolSpec, numbers: &ParameterNumbers) -> Map<Stri
     schema
 }
 
-/// Returns the tools as functions with the schema of their arguments.
+/// Returns all tools in the format for function calling: name, description and schema of the arguments.
 pub fn function_schemas(numbers: &ParameterNumbers) -> Vec<Value> {
     let function = |spec: &'static ToolSpec| {
         let parameters = arguments_schema(spec, numbers);
@@ -90,7 +90,7 @@ fn value_schema(kind: &ArgumentKind) -> Value {
         ArgumentKind::Number(range) => number_schema("number", range),
         ArgumentKind::Integer(range) => number_schema("integer", range),
         ArgumentKind::Text => json!({ "type": "string" }),
-        // Their structure is described in text; the tool reports invalid values.
+        // The description explains the structure, and the tool rejects invalid values.
         ArgumentKind::Structure(_) => json!({}),
         ArgumentKind::Deals(_) => json!({ "type": "array" }),
         ArgumentKind::Map(_, range) => map_schema(number_schema("number", range)),

@@ -10,38 +10,38 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::{PYTHON_DISABLED_MESSAGE, Session};
 use novamind_tools::{ToolId, find};
 
-/// Maximum size of a file in an archive, in bytes. 500 days of an agent take a few megabytes.
+/// Maximum size of a file in an archive, in bytes. A transcript of 500 days has a few megabytes.
 const MAX_FILE_BYTES: u64 = 512 << 20;
 
-/// The calls of tools of this program in an external transcript, in order.
+/// The tool calls in an external transcript that name tools of this program, with the settings of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignTranscript {
-    /// Name of the player.
+    /// Name of the player, if the transcript contains a name.
     pub player: Option<String>,
-    /// Seed, if the transcript states it.
+    /// Seed of the run, if the transcript contains the seed.
     pub seed: Option<u64>,
-    /// Name of the scenario.
+    /// Name of the scenario, if the transcript contains the name.
     pub scenario: Option<String>,
-    /// Last day.
+    /// Last day of the run, if the transcript contains the day.
     pub days: Option<u32>,
-    /// Cash on day 0, in dollars.
+    /// Cash on day 0 in dollars, if the transcript contains the cash.
     pub cash: Option<f64>,
-    /// Hash of the final state.
+    /// Hash of the final state, if the transcript contains the hash.
     pub state_hash: Option<String>,
-    /// The calls.
+    /// Tool calls in the order of the transcript.
     pub calls: Vec<ForeignCall>,
 }
 
-/// A call in a transcript.
+/// A tool call in a transcript.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignCall {
-    /// Number of its step or line, counted from 1.
+    /// Number of the step or line that contains the call, counted from 1.
     pub position: usize,
     /// Name of the tool in this program.
     pub tool: String,
-    /// Arguments.
+    /// Arguments of the call.
     pub arguments: Map<String, Value>,
-    /// Whether it was accepted, if the transcript states it.
+    /// Whether the call was accepted, if the transcript contains this information.
     pub accepted: Option<bool>,
 }
 
@@ -50,18 +50,18 @@ pub struct ForeignCall {
 pub struct PlayedTranscript {
     /// Number of executed calls, including weeks and statements.
     pub call_count: usize,
-    /// Calls with a different answer than in the transcript, or after the end of the run: place, tool, answer.
+    /// Calls whose result differs from the transcript, or that follow the end of the run: position, tool, result.
     pub mismatches: Vec<(usize, String, String)>,
     /// Number of accepted Python programs, which are not executed.
     pub not_run: usize,
 }
 
 impl ForeignTranscript {
-    /// Reads a trajectory in the Agent Trajectory Interchange Format, an Inspect log (JSON or `.eval`), or lines with a `tool` and
-    /// its `args` each.
+    /// Parses a trajectory in the Agent Trajectory Interchange Format, an Inspect log (JSON or `.eval`), or JSON lines
+    /// with the keys `tool` and `args`.
     ///
     /// # Errors
-    /// It is none of them, or contains no call of a tool of this program.
+    /// The file has none of these formats, or contains no call of a tool of this program.
     pub fn read(bytes: &[u8]) -> Result<ForeignTranscript, String> {
         let read = match serde_json::from_slice::<Value>(bytes) {
             Ok(Value::Object(whole)) if whole.contains_key("steps") => from_steps(&whole),
@@ -69,17 +69,17 @@ impl ForeignTranscript {
             _ if ZipArchive::is_zip(bytes) => inspect_log::parse_archive(bytes, MAX_FILE_BYTES)?,
             _ => {
                 let text = std::str::from_utf8(bytes)
-                    .map_err(|_| "it is neither text nor an .eval archive of Inspect".to_owned())?;
+                    .map_err(|_| "the file is neither text nor an .eval archive of Inspect".to_owned())?;
                 parse_lines(text)?
             }
         };
         match read.calls.is_empty() {
-            true => Err("it contains no call of a tool of this program".to_owned()),
+            true => Err("the file contains no call of a tool of this program".to_owned()),
             false => Ok(read),
         }
     }
 
-    /// Plays the calls in a run, without executing programs in them. `progress` is called with each call.
+    /// Plays the calls in a run. Python programs in the calls are not executed. `progress` is called for each tool call.
     pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
         let mut played = PlayedTranscript::default();
         session.disable_python();
@@ -96,7 +96,10 @@ impl ForeignTranscript {
             if is_not_run() {
                 played.not_run += 1;
             } else if call.accepted.is_some_and(|before| before != accepted) {
-                let reason = api_response.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
+                let reason = api_response.body["error"]
+                    .as_str()
+                    .unwrap_or("the call is accepted in this run")
+                    .to_owned();
                 played.mismatches.push((call.position, call.tool.clone(), reason));
             }
             played.call_count += 1;
@@ -106,7 +109,7 @@ impl ForeignTranscript {
     }
 }
 
-/// Finds the tool of a name. Some clients prefix the name with that of the server.
+/// Finds a tool by the name that a client recorded. Some clients prefix the name of the tool with the name of the server.
 pub(super) fn tool_name(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);
@@ -141,14 +144,15 @@ fn from_steps(whole: &Map<String, Value>) -> ForeignTranscript {
     }
 }
 
-/// Returns whether the observation of a step says that a call was accepted, or `None` if it does not say.
+/// Returns whether the observation of a step reports that a call was accepted, or `None` if the observation is missing
+/// or unclear.
 fn step_acceptance(step: &Value, id: &Value) -> Option<bool> {
     let results = step["observation"]["results"].as_array()?;
     let value = results.iter().find(|result| result["source_call_id"] == *id)?;
     is_acceptance(value["content"].as_str()?)
 }
 
-/// Returns whether an answer says that its call was accepted, or `None` if it does not say.
+/// Returns whether a tool result reports that the call was accepted, or `None` if the result is unclear.
 pub(super) fn is_acceptance(answer: &str) -> Option<bool> {
     let value: Value = serde_json::from_str(answer).ok()?;
     match (&value["success"], value.get("dashboard")) {
@@ -171,7 +175,7 @@ fn parse_lines(text: &str) -> Result<ForeignTranscript, String> {
         let arguments = match read.get("args").or_else(|| read.get("arguments")) {
             None | Some(Value::Null) => Map::new(),
             Some(Value::Object(arguments)) => arguments.clone(),
-            Some(_) => return Err(format!("line {place}: the arguments are no object")),
+            Some(_) => return Err(format!("line {place}: the arguments are not an object")),
         };
         calls.push(ForeignCall { position: place, tool, arguments, accepted: read["success"].as_bool() });
     }

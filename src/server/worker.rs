@@ -18,28 +18,28 @@ use novamind_record::trajectory::record::{LeavingCause, Via};
 use novamind_session::{Access, Interface, ModelSettings, RunDatabase, Session};
 use novamind_tools::NotebookSection;
 
-/// Receives reports of internal errors.
+/// Function that receives reports of internal errors.
 pub type OnDefect = fn(&str);
 
-/// How an interface uses a session.
+/// Properties of an interface that uses a session.
 #[derive(Clone, Copy)]
 pub struct InterfaceInfo {
-    /// Channel of calls in the record.
+    /// Interface that the record names for tool calls.
     pub via: Via,
-    /// Interface of sessions in the record.
+    /// Interface that the record names for the session.
     pub interface: &'static str,
-    /// Called with reports of internal errors.
+    /// Function that is called with reports of internal errors.
     pub on_defect: OnDefect,
 }
 
-/// A request and the channel for its answer.
+/// A request and the channel for its response.
 struct QueuedRequest {
     number: u64,
     request: ApiRequest,
     reply: oneshot::Sender<ApiResponse>,
 }
 
-/// The thread that owns a session. It ends when all handles are dropped.
+/// The thread that owns a session. The thread ends when all handles are dropped.
 pub struct SessionWorker {
     thread: JoinHandle<Result<(), RunError>>,
     running: CurrentRequest,
@@ -73,12 +73,12 @@ impl SessionWorker {
         (SessionWorker { thread, running, run, folder }, handle)
     }
 
-    /// Stops the running script, calculation or statement, for which a stopping server does not wait.
+    /// Stops the running script, calculation or statement. A stopping server does not wait for such code.
     pub fn stop_running_code(&self) {
         self.running.stop();
     }
 
-    /// Waits until every request is answered and the run is closed. All handles must have been dropped.
+    /// Waits until all responses are sent and the run is closed. All handles must have been dropped.
     ///
     /// # Errors
     /// The end of the record cannot be written; everything confirmed is saved. [`RunError::Defect`] if the thread panicked.
@@ -88,19 +88,19 @@ impl SessionWorker {
     }
 }
 
-/// Sends requests to the owner.
+/// A handle that sends requests to the session worker.
 #[derive(Clone)]
 pub struct SessionHandle {
     sender: Sender<QueuedRequest>,
     advancing: PendingWeeks,
-    /// Number of requests so far.
+    /// Number of sent requests.
     asked: Arc<AtomicU64>,
     running: CurrentRequest,
 }
 
 impl SessionHandle {
-    /// Sends a request and waits for the answer. If the caller stops waiting, a week is still simulated to its end, but a script or
-    /// statement is stopped.
+    /// Sends a request and waits for the response. If the caller stops waiting, a script or statement is stopped, but
+    /// a week is still simulated to its end.
     pub async fn send(&self, request: ApiRequest) -> ApiResponse {
         if let ApiRequest::NextWeek { request_id, .. } = &request
             && !self.advancing.try_begin(request_id)
@@ -108,7 +108,7 @@ impl SessionHandle {
             return ApiResponse::invalid_request(
                 ResponseStatus::Busy,
                 "week_running",
-                "a week is being simulated; request the next one after its response",
+                "a week is being simulated; request the next week after the response",
             );
         }
         let (reply, answer) = oneshot::channel();
@@ -131,13 +131,13 @@ fn worker_gone_response() -> ApiResponse {
     )
 }
 
-/// Pending requests for a week: one, and retries of it.
+/// Number and request id of the pending requests for a week. All pending requests are retries of the first request.
 #[derive(Clone, Default)]
 struct PendingWeeks(Arc<Mutex<(usize, Value)>>);
 
 impl PendingWeeks {
-    /// Adds a request for a week. Returns whether it may wait. During a week only a retry with the same id may, which returns the
-    /// first answer.
+    /// Adds a request for a week. Returns false if another week is being simulated and the request is not a retry with
+    /// the same id. A retry waits and receives the first response.
     fn try_begin(&self, request_id: &Value) -> bool {
         let mut weeks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (open, id) = &mut *weeks;
@@ -149,13 +149,13 @@ impl PendingWeeks {
         true
     }
 
-    /// Removes a request for a week after its answer.
+    /// Removes a request for a week after its response was determined.
     fn end(&self) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).0 -= 1;
     }
 }
 
-/// The session, and the data to open it again.
+/// The session, and the data needed to reopen the run.
 struct WorkerState {
     /// `None` between an internal error and reopening the run.
     session: Option<Session>,
@@ -201,7 +201,7 @@ impl WorkerState {
         }
     }
 
-    /// Returns whether code runs before a week.
+    /// Returns whether the run has calculations, which run before each week.
     fn has_calculations(&self) -> bool {
         let kept = |session: &Session| {
             !session.notebook().statements(NotebookSection::Calculation).entries().is_empty()
@@ -216,7 +216,7 @@ impl WorkerState {
         let Some(session) = &mut self.session else { return worker_gone_response() };
         let InterfaceInfo { via, on_defect, .. } = self.door;
         catch_unwind(AssertUnwindSafe(|| handle_request(session, request, via))).unwrap_or_else(|_| {
-            // The session in memory may be inconsistent; the trajectory is not.
+            // The session in memory may be inconsistent, but the trajectory is consistent.
             self.session = None;
             internal_error(on_defect)
         })
@@ -235,7 +235,7 @@ impl WorkerState {
     }
 }
 
-/// Returns the answer for an internal error, with the number of its report.
+/// Reports an internal error to `on_defect`, and returns a response with the number of the report.
 fn internal_error(on_defect: OnDefect) -> ApiResponse {
     static DEFECTS: AtomicU64 = AtomicU64::new(1);
     let id =

@@ -11,18 +11,18 @@ const END_64: &[u8] = b"PK\x06\x06";
 const LOCATOR_64: &[u8] = b"PK\x06\x07";
 const ENTRY: &[u8] = b"PK\x01\x02";
 const FILE: &[u8] = b"PK\x03\x04";
-/// Size of an end record without its comment, in bytes.
+/// Size of the end record without the comment, in bytes.
 const END_BYTES: usize = 22;
-/// Size of the locator of a 64-bit end record, in bytes.
+/// Size of the record that locates the 64-bit end record, in bytes.
 const LOCATOR_BYTES: usize = 20;
 
-/// An archive in memory.
+/// A zip archive in memory.
 pub(super) struct ZipArchive<'a> {
     bytes: &'a [u8],
     entries: Vec<Entry>,
 }
 
-/// A file in the archive.
+/// A directory entry that describes a file in the archive.
 struct Entry {
     name: String,
     method: u16,
@@ -32,12 +32,12 @@ struct Entry {
 }
 
 impl<'a> ZipArchive<'a> {
-    /// Returns whether the bytes begin like an archive.
+    /// Returns whether the bytes begin with the signature of a zip archive.
     pub fn is_zip(bytes: &[u8]) -> bool {
         bytes.starts_with(FILE) || bytes.starts_with(END)
     }
 
-    /// Reads the directory of an archive. Returns `None` if it is missing or damaged.
+    /// Reads the directory of an archive. Returns `None` if the directory is missing or damaged.
     pub fn open(bytes: &'a [u8]) -> Option<ZipArchive<'a>> {
         let end = end_record(bytes)?;
         let (mut count, mut at) = (u64::from(u16_at(bytes, end + 10)?), u64::from(u32_at(bytes, end + 16)?));
@@ -59,12 +59,12 @@ impl<'a> ZipArchive<'a> {
         Some(ZipArchive { bytes, entries })
     }
 
-    /// Returns the names of the files in order.
+    /// Returns the file names in the order of the directory.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
 
-    /// Reads a file of at most `limit` bytes. If a name occurs several times, the last one is read.
+    /// Reads a file of at most `limit` bytes. If the name occurs several times, the last file is read.
     ///
     /// # Errors
     /// The file is missing, damaged, too large, or compressed by an unsupported method.
@@ -105,7 +105,7 @@ impl<'a> ZipArchive<'a> {
 }
 
 impl Entry {
-    /// Reads an entry of the directory. Also returns the offset of the next one.
+    /// Reads an entry of the directory. Also returns the offset of the next entry.
     fn read(bytes: &[u8], at: usize) -> Option<(Entry, usize)> {
         if !starts_with(bytes, at, ENTRY) {
             return None;
@@ -115,7 +115,7 @@ impl Entry {
         let extras = names + length(28)?;
         let end = extras + length(30)?;
         let name = bytes.get(names..extras)?;
-        // Sizes and offset are in the 64-bit extra, in this order, if they are too large for their own fields.
+        // Sizes and offsets that are too large for their 32-bit fields are stored in the 64-bit extra field, in this order.
         let mut large = extra_64(bytes.get(extras..end)?).chunks_exact(8);
         let mut field = |field: usize| -> Option<u64> {
             match u32_at(bytes, at + field)? {
@@ -135,7 +135,7 @@ impl Entry {
     }
 }
 
-/// Consecutive Zstandard frames.
+/// A reader that decompresses consecutive Zstandard frames.
 struct Frames<'a> {
     rest: &'a [u8],
     current: Option<StreamingDecoder<&'a [u8], ruzstd::decoding::FrameDecoder>>,
@@ -166,7 +166,7 @@ impl Read for Frames<'_> {
     }
 }
 
-/// Returns the offset of the end record, which is followed by a comment of the length that it states.
+/// Returns the offset of the end record. A comment follows, whose length is stored in the record.
 fn end_record(bytes: &[u8]) -> Option<usize> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));
@@ -226,7 +226,7 @@ mod tests {
         encoder.finish().expect("written")
     }
 
-    /// Creates an archive of files with these names, methods and contents.
+    /// Creates an archive of files with these names, compression methods and contents.
     fn archive(files: &[(&str, u16, &[u8])]) -> Vec<u8> {
         let (mut bytes, mut directory) = (Vec::new(), Vec::new());
         for (name, method, content) in files {

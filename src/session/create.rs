@@ -31,7 +31,7 @@ use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
 use novamind_world::params::Params;
 
-/// The options of a new run. Defaults come from the scenario, then from the program.
+/// The options of a new run. Missing options get the value of the scenario, then the default of the program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewRun {
     /// Seed of all random draws; 42 by default.
@@ -42,49 +42,49 @@ pub struct NewRun {
     pub cash: Option<f64>,
     /// Name of the scenario.
     pub scenario: String,
-    /// Single parameters, `(table.key, value)`; debug and lesson runs only.
+    /// Parameter overrides, each `(table.key, value)`; debug and lesson runs only.
     pub overrides: Vec<(String, String)>,
     /// Seeded fault of a mechanism; debug runs only.
     pub fault: Option<Fault>,
-    /// Mode.
+    /// Mode of the run.
     pub mode: Mode,
-    /// Label of the participant; by default the one that the folder of runs belongs to.
+    /// Label of the participant; defaults to the participant to whom the runs folder belongs.
     pub participant: Option<String>,
     /// How and when the participant agreed to the consent text; baseline runs only.
     pub agreed: Option<ConsentAgreement>,
-    /// The study of the run and its rules.
+    /// Study to which the run belongs, with its session rules.
     pub study: Option<StudyEntry>,
-    /// The lesson of the run; lesson runs only.
+    /// Lesson that the run plays; lesson runs only.
     pub lesson: Option<LessonEntry>,
-    /// The handout that the run starts from, and the run's identifier if the handout defines it.
+    /// Handout from which the run starts, and the run id if the handout defines one.
     pub handout: Option<HandoutEntry>,
-    /// Storage of the run.
+    /// Where the run is stored.
     pub storage: Storage,
-    /// Whether the database is maintained; without it queries are rejected.
+    /// Whether the database is written. Without a database, queries are rejected.
     pub projection: bool,
     /// Whether every call is synced before it is confirmed; otherwise calls are synced once a week.
     pub sync_calls: bool,
-    /// Key that seals the snapshots.
+    /// Key that seals the snapshots of the run.
     pub seal_key: SealKey,
 }
 
-/// The definitions of a study for a new run.
+/// The options of a new run that a study defines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyEntry {
-    /// The study and the participant's assignment.
+    /// Stamp with the study and the participant's assignment.
     pub stamp: StudyStamp,
     /// Rules of the session.
     pub rules: SessionRules,
-    /// Text that participants agree to; `None` if the study asks for no consent.
+    /// Text to which participants agree; `None` if the study does not ask for consent.
     pub consent: Option<ConsentText>,
-    /// Language model of the study, if it has one.
+    /// Language model of the study, if the study uses one.
     pub voice: Option<ModelSettings>,
 }
 
-/// Storage of a run.
+/// Where a new run is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Storage {
-    /// A new folder in this folder of runs.
+    /// In a new run folder in this runs folder.
     Runs(PathBuf),
     /// In memory; lost when the session is dropped.
     Memory,
@@ -114,18 +114,19 @@ impl Default for NewRun {
 }
 
 impl Session {
-    /// Creates a run.
+    /// Creates a run and returns its session.
     ///
     /// # Errors
-    /// Scenario, parameters or options are not allowed, or the folder cannot be written. Then no run exists.
+    /// The scenario, parameters or options are not allowed, or the folder cannot be written. After an error, the run
+    /// does not exist.
     pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
         Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
-    /// Like [`Session::create`]; calls `tell` for each day that the start of a lesson simulates.
+    /// Creates a run like [`Session::create`], and calls `tell` for each day that is simulated at the start of a lesson.
     ///
     /// # Errors
-    /// As [`Session::create`].
+    /// The same errors as [`Session::create`].
     pub fn create_with_progress(
         new: NewRun,
         configuration: &Configuration,
@@ -133,9 +134,9 @@ impl Session {
     ) -> Result<Session, RunError> {
         let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.apply_to(new.clone()));
         let shipped = Configuration::bundled();
-        // Lessons do not depend on the configuration of the machine.
+        // Use the bundled configuration: lessons must not depend on the configuration of the machine.
         let configuration = if new.lesson.is_some() { &shipped } else { configuration };
-        // Handouts do not depend on the configuration of the machine.
+        // Runs of handouts must not depend on the configuration of the machine.
         let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
         let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
         let model = select_model(new.mode, laid_down, named)?;
@@ -161,7 +162,6 @@ impl Session {
                 create_folder(&folder)?;
                 let begun = Session::create_run(manifest, params, Some(folder.clone()), new, tell);
                 if begun.is_err() {
-                    // Remove the folder of a run that could not be created.
                     let _ = std::fs::remove_dir_all(&folder);
                 }
                 begun
@@ -169,7 +169,7 @@ impl Session {
         }
     }
 
-    /// Creates the run of a manifest in memory, without a database.
+    /// Creates a run with this manifest in memory, without a database.
     ///
     /// # Errors
     /// The program does not support the parameters of the manifest.
@@ -188,7 +188,7 @@ impl Session {
     ) -> Result<Session, RunError> {
         let params = Arc::new(params);
         if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
-            // Written before the first line, so that a run always has its lesson.
+            // Write the lesson before the first line, so that every lesson run has its lesson.
             entry.lesson.write_to_run(folder)?;
         }
         let recorder = Recorder::create(&manifest, folder.as_deref(), new.sync_calls)?;
@@ -221,7 +221,8 @@ fn start_projector(
 fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
     let scenario = configuration.load_scenario(&new.scenario)?;
     if new.mode == Mode::Baseline && !scenario.is_bundled {
-        let message = format!("a baseline run needs a bundled scenario; {} is your own file", scenario.name);
+        let message =
+            format!("a baseline run needs a bundled scenario; {} is a user scenario", scenario.name);
         return Err(RunError::InvalidRequest(message));
     }
     if new.lesson.is_some() && new.mode != Mode::Lesson {

@@ -19,11 +19,11 @@ use novamind_world::events::Facts;
 #[derive(Default)]
 pub struct RunDatabase {
     projector: Option<Projector>,
-    /// The complete database file of an ended run; nothing is written any more.
+    /// Complete database file of an ended run, which is only read.
     finished_file: Option<DatabaseLocation>,
-    /// Connection of this thread; opened with the first query.
+    /// Query connection of the session; opened for the first query.
     connection: Option<QueryConnection>,
-    /// Number of replacements since the run was opened.
+    /// Number of times the database was replaced since the run was opened.
     replacement_count: u32,
 }
 
@@ -37,12 +37,12 @@ impl RunDatabase {
         RunDatabase { finished_file: Some(location), ..RunDatabase::default() }
     }
 
-    /// Returns the writer of entries.
+    /// Returns a handle that writes entries to the database.
     pub fn entry_writer(&self) -> EntryWriter<'_> {
         EntryWriter(self.projector.as_ref())
     }
 
-    /// Makes all entries so far visible, as of a line.
+    /// Makes all entries up to a line visible to queries.
     pub(crate) fn commit(&self, position: &ProjectionPosition) {
         if let Some(projector) = &self.projector {
             projector.commit(position.clone());
@@ -53,8 +53,8 @@ impl RunDatabase {
         self.projector.as_ref().map_or(Ok(()), Projector::flush)
     }
 
-    /// Calls `work` once all entries so far are written, with the digest of the file if `digest` is set. Calls it
-    /// immediately if there is no database.
+    /// Calls `work` after all pending entries are written. Passes the digest of the file if `digest` is true. Without
+    /// a database, calls `work` immediately.
     pub(crate) fn after_writes(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         match &self.projector {
             Some(projector) => projector.run_after_commit(digest, work),
@@ -62,7 +62,7 @@ impl RunDatabase {
         }
     }
 
-    /// Returns the problem that prevents writing the database, or `None`.
+    /// Returns the error that prevents writing the database, if any.
     pub fn failure(&self) -> Option<ProjectionError> {
         self.projector.as_ref()?.failure()
     }
@@ -71,16 +71,16 @@ impl RunDatabase {
         *self = RunDatabase { replacement_count: self.replacement_count + 1, ..made_anew };
     }
 
-    /// Returns the number of replacements since the run was opened. Connections to an earlier database are stale.
+    /// Returns how often the database was replaced since the run was opened. Connections to an earlier database are stale.
     pub fn replacement_count(&self) -> u32 {
         self.replacement_count
     }
 
-    /// Opens a separate connection, for a thread that queries while the session works. Its queries are recorded with
-    /// [`Session::record_query`](crate::Session::record_query).
+    /// Opens a separate connection for a thread that runs queries in parallel with the session. The thread records its
+    /// queries with [`Session::record_query`](crate::Session::record_query).
     ///
     /// # Errors
-    /// The run has no database, or it cannot be read.
+    /// The run has no database, or the database cannot be read.
     pub fn open_connection(&self) -> Result<QueryConnection, Rejection> {
         self.open_scoped_connection(Scope::Visible)
     }
@@ -94,10 +94,10 @@ impl RunDatabase {
         connection.map_err(|error| Rejection::new("sql_error", error.to_string()))
     }
 
-    /// Returns the connection of this thread.
+    /// Returns the query connection of the session.
     ///
     /// # Errors
-    /// The run has no database, or it cannot be read.
+    /// The run has no database, or the database cannot be read.
     pub(crate) fn connection(&mut self) -> Result<&QueryConnection, Rejection> {
         let connection = match self.connection.take() {
             Some(connection) => connection,
@@ -126,7 +126,7 @@ impl RunDatabase {
     /// Copies the tables into a new file that any SQLite tool can open.
     ///
     /// # Errors
-    /// The run has no database, or the disk fails.
+    /// The run has no database, or the file cannot be written.
     pub(crate) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
         match (&self.projector, &self.finished_file) {
             (Some(projector), _) => Ok(projector.export_sqlite(file)?),
@@ -141,25 +141,25 @@ impl RunDatabase {
     }
 }
 
-/// Writes entries, from any thread.
+/// A handle that sends entries to the database from any thread.
 #[derive(Clone, Copy)]
 pub struct EntryWriter<'a>(Option<&'a Projector>);
 
 impl EntryWriter<'_> {
-    /// Sends an entry to the database; creates it only if there is one.
+    /// Sends an entry to the database. Without a database, the entry is not created.
     pub(crate) fn send(self, entry: impl FnOnce() -> ProjectionEntry) {
         if let Some(projector) = self.0 {
             projector.enqueue(entry());
         }
     }
 
-    /// Returns facts that the writer no longer needs, for reuse.
+    /// Returns facts that the database writer no longer needs, so that their memory can be reused.
     pub(crate) fn spare_facts(self) -> Option<Arc<Facts>> {
         self.0?.spare_facts()
     }
 }
 
-/// Converts the error of a query into the rejection that the caller of a tool receives.
+/// Converts the error of a query to a rejection.
 pub fn query_rejection(error: QueryError) -> Rejection {
     let message = match error.position {
         Some(at) => format!("{} (at character {})", error.message, at + 1),
@@ -184,7 +184,7 @@ fn unique_names(columns: &[String]) -> Vec<String> {
     names
 }
 
-/// Converts a result to JSON for programs: rows as objects, columns with unique names.
+/// Converts a query result to JSON for programs: rows are objects, and column names are unique.
 pub fn rows_to_json(rows: &QueryResult) -> Map<String, Value> {
     let columns = unique_names(&rows.columns);
     let object = |row: &Vec<Cell>| {
@@ -208,7 +208,7 @@ pub fn rows_to_json(rows: &QueryResult) -> Map<String, Value> {
     data
 }
 
-/// Converts a value to JSON; non-finite numbers become null.
+/// Converts a cell to JSON; non-finite numbers become null.
 fn cell_to_json(cell: &Cell) -> Value {
     match cell {
         Cell::Null => Value::Null,
@@ -219,8 +219,8 @@ fn cell_to_json(cell: &Cell) -> Value {
     }
 }
 
-/// Adds to the rejection of a query that hidden tables can be queried otherwise. Used only if the run can be
-/// inspected: elsewhere the message must not reveal that the table exists.
+/// Replaces the message about a missing hidden table with a hint on how to query hidden tables. Used only if the run
+/// can be inspected. Otherwise, the message must not reveal that the table exists.
 pub fn with_hidden_table_hint(refusal: Rejection) -> Rejection {
     let named = refusal.message.strip_prefix("there is no table hidden.");
     let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };

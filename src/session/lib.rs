@@ -1,8 +1,8 @@
-//! A run: open, act, query, advance, record, resume, replay. This crate is the only way to change a world.
+//! Sessions of a run: open, act, query, advance, record, resume and replay. Only this crate changes the world of a run.
 //!
-//! A call is planned without effect, then its line is written, then the world changes. Applying a planned call cannot
-//! fail. So memory is never ahead of the trajectory, the trajectory is never ahead of what was confirmed, and a run
-//! can always be rebuilt from `run.toml` and `trajectory.jsonl`.
+//! A call is first planned without effect. Then its line is written, and then the world changes. Applying a planned
+//! call never fails. Therefore memory is never ahead of the trajectory, and a run can always be rebuilt from
+//! `run.toml` and `trajectory.jsonl`.
 
 pub mod archive;
 mod company;
@@ -100,8 +100,8 @@ pub use view::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, Re
 pub use view::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use view::{CompanyView, best_starting_channel};
 
-/// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports them; it checks who
-/// may see the results.
+/// Types and functions that simulate the days of a recorded run. Only `novamind-insight` imports this module; that
+/// crate checks who may see the results.
 pub mod engine {
     pub use crate::company::facts_chain::StateHash;
     pub use crate::company::feed::Feed;

@@ -1,4 +1,4 @@
-//! Permission to inspect a run.
+//! Permission to inspect the hidden state of a run.
 
 use std::path::Path;
 
@@ -8,16 +8,16 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_tools::Rejection;
 
-/// Message if hidden state is not shown.
-pub const INSPECTION_REJECTED: &str = "the x-ray works in debug runs and in runs that are over";
+/// Rejection message if hidden state of a run must not be shown.
+pub const INSPECTION_REJECTED: &str = "the x-ray is available in debug runs and in runs that have ended";
 
-/// Message for an unfinished lesson.
+/// Rejection message for a run of an unfinished lesson.
 const INSPECTION_REJECTED_IN_LESSON: &str =
     "hidden state of a lesson is shown after its last part: the next part can have the same random draws";
 
-/// Returns whether hidden state of a run may be shown: in debug runs, and in runs that have ended. Not if the study withholds
-/// results, as every study does for practice runs. Not before the last part of a lesson has ended, which the folder
-/// of the run records.
+/// Returns whether hidden state of a run may be shown. This is allowed in debug runs and in runs that have ended,
+/// unless the study withholds results. Every study withholds results of practice runs. For lesson runs, the last part
+/// of the lesson must have ended.
 pub fn can_inspect(manifest: &Manifest, ended: Option<RunEndReason>, folder: Option<&Path>) -> bool {
     let is_open = manifest.mode == Mode::Debug || (ended.is_some() && is_lesson_over(folder, manifest));
     is_open && !manifest.session_rules().hides_result(ended.is_some())
@@ -26,7 +26,7 @@ pub fn can_inspect(manifest: &Manifest, ended: Option<RunEndReason>, folder: Opt
 /// Rejects the inspection of a run whose hidden state must not be shown.
 ///
 /// # Errors
-/// `not_in_this_mode`.
+/// The rejection `not_in_this_mode`.
 pub(crate) fn check_inspection(
     manifest: &Manifest,
     ended: Option<RunEndReason>,

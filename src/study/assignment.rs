@@ -1,4 +1,4 @@
-//! `assignment.csv`: condition, seed and order of each participant.
+//! `assignment.csv`: the assignment of a condition, a seed and a position to each participant.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -7,22 +7,22 @@ use novamind_record::error::RunError;
 use novamind_record::folder::runs::participant_folder;
 use novamind_world::params::ParameterError;
 
-/// Name of the file in the folder of the study.
+/// Name of the assignment file in the folder of a study.
 pub const ASSIGNMENT_FILE: &str = "assignment.csv";
 
-/// The participants of a study.
+/// The assignment of all participants of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assignment {
-    /// One place per participant, in the order of the file.
+    /// One row per participant, in the order of the file.
     pub rows: Vec<AssignmentRow>,
 }
 
-/// A participant's place in the study.
+/// The condition, seed and position that are assigned to a participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AssignmentRow {
-    /// Label.
+    /// Label of the participant.
     pub label: String,
-    /// Condition; `None` in a study without conditions.
+    /// Condition of the participant; `None` in a study without conditions.
     pub condition: Option<String>,
     /// Seed of the session; `None` if all participants play the same seed.
     pub seed: Option<u64>,
@@ -30,14 +30,14 @@ pub struct AssignmentRow {
     pub order: u32,
 }
 
-/// Columns of the file.
+/// Columns of `assignment.csv`.
 const COLUMNS: [&str; 4] = ["label", "condition", "seed", "order"];
 
 impl Assignment {
-    /// Reads the assignment in the folder of a study. Returns `None` if there is no file.
+    /// Reads the assignment in the folder of a study. Returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// Fails if a line is invalid or a label occurs twice. The error names the line.
+    /// Returns an error that names the line if a line is invalid or a label occurs twice.
     pub fn read(folder: &Path) -> Result<Option<Assignment>, RunError> {
         let path = folder.join(ASSIGNMENT_FILE);
         match std::fs::read(&path) {
@@ -47,10 +47,10 @@ impl Assignment {
         }
     }
 
-    /// Parses the contents of `assignment.csv`; `source` is its name in errors.
+    /// Parses the contents of `assignment.csv`. `source` is the name of the file in error messages.
     ///
     /// # Errors
-    /// Fails like [`Assignment::read`], except for I/O.
+    /// Returns the errors of [`Assignment::read`] except I/O errors.
     pub fn parse(source: &str, bytes: &[u8]) -> Result<Assignment, ParameterError> {
         let wrong = |line: usize, key: &str, problem: String| ParameterError {
             source: source.to_owned(),
@@ -89,7 +89,7 @@ impl Assignment {
         Ok(Assignment { rows: places })
     }
 
-    /// Returns the place of a participant.
+    /// Returns the row of the participant with this label.
     pub fn row_for(&self, label: &str) -> Option<&AssignmentRow> {
         self.rows.iter().find(|place| place.label == label)
     }
@@ -109,7 +109,8 @@ impl Assignment {
         format!("{}\n{lines}", COLUMNS.join(","))
     }
 
-    /// Assigns the cells of a design to labels. Each block has every cell once, in random order with `draw` as the seed.
+    /// Assigns the cells of a design to labels. Each block of participants contains every cell once, in a random order
+    /// with `draw` as the seed.
     pub fn randomize_in_blocks(
         labels: &[String],
         seeds: &[u64],
@@ -142,7 +143,8 @@ impl Assignment {
     }
 }
 
-/// Returns the numbers below `count` in a random order for a block: sorted by a keyed hash, the same on every machine.
+/// Returns the numbers below `count` in a random order for a block. They are sorted by a keyed hash, so the order is
+/// the same on every machine.
 fn shuffled_indexes(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();

@@ -1,4 +1,4 @@
-//! The experimenter's code.
+//! Checks of the experimenter's code.
 
 use std::sync::Arc;
 

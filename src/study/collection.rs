@@ -1,4 +1,4 @@
-//! Finds the runs of all machines of a study in folders and archives, each once and in its latest state.
+//! Finds the runs of all machines of a study in folders and archives, and returns each run once in its latest state.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -18,91 +18,91 @@ use novamind_session::{LabPublicKey, import_run, is_archive_name, read_afterward
 /// Maximum depth of the search for runs.
 const MAX_FOLDER_DEPTH: usize = 12;
 
-/// A note on a collection, for the experimenter.
+/// A note to the experimenter about a collection.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum CollectNote {
     /// A run or archive that cannot be read.
     Unreadable {
-        /// Its path.
+        /// Path of the run or archive.
         path: PathBuf,
-        /// Reason.
+        /// Reason why the run or archive cannot be read.
         problem: String,
     },
-    /// An earlier state or a copy of a run. The latest state is used.
+    /// An earlier state or a copy of a run, which is not used.
     Superseded {
-        /// Run.
+        /// ID of the run.
         run: String,
-        /// Path of the earlier state.
+        /// Path of the earlier state or copy.
         path: PathBuf,
-        /// Path of the later state.
+        /// Path of the state that is used.
         by: PathBuf,
     },
-    /// Two records of one run of which neither continues the other. Both are kept in a separate folder, and neither is in
-    /// the tables.
+    /// Two records of one run, neither of which continues the other. Both records are stored in a separate folder and
+    /// excluded from the tables.
     Conflict {
-        /// Run.
+        /// ID of the run.
         run: String,
-        /// Their paths.
+        /// Paths of the records.
         paths: Vec<PathBuf>,
-        /// First line in which they differ, from 1.
+        /// Number of the first line in which the records differ, from 1.
         line: usize,
     },
-    /// Several sessions of one study under one label: two participants, or one who played twice.
+    /// Several sessions of one study with the same label: two participants, or one participant who played twice.
     SharedLabel {
-        /// Label.
+        /// Label of the sessions.
         label: String,
-        /// Runs.
+        /// IDs of the runs.
         runs: Vec<String>,
     },
-    /// A place of the assignment without a session.
+    /// A label of the assignment without a session.
     Missing {
-        /// Label.
+        /// Label of the participant.
         label: String,
         /// The last visit of the label on any machine.
         last_visit: Option<VisitEvent>,
     },
-    /// A label has a session under another version of the protocol only.
+    /// A label that has sessions only with a different version of the protocol.
     OtherProtocol {
-        /// Label.
+        /// Label of the participant.
         label: String,
-        /// Run.
+        /// ID of the run.
         run: String,
-        /// Digest of the protocol of the run.
+        /// Digest of the run's protocol.
         digest: String,
     },
-    /// A run has another label in the tables.
+    /// A run whose label in the tables differs from its record.
     Relabelled {
-        /// Run.
+        /// ID of the run.
         run: String,
-        /// Label in its first line.
+        /// Label in the first line of the run.
         from: String,
         /// Label in the tables.
         to: String,
     },
     /// An archive that is not signed by the lab whose public key is in the folder of the study.
     NotSigned {
-        /// Its path.
+        /// Path of the archive.
         path: PathBuf,
-        /// Fingerprint of the key that signed it; `None` if it is not signed.
+        /// Fingerprint of the key that signed the archive; `None` if it is not signed.
         by: Option<String>,
     },
     /// A line of the mapping file whose run was not found.
     UnknownRun {
-        /// Run.
+        /// ID of the run in the mapping file.
         run: String,
     },
-    /// A run whose simulation does not reproduce its record.
+    /// A run whose re-simulation does not match its record.
     Unverified {
-        /// Run.
+        /// ID of the run.
         run: String,
-        /// Reason.
+        /// Reason why the run was not collected.
         problem: String,
     },
 }
 
 impl CollectNote {
-    /// Returns whether the experimenter has to act on it.
+    /// Returns whether the experimenter has to act on the note.
     pub fn needs_attention(&self) -> bool {
         !matches!(self, CollectNote::Superseded { .. } | CollectNote::Relabelled { .. })
     }
@@ -160,13 +160,13 @@ impl fmt::Display for CollectNote {
 /// A record of a run in one folder or archive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundRun {
-    /// Manifest.
+    /// Manifest of the run.
     pub manifest: Manifest,
-    /// Folder of its files.
+    /// Folder that contains the files of the run.
     pub folder: PathBuf,
-    /// The folder or archive in which it was found.
+    /// Folder or archive in which the record was found.
     pub source: PathBuf,
-    /// Hashes of its lines, including those of `afterwards.jsonl`.
+    /// Hashes of all lines of the record, including the lines of `afterwards.jsonl`.
     hashes: Vec<String>,
 }
 
@@ -189,27 +189,27 @@ impl FoundRun {
 /// The result of a search for runs.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CollectedRuns {
-    /// Runs in their latest state, sorted by creation.
+    /// Runs in their latest state, sorted by creation time.
     pub runs: Vec<FoundRun>,
     /// Records that contradict each other, by run.
     pub conflicts: BTreeMap<String, Vec<FoundRun>>,
-    /// Notes for the experimenter.
+    /// Notes to the experimenter about the search.
     pub notes: Vec<CollectNote>,
-    /// Visits on all machines, sorted by time; a line that several copies of a list have is included once.
+    /// Visits on all machines, sorted by time. A line that occurs in several copies of a list is included once.
     pub visits: Vec<FoundVisit>,
 }
 
-/// A line of a list of visits with the folder of runs that contains the list.
+/// A line of a list of visits, and the folder of runs that contains the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FoundVisit {
-    /// The line.
+    /// The line of the list of visits.
     pub line: VisitLine,
-    /// The folder of runs.
+    /// The folder of runs that contains the list.
     pub folder: PathBuf,
 }
 
-/// Finds all runs and archives below the given paths. Archives are unpacked into `workshop`; `without` is not searched. If the
-/// study has the public key of a lab, archives that the lab has not signed are noted.
+/// Finds all runs and archives below the given paths. Archives are unpacked into `workshop`. The folder `without` is
+/// not searched. If `lab` is given, a note is added for each archive that the lab has not signed.
 pub fn collect_runs(
     sources: &[PathBuf],
     workshop: &Path,
@@ -262,8 +262,8 @@ pub fn collect_runs(
     gathered
 }
 
-/// Returns a note for each place of an assignment without a session. `labels` have a session; `others` maps a label to its
-/// run under another protocol and the digest of that protocol.
+/// Returns a note for each label of an assignment without a session. `labels` contains the labels with a session.
+/// `others` maps a label to its run with a different protocol and the digest of this protocol.
 pub fn missing_participants(
     assignment: &Assignment,
     labels: &BTreeSet<String>,
@@ -286,10 +286,10 @@ fn unpack_archive(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<Lab
     Ok((FoundRun::read(&folder.join(&seal.run), archive)?, signer))
 }
 
-/// The contents of the searched paths.
+/// Runs, archives and visits that were found below the searched paths.
 #[derive(Default)]
 struct FoundPaths {
-    /// Folders of runs.
+    /// Run folders.
     folders: BTreeSet<PathBuf>,
     archives: BTreeSet<PathBuf>,
     /// Lines of lists of visits, each with the folder of the first list that contains it.
@@ -321,7 +321,7 @@ fn scan_folder(path: &Path, without: &Path, depth: usize, found: &mut FoundPaths
     for entry in std::fs::read_dir(&path)? {
         let entry = entry?;
         let name = entry.file_name();
-        // The default folder of runs is below `.local`.
+        // `.local` is searched although it is hidden, because it contains the default folder of runs.
         let is_hidden = name.to_string_lossy().starts_with('.') && name != ".local";
         if !is_hidden && !entry.file_type()?.is_symlink() {
             scan_folder(&entry.path(), without, depth - 1, found)?;
@@ -330,7 +330,7 @@ fn scan_folder(path: &Path, without: &Path, depth: usize, found: &mut FoundPaths
     Ok(())
 }
 
-/// Keeps the latest of several records of one run if it continues all others. Otherwise notes a conflict.
+/// Keeps the latest record of a run if it continues all other records of the run. Otherwise adds the records as a conflict.
 fn merge_records(run: String, mut records: Vec<FoundRun>, gathered: &mut CollectedRuns) {
     records.sort_by(|one, other| (other.hashes.len(), &one.source).cmp(&(one.hashes.len(), &other.source)));
     let mut apart: Vec<FoundRun> = Vec::new();

@@ -1,4 +1,4 @@
-//! `study.toml`: the protocol that all sessions of a study follow.
+//! `study.toml`: the protocol of all sessions of a study.
 //!
 //! A study is a folder: `study.toml`, `consent.md`, `questions/*.toml` and `assignment.csv`. The digest of the protocol is in
 //! the first line of every run, so runs of different protocols cannot be mixed up.
@@ -21,24 +21,24 @@ use novamind_session::SealKey;
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::params::ParameterError;
 
-/// Name of the file that makes a folder a study.
+/// Name of the protocol file in the folder of a study.
 pub const STUDY_FILE: &str = "study.toml";
 
-/// A study as read from its folder.
+/// A study that was read from its folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     /// Folder of the study.
     pub folder: PathBuf,
     /// Contents of `study.toml`.
     pub protocol: Protocol,
-    /// Text that participants agree to; `None` if the study does not ask for consent.
+    /// Text to which participants consent; `None` if the study does not require consent.
     pub consent: Option<String>,
     /// Questionnaires in the order of their files.
     pub questionnaires: Vec<Questionnaire>,
     /// Participants with seeds and conditions; `None` if any label is accepted.
     pub assignment: Option<Assignment>,
-    /// BLAKE3 digest of protocol, consent and questions, in hexadecimal digits. The assignment is not part of it because it
-    /// may grow; each run records its participant's row.
+    /// BLAKE3 digest of protocol, consent and questions, in hexadecimal digits. The digest does not include the
+    /// assignment, because rows may be added to it. Each run records the row of its participant.
     pub digest: String,
     /// Key that seals the snapshots of the study's runs.
     pub seal_key: SealKey,
@@ -48,14 +48,14 @@ pub struct Study {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
-    /// Name: letters, digits and hyphens.
+    /// Name of the study, which consists of letters, digits and hyphens.
     pub name: String,
-    /// Title that participants see.
+    /// Title of the study, which is shown to participants.
     pub title: String,
-    /// Company of the session.
+    /// Scenario, length and starting cash of the session.
     #[serde(default)]
     pub world: StudyWorld,
-    /// Seeds of the participants.
+    /// Seeds and conditions of the participants.
     #[serde(default)]
     pub seeds: Seeds,
     /// Practice run before the session.
@@ -64,33 +64,33 @@ pub struct Protocol {
     /// Display settings for participants.
     #[serde(default)]
     pub session: SessionOptions,
-    /// Time limits.
+    /// Time limits of weeks, sessions and runs.
     #[serde(default)]
     pub limits: TimeLimits,
-    /// Recording settings.
+    /// Settings for the record of the sessions.
     #[serde(default)]
     pub record: RecordOptions,
     /// Language model that words the messages of the runs; `None` for the built-in voice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelSettings>,
-    /// Settings of earlier builds, without effect. They are still accepted so that studies that have them can be read.
+    /// Settings of earlier versions that have no effect. They are accepted so that old studies can be read.
     #[serde(default, skip_serializing)]
     integrity: RemovedSettings,
-    /// The experimenter's access.
+    /// Access of the experimenter to additional functions.
     #[serde(default)]
     pub access: AccessOptions,
 }
 
-/// The company that a session plays.
+/// Scenario, length and starting cash of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StudyWorld {
-    /// A bundled scenario.
+    /// Name of a bundled scenario.
     pub scenario: String,
-    /// Last day; that of the scenario if `None`.
+    /// Last day of the session; `None` for the last day of the scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub days: Option<u32>,
-    /// Cash on day 0, dollars; that of the scenario if `None`.
+    /// Cash on day 0, dollars; `None` for the cash of the scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cash: Option<f64>,
 }
@@ -107,27 +107,28 @@ impl Default for StudyWorld {
 pub struct Seeds {
     /// How seeds are assigned.
     pub plan: SeedPlan,
-    /// Seed of every participant, with plan `one`.
+    /// Seed of all participants, with plan `one`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Seeds of a block, with plan `blocks`: each block of participants gets all of them in random order.
+    /// Seeds of a block, with plan `blocks`. Each block of participants plays all these seeds in random order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub block: Vec<u64>,
-    /// Conditions, crossed with the seeds of a block. They label and balance participants and do not change the program.
+    /// Conditions, which are crossed with the seeds of a block. Conditions label and balance participants and do not
+    /// change the program.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub conditions: Vec<String>,
-    /// Seed of the randomization, with plan `blocks`; 1 if `None`.
+    /// Seed of the randomization, with plan `blocks`; `None` for seed 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub draw: Option<u64>,
 }
 
 impl Seeds {
-    /// Returns the seeds of a block of participants.
+    /// Returns the seeds that each block of participants plays.
     pub fn block_seeds(&self) -> Vec<u64> {
         if self.block.is_empty() { self.seed.into_iter().collect() } else { self.block.clone() }
     }
 
-    /// Returns the size of a block of participants: seeds of a block times conditions.
+    /// Returns the number of participants in a block: the number of seeds multiplied by the number of conditions.
     pub fn cell_count(&self) -> usize {
         self.block_seeds().len().max(1) * self.conditions.len().max(1)
     }
@@ -152,22 +153,22 @@ pub enum SeedPlan {
 pub struct Practice {
     /// Whether there is a practice run, and whether it can be skipped.
     pub offer: PracticeOffer,
-    /// Scenario.
+    /// Name of the bundled scenario of the practice run.
     pub scenario: String,
-    /// Seed, which must not be a seed of a session.
+    /// Seed of the practice run, which must not be a seed of a session.
     pub seed: u64,
-    /// Last day; that of the scenario if `None`.
+    /// Last day of the practice run; `None` for the last day of the scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub days: Option<u32>,
 }
 
-/// Whether there is a practice run.
+/// Whether there is a practice run, and whether it can be skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PracticeOffer {
-    /// Participants must play it to its end.
+    /// Participants must play the practice run to its end.
     Required,
-    /// Participants may skip it.
+    /// Participants may skip the practice run.
     #[default]
     Optional,
     /// There is no practice run.
@@ -190,7 +191,7 @@ pub struct SessionOptions {
     pub advice: bool,
     /// Whether participants see the accuracy of their past forecasts during the run.
     pub calibration: bool,
-    /// Contents of the final page.
+    /// Results that are shown on the final page.
     pub results: ResultsShown,
     /// Whether participants must give a reason when they stop the clock.
     pub pause_reason: bool,
@@ -208,15 +209,15 @@ impl Default for SessionOptions {
     }
 }
 
-/// Recording settings.
+/// Settings for the record of the sessions.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {
     /// Kinds of activity that are not recorded.
     pub leave_out: Vec<String>,
-    /// How much of notes and text answers is recorded.
+    /// Form in which notes and text answers are recorded.
     pub free_text: FreeText,
-    /// How much of edited texts is recorded.
+    /// Form in which edits of texts are recorded.
     pub drafts: DraftsKept,
 }
 
@@ -226,7 +227,7 @@ impl Default for RecordOptions {
     }
 }
 
-/// The removed keys of the table `integrity`.
+/// Keys of the table `integrity`, which were removed from the program.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct RemovedSettings {
@@ -234,7 +235,7 @@ struct RemovedSettings {
     code_words: Option<bool>,
 }
 
-/// The experimenter's access to functions that participants do not have.
+/// Access of the experimenter to functions that participants cannot use.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AccessOptions {
@@ -249,7 +250,7 @@ pub struct AccessOptions {
 pub struct CodeDigest(String);
 
 impl CodeDigest {
-    /// Rounds of hashing, which slow down guessing.
+    /// Number of hashing rounds. Many rounds slow down guessing.
     const ROUNDS: u32 = 100_000;
 
     /// Computes the digest of a code with a salt.
@@ -268,17 +269,17 @@ impl CodeDigest {
         self.0.split_once(':').is_some_and(|(salt, _)| CodeDigest::from_code(code, salt) == *self)
     }
 
-    /// Returns `salt:digest`, as in the file.
+    /// Returns the text `salt:digest` that `study.toml` contains.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 }
 
 impl Study {
-    /// Reads the study in a folder.
+    /// Reads a study from its folder.
     ///
     /// # Errors
-    /// Fails if a file is missing or invalid. The error names file, line and key, and what is expected.
+    /// Returns an error if a file is missing or invalid. The error names the file, the line, the key and the expected value.
     pub fn load(folder: &Path) -> Result<Study, RunError> {
         let path = folder.join(STUDY_FILE);
         let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
@@ -314,18 +315,18 @@ impl Study {
         Ok(Study { folder, protocol, consent, questionnaires, assignment, digest, seal_key })
     }
 
-    /// Returns the first digits of the digest, for messages.
+    /// Returns the first digits of the study's digest, for messages.
     pub fn short_digest(&self) -> &str {
         shorten_digest(&self.digest)
     }
 
-    /// Returns a check of the experimenter's code, or `None` if the protocol has no code.
+    /// Returns a function that checks the experimenter's code, or `None` if the protocol has no code.
     pub fn code_check(&self) -> Option<CodeCheck> {
         let digest = self.protocol.access.code.clone()?;
         Some(Arc::new(move |code: &str| digest.matches(code)))
     }
 
-    /// Returns the rules of the study's sessions.
+    /// Returns the rules that apply in the sessions of the study.
     pub fn session_rules(&self) -> SessionRules {
         let Protocol { session, record, limits, .. } = &self.protocol;
         SessionRules {
@@ -343,7 +344,7 @@ impl Study {
 }
 
 impl Protocol {
-    /// Returns the settings in the file that were removed from the program, each with the reason and the next step.
+    /// Returns a message for each setting in `study.toml` that was removed from the program, with the reason and the next step.
     pub fn removed_settings(&self) -> Vec<String> {
         let RemovedSettings { witness, code_words } = &self.integrity;
         let keys = [("witness", witness.is_some()), ("code_words", code_words.is_some())];
@@ -363,7 +364,7 @@ impl Protocol {
         matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.matches(code))
     }
 
-    /// Parses the text of `study.toml`; `source` is its name in errors.
+    /// Parses the text of `study.toml`. `source` is the name of the file in error messages.
     ///
     /// # Errors
     /// Returns the first problem with its line and key.
@@ -435,7 +436,7 @@ pub(crate) fn shorten_digest(digest: &str) -> &str {
     digest.get(..16).unwrap_or(digest)
 }
 
-/// Qualifies the key of a problem with the table `voice`.
+/// Adds the name of the table `voice` to the key of a problem.
 fn voice_problem((key, problem): (&'static str, String)) -> (&'static str, String) {
     let key = match key {
         "endpoint" => "voice.endpoint",
@@ -487,7 +488,7 @@ mod tests {
         };
         let text = "name = \"pilot\"\ntitle = \"A company\"\n[seeds]\nseed = 7\n";
         let plain = read(text);
-        // Runs record this digest, so it must be the same in every build.
+        // Runs record the protocol digest, so it must be the same in every version of the program.
         assert_eq!(plain.digest, "9c6e07e6aa3cdcbd5263b75c588fa133f240e81f2c415b579128125f39ce69a1");
         assert!(plain.protocol.removed_settings().is_empty());
         // A file with removed settings keeps its digest and its rules.

@@ -11,20 +11,20 @@ use novamind_session::Session;
 /// A question that is due.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DueQuestion {
-    /// Name of its questionnaire.
+    /// Name of the questionnaire that contains the question.
     pub questionnaire: String,
     /// Heading of the questionnaire.
     pub title: String,
     /// Text before the first question of the questionnaire.
     pub introduction: String,
-    /// Occasion: `before`, `week N`, `break N` or `end`.
+    /// Occasion of the question: `before`, `week N`, `break N` or `end`.
     pub occasion: String,
-    /// The question.
+    /// The question that is due.
     pub question: Question,
 }
 
 impl Study {
-    /// Returns the questions that are due in a run, in order. A practice run has none.
+    /// Returns the questions that are due in a run, in order. A practice run has no questions.
     pub fn due_questions(&self, session: &Session) -> Vec<DueQuestion> {
         let is_session = session.manifest().study.as_ref().is_some_and(|stamp| !stamp.practice);
         if !is_session {
@@ -51,7 +51,7 @@ impl Study {
     }
 }
 
-/// Returns the occasions on which a questionnaire has become due.
+/// Returns the occasions on which a questionnaire has become due in a run.
 fn due_occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String> {
     let weeks = session.weeks().len() as u32;
     match questionnaire.when {
@@ -70,7 +70,7 @@ fn due_occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String
 }
 
 impl DueQuestion {
-    /// Records that the question is shown.
+    /// Records that the question was shown to the participant.
     pub fn record_shown(&self, session: &mut Session) {
         session.activity().record(Activity::Question(QuestionShown {
             questionnaire: self.questionnaire.clone(),
@@ -82,7 +82,8 @@ impl DueQuestion {
         }));
     }
 
-    /// Records an answer, null if the question was skipped. Free text is masked if the rules require it. `shown_ms` is the time
+    /// Records the answer to the question. `value` is null if the question was skipped. Free text is masked if the
+    /// rules of the session require it. `shown_ms` is the time
     /// for which the question was shown.
     pub fn record_answer(&self, session: &mut Session, value: &Value, for_ms: u64, changes: u32) {
         let masked = session.rules().free_text == FreeText::Masked && self.question.form.is_free_text();

@@ -1,25 +1,27 @@
 //! The keys of a study: `lab.key` signs archives, `lab.pub` verifies signatures, `seal.key` seals snapshots.
 //!
-//! `seal.key` is derived from `lab.key`, not the other way round: a participant's machine has `seal.key` and cannot sign.
+//! `seal.key` is derived from `lab.key`, and `lab.key` cannot be derived from `seal.key`. A participant's machine has
+//! only `seal.key` and cannot sign archives.
 
 use std::path::{Path, PathBuf};
 
 use novamind_record::error::RunError;
 use novamind_session::{LabKey, LabPublicKey, SealKey, read_seal_key, write_seal_key};
 
-/// File of the private key.
+/// Name of the file that contains the private key of the lab.
 pub const LAB_KEY_FILE: &str = "lab.key";
-/// File of the public key.
+/// Name of the file that contains the public key of the lab.
 pub const LAB_PUBLIC_KEY_FILE: &str = "lab.pub";
-/// File of the key that seals snapshots.
+/// Name of the file that contains the key for sealing snapshots.
 pub const SEAL_KEY_FILE: &str = "seal.key";
 
-/// Creates the missing keys of a study. An existing `lab.key` is kept, and the others are derived from it. Returns the public
+/// Creates the missing keys of a study. An existing `lab.key` is kept, and the other keys are derived from it. Returns
+/// the public
 /// key and the files that were written.
 ///
 /// # Errors
-/// Fails if the system provides no random numbers, if a file cannot be read or written, or if `lab.pub` or `seal.key` exists
-/// without `lab.key`.
+/// Returns an error if the system provides no random numbers, if a file cannot be read or written, or if `lab.pub` or
+/// `seal.key` exists without `lab.key`.
 pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError> {
     let [lab_key, public, seal] =
         [LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE].map(|name| folder.join(name));
@@ -50,10 +52,10 @@ pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError
     Ok((key.public_key(), written))
 }
 
-/// Returns the key that seals a study's snapshots: its `seal.key`, or the default key if there is none.
+/// Returns the key that seals the snapshots of a study: its `seal.key`, or the default key if the file does not exist.
 ///
 /// # Errors
-/// Fails if the file cannot be read or is not a key.
+/// Returns an error if the file cannot be read or is not a key.
 pub fn load_seal_key(folder: &Path) -> Result<SealKey, RunError> {
     let file = folder.join(SEAL_KEY_FILE);
     if !file.exists() {
@@ -62,19 +64,19 @@ pub fn load_seal_key(folder: &Path) -> Result<SealKey, RunError> {
     read_seal_key(&file).map(|secret| SealKey::with_study_secret(&secret))
 }
 
-/// Returns the lab key in the folder of a study, if there is one.
+/// Returns the private key of the lab in the folder of a study, or `None` if the file does not exist.
 ///
 /// # Errors
-/// Fails if the file cannot be read or is not a key.
+/// Returns an error if the file cannot be read or is not a key.
 pub fn load_lab_key(folder: &Path) -> Result<Option<LabKey>, RunError> {
     let file = folder.join(LAB_KEY_FILE);
     file.exists().then(|| LabKey::read(&file)).transpose()
 }
 
-/// Returns the public key of the lab in the folder of a study, if there is one.
+/// Returns the public key of the lab in the folder of a study, or `None` if the file does not exist.
 ///
 /// # Errors
-/// Fails if the file cannot be read or is not a key.
+/// Returns an error if the file cannot be read or is not a key.
 pub fn load_lab_public_key(folder: &Path) -> Result<Option<LabPublicKey>, RunError> {
     let file = folder.join(LAB_PUBLIC_KEY_FILE);
     file.exists().then(|| LabPublicKey::read(&file)).transpose()
@@ -97,7 +99,7 @@ mod tests {
         assert_eq!((public_key, written), (public, vec![folder.path().join(SEAL_KEY_FILE)]));
         assert!(load_seal_key(folder.path()).expect("a key") == seal);
         assert_eq!(load_lab_public_key(folder.path()).expect("a key"), Some(public));
-        // A new lab.key would not match the files of an earlier one.
+        // A new `lab.key` would not match the files that were derived from an earlier key.
         std::fs::remove_file(folder.path().join(LAB_KEY_FILE)).expect("gone");
         let problem = make_keys(folder.path()).expect_err("the private key is elsewhere").to_string();
         assert!(problem.contains("lab.pub was derived from a lab.key"), "{problem}");

@@ -1,4 +1,4 @@
-//! Studies with people: the protocol, a participant's steps through it, collection of the runs, and the audit.
+//! Studies with people: the protocol, the steps of a participant, the collection of runs, and the audit.
 
 mod assignment;
 mod audit;

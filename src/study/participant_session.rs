@@ -1,6 +1,7 @@
 //! The steps of a participant at a machine, from the label to the final page.
 //!
-//! The next step is derived from the runs and the list of visits, so a participant can leave at any point and resume there.
+//! The next step is derived from the participant's runs and the list of visits. A participant can therefore leave
+//! after any step and resume there.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,7 @@ use novamind_session::{Access, NewRun, Session, Storage, StudyEntry};
 pub const DECLINED_NOTICE: &str = "You did not agree. Kept: your label, the time of your visit, and that you did not agree. Nothing else \
                             was recorded.";
 
-/// A participant who has entered a label.
+/// The visit of a participant who has entered a valid label.
 #[derive(Debug, Clone)]
 pub struct ParticipantSession {
     study: Study,
@@ -37,34 +38,35 @@ pub struct ParticipantSession {
 /// A run of a study with its manifest and progress.
 type ParticipantRun = (Manifest, RunSummary);
 
-/// The next step of a participant.
+/// The next step of a participant in a study.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NextStep {
-    /// Read the text and agree or decline.
+    /// The participant reads the consent text and agrees or declines.
     Consent(ConsentText),
-    /// Play the practice run: the unfinished one, or a new one.
+    /// The participant plays the practice run.
     Practice {
-        /// Unfinished run, if any.
+        /// Folder of the unfinished practice run; `None` to start a new run.
         unfinished: Option<PathBuf>,
-        /// Whether the participant may skip it.
+        /// Whether the participant may skip the practice run.
         may_skip: bool,
     },
-    /// Play the session: the unfinished run, or a new one.
+    /// The participant plays the session: the unfinished run in this folder, or a new run.
     Session(Option<PathBuf>),
-    /// Answer the open questions at the end.
+    /// The participant answers the open questions after the end of the run in this folder.
     Questions(PathBuf),
     /// The participant has completed the study.
     Thanks,
-    /// The participant has withdrawn. The text describes what was erased and what is kept.
+    /// The participant has withdrawn. The text describes which data was erased and which data is kept.
     Withdrawn(String),
 }
 
 impl ParticipantSession {
-    /// Starts the visit of a participant. `runs` is the machine's folder of runs, `refused` the number of labels that were
-    /// rejected before.
+    /// Starts the visit of a participant. `runs` is the machine's folder of runs. `refused` is the number of labels
+    /// that were rejected before.
     ///
     /// # Errors
-    /// Fails if the label is not in the assignment or cannot be the name of a folder. The list of visits records the rejection.
+    /// Returns an error if the label is not in the assignment or cannot be the name of a folder. The list of visits
+    /// records the rejection.
     pub fn start(
         study: Study,
         runs: &Path,
@@ -99,7 +101,7 @@ impl ParticipantSession {
         Ok(visit)
     }
 
-    /// Returns the study.
+    /// Returns the study of this visit.
     pub fn study(&self) -> &Study {
         &self.study
     }
@@ -114,10 +116,10 @@ impl ParticipantSession {
         &self.runs
     }
 
-    /// Returns the next step.
+    /// Returns the next step of the participant.
     ///
     /// # Errors
-    /// Fails if the participant's runs cannot be read.
+    /// Returns an error if the participant's runs cannot be read.
     pub fn next_step(&self) -> Result<NextStep, RunError> {
         if WithdrawalRecord::exists_in(&self.runs) {
             return Ok(NextStep::Withdrawn(self.withdrawal_summary()));
@@ -129,10 +131,10 @@ impl ParticipantSession {
         }
     }
 
-    /// Returns the step after consent. The participant's first run records the consent.
+    /// Returns the next step after consent. The consent is recorded in the participant's first run.
     ///
     /// # Errors
-    /// Fails like [`ParticipantSession::next_step`].
+    /// Returns the errors of [`ParticipantSession::next_step`].
     pub fn next_step_after_consent(&self) -> Result<NextStep, RunError> {
         self.next_step_with_runs(&self.study_runs()?)
     }
@@ -162,7 +164,7 @@ impl ParticipantSession {
         Ok(if open { NextStep::Questions(folder) } else { NextStep::Thanks })
     }
 
-    /// Describes a new run of the practice or of the session.
+    /// Returns the definition of a new practice run or session run.
     pub fn new_run(&self, practice: bool, agreed: Option<ConsentAgreement>) -> NewRun {
         let protocol = &self.study.protocol;
         let stamp = StudyStamp {
@@ -202,10 +204,10 @@ impl ParticipantSession {
         }
     }
 
-    /// Starts the practice or the session in a new run.
+    /// Creates a new run for the practice or the session.
     ///
     /// # Errors
-    /// Fails like [`Session::create`].
+    /// Returns the errors of [`Session::create`].
     pub fn create_run(
         &self,
         practice: bool,
@@ -215,17 +217,17 @@ impl ParticipantSession {
         Session::create(self.new_run(practice, agreed), configuration)
     }
 
-    /// Opens a run of the participant to continue it.
+    /// Opens an unfinished run of the participant.
     ///
     /// # Errors
-    /// Fails like [`Session::open`].
+    /// Returns the errors of [`Session::open`].
     pub fn open_run(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
         session.connect_model(self.study.protocol.voice.as_ref());
         Ok(session)
     }
 
-    /// Records that the participant skipped the practice.
+    /// Records that the participant skipped the practice run.
     pub fn skip_practice(&self) {
         self.log.append(&self.label, VisitEvent::PassedPractice);
     }
@@ -243,7 +245,7 @@ impl ParticipantSession {
     /// Erases the participant's runs of this study permanently and records the withdrawal.
     ///
     /// # Errors
-    /// Fails if a run is in use or cannot be removed.
+    /// Returns an error if a run is in use or cannot be removed.
     pub fn withdraw(&self) -> Result<(), RunError> {
         let texts: Vec<String> = self.study_runs()?.into_iter().map(|(_, run)| run.id).collect();
         texts.iter().try_for_each(|run| delete_run(&self.runs, run))?;
@@ -253,8 +255,8 @@ impl ParticipantSession {
     }
 
     fn withdrawal_summary(&self) -> String {
-        "Erased: your runs with everything you did, wrote and answered in them. Kept: your label, the times of your visits, your \
-         withdrawal, the names of the erased runs, and anything that the experimenter noted or copied before."
+        "Erased: your runs with all your actions, texts and answers. Kept: your label, the times of your visits, \
+         your withdrawal, the names of the erased runs, and remarks or copies that the experimenter made before."
             .to_owned()
     }
 
@@ -278,14 +280,14 @@ impl ParticipantSession {
         (!study_runs.iter().any(agreed)).then_some(text)
     }
 
-    /// Returns the participant's runs of this study, the most recently played first.
+    /// Returns the participant's runs of this study, most recently played first.
     fn study_runs(&self) -> Result<Vec<ParticipantRun>, RunError> {
         let is_own = |stamp: &StudyStamp| stamp.digest == self.study.digest;
         let all = self.all_study_runs()?.into_iter();
         Ok(all.filter(|(manifest, _)| manifest.study.as_ref().is_some_and(is_own)).collect())
     }
 
-    /// Returns the participant's runs of any study, the most recently played first.
+    /// Returns the participant's runs of all studies, most recently played first.
     fn all_study_runs(&self) -> Result<Vec<ParticipantRun>, RunError> {
         let with_manifest = |run: RunSummary| {
             let manifest = ManifestCheck::read(&self.runs.join(&run.id)).ok()?.manifest;
@@ -294,7 +296,7 @@ impl ParticipantSession {
         Ok(list_runs(&self.runs)?.into_iter().filter_map(with_manifest).collect())
     }
 
-    /// Fails if the participant started under another protocol.
+    /// Returns an error if the participant has a run with a different version of the protocol.
     fn check_protocol(&self) -> Result<(), RunError> {
         let other = self.all_study_runs()?.into_iter().find_map(|(manifest, run)| {
             let stamp = manifest.study?;

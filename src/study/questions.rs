@@ -1,4 +1,4 @@
-//! Questionnaires: `questions/*.toml` in the folder of a study, one file each.
+//! Questionnaires of a study. Each questionnaire is a file `questions/*.toml` in the folder of the study.
 
 use std::path::Path;
 
@@ -7,35 +7,35 @@ use serde_json::{Value, json};
 
 use novamind_world::params::ParameterError;
 
-/// Questions that are asked on one page.
+/// A questionnaire: questions that are asked together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Questionnaire {
-    /// Name of its file without extension.
+    /// Name of the questionnaire: its file name without extension.
     #[serde(skip)]
     pub name: String,
-    /// Heading.
+    /// Heading of the questionnaire.
     pub title: String,
     /// Text before the first question.
     #[serde(default)]
     pub introduction: String,
-    /// When it is asked.
+    /// Occasion on which the questionnaire is asked.
     pub when: Occasion,
-    /// Weeks after which it is asked, with `when = "weeks"`.
+    /// Weeks after which the questionnaire is asked, with `when = "weeks"`.
     #[serde(default)]
     pub weeks: Vec<u32>,
-    /// Questions in order.
+    /// Questions of the questionnaire in order.
     #[serde(rename = "question")]
     pub questions: Vec<Question>,
 }
 
-/// When a questionnaire is asked.
+/// Occasion on which a questionnaire is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Occasion {
     /// Before the first week of the session.
     Before,
-    /// After certain weeks.
+    /// After the weeks in [`Questionnaire::weeks`].
     Weeks,
     /// When the participant continues after stopping the clock or leaving.
     Break,
@@ -43,14 +43,14 @@ pub enum Occasion {
     End,
 }
 
-/// A question.
+/// A question of a questionnaire.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Question {
-    /// Name: letters, digits, underscores.
+    /// Name of the question, which consists of letters, digits and underscores.
     pub id: String,
     /// Text of the question.
     pub text: String,
-    /// Form of the answer.
+    /// Format of the answer.
     #[serde(flatten)]
     pub form: AnswerFormat,
     /// Whether the question must be answered.
@@ -58,13 +58,13 @@ pub struct Question {
     pub required: bool,
 }
 
-/// Form of an answer.
+/// Format of the answer to a question.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "form", rename_all = "lowercase")]
 pub enum AnswerFormat {
-    /// A point of a scale.
+    /// A point on a scale.
     Likert {
-        /// Number of points, 2 to 11.
+        /// Number of points of the scale, 2 to 11.
         points: u32,
         /// Label of the first point.
         #[serde(default)]
@@ -75,19 +75,19 @@ pub enum AnswerFormat {
     },
     /// A number.
     Number {
-        /// Minimum.
+        /// Smallest valid number.
         #[serde(default)]
         min: Option<f64>,
-        /// Maximum.
+        /// Largest valid number.
         #[serde(default)]
         max: Option<f64>,
-        /// Unit.
+        /// Unit of the number.
         #[serde(default)]
         unit: String,
     },
-    /// One of some options, or several.
+    /// A choice of one or several options.
     Choice {
-        /// Options.
+        /// Texts of the options.
         options: Vec<String>,
         /// Whether several options can be chosen.
         #[serde(default)]
@@ -99,11 +99,11 @@ pub enum AnswerFormat {
         #[serde(default = "most_letters")]
         most: u32,
     },
-    /// An attention check: one option is the expected answer.
+    /// An attention check, in which one option is the expected answer.
     Attention {
-        /// Options.
+        /// Texts of the options.
         options: Vec<String>,
-        /// The expected answer.
+        /// The option that is the expected answer.
         expected: String,
     },
 }
@@ -113,7 +113,7 @@ fn most_letters() -> u32 {
 }
 
 impl AnswerFormat {
-    /// Returns the identifier in records.
+    /// Returns the identifier of the format in records.
     pub fn id(&self) -> &'static str {
         match self {
             AnswerFormat::Likert { .. } => "likert",
@@ -124,7 +124,7 @@ impl AnswerFormat {
         }
     }
 
-    /// Returns the options as they are shown; empty for numbers and text.
+    /// Returns the options that are shown to the participant. Returns an empty list for numbers and text.
     pub fn options(&self) -> Vec<String> {
         match self {
             AnswerFormat::Likert { points, .. } => (1..=*points).map(|point| point.to_string()).collect(),
@@ -136,7 +136,7 @@ impl AnswerFormat {
     /// Parses a typed answer.
     ///
     /// # Errors
-    /// Returns a description of a valid answer.
+    /// Returns a description of a valid answer if the answer is invalid.
     pub fn parse_answer(&self, typed: &str) -> Result<Value, String> {
         let typed = typed.trim();
         match self {
@@ -183,7 +183,7 @@ impl AnswerFormat {
         matches!(self, AnswerFormat::Text { .. })
     }
 
-    /// Returns whether an attention check was answered as expected; `None` for other forms.
+    /// Returns whether an attention check was answered as expected, or `None` for other formats.
     pub fn matches_expected(&self, value: &Value) -> Option<bool> {
         match self {
             AnswerFormat::Attention { expected, .. } => Some(value.as_str() == Some(expected)),
@@ -222,7 +222,7 @@ impl AnswerFormat {
     }
 }
 
-/// Finds an option by its number, from 1, or by its text.
+/// Finds an option by its number, counted from 1, or by its text.
 fn find_option<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
     let numbered = typed.parse::<usize>().ok().and_then(|number| options.get(number.checked_sub(1)?));
     numbered.or_else(|| options.iter().find(|option| option.eq_ignore_ascii_case(typed)))
@@ -289,7 +289,7 @@ impl Questionnaire {
         Ok(questionnaire)
     }
 
-    /// Returns whether the questionnaire is asked after a week, counted from 1.
+    /// Returns whether the questionnaire is asked after a week. Weeks are counted from 1.
     pub fn is_due_after(&self, week: u32) -> bool {
         self.when == Occasion::Weeks && self.weeks.contains(&week)
     }

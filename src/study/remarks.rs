@@ -9,24 +9,24 @@ use novamind_record::error::RunError;
 use novamind_record::files::append_synced;
 use novamind_record::files::read_regular_text_or_empty;
 
-/// Name of the file.
+/// Name of the file with the experimenter's remarks.
 pub const REMARKS_FILE: &str = "remarks.jsonl";
 
-/// A remark on a participant.
+/// A remark of the experimenter on a participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Remark {
-    /// Time, RFC 3339.
+    /// Time of the remark, RFC 3339.
     pub at: String,
     /// Label of the participant.
     pub participant: String,
-    /// Text.
+    /// Text of the remark.
     pub text: String,
 }
 
-/// Appends a remark.
+/// Appends a remark to the file in a folder of runs.
 ///
 /// # Errors
-/// Fails if the file cannot be written.
+/// Returns an error if the file cannot be written.
 pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), RunError> {
     let path = runs.join(REMARKS_FILE);
     let remark = Remark { at: now(), participant: participant.to_owned(), text: text.to_owned() };
@@ -34,7 +34,7 @@ pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), Ru
     append_synced(&path, line.as_bytes())
 }
 
-/// Returns the remarks of a folder of runs. Skips lines that cannot be parsed.
+/// Returns the remarks in a folder of runs. Skips lines that cannot be parsed.
 pub fn read_remarks(runs: &Path) -> Vec<Remark> {
     let text = read_regular_text_or_empty(&runs.join(REMARKS_FILE));
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()

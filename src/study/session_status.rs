@@ -1,4 +1,4 @@
-//! The current state of a study's sessions on a machine, for `study watch`.
+//! Current states of a study's sessions on a machine, for `study watch`.
 
 use std::path::Path;
 
@@ -16,21 +16,21 @@ use novamind_record::trajectory::{Line, Record};
 /// The current state of a run of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SessionStatus {
-    /// Label.
+    /// Label of the participant.
     pub participant: String,
-    /// Run.
+    /// ID of the run.
     pub run: String,
-    /// Whether it is the practice run.
+    /// Whether the run is the practice run.
     pub practice: bool,
     /// State of the participant.
     pub state: SessionState,
     /// Last simulated day.
     pub day: u32,
-    /// Last day of the run.
+    /// Planned last day of the run.
     pub days: u32,
-    /// Seconds since the last line.
+    /// Seconds since the last line of the trajectory.
     pub quiet_seconds: f64,
-    /// Problem in the record: damage, or the last failure to save.
+    /// Problems with the record: damage, or the last failure to save.
     pub problems: Vec<String>,
 }
 
@@ -38,13 +38,13 @@ pub struct SessionStatus {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SessionState {
-    /// The run is being played.
+    /// The participant is playing the run.
     Plays,
-    /// The run is open, and there was no input for a while.
+    /// The run is open, and the participant is idle or has suspended the program.
     Idle,
-    /// The clock is stopped.
+    /// The participant has stopped the clock.
     Paused,
-    /// The participant has left the run.
+    /// The participant has closed the run.
     Left,
     /// The program ended without closing the run.
     Stopped,
@@ -87,7 +87,7 @@ fn session_status(folder: &Path, manifest: &Manifest) -> SessionStatus {
     }
 }
 
-/// Returns the last failure to save, unless a later call was saved.
+/// Returns the message of the last failure to save, or `None` if a later call or week was saved.
 fn last_save_error(lines: &[Line]) -> Option<String> {
     lines.iter().rev().find_map(|line| match &line.record {
         Record::Call(call) => Some(match &call.outcome {
@@ -116,7 +116,7 @@ fn session_state(lines: &[Line], locked: bool) -> SessionState {
         _ => None,
     });
     match state.unwrap_or(SessionState::Plays) {
-        // The run is not locked, and no line records that it was closed.
+        // If the run is not locked and no line records that it was closed, the program was killed.
         SessionState::Plays | SessionState::Idle | SessionState::Paused if !locked => SessionState::Stopped,
         state => state,
     }

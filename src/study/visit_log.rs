@@ -1,4 +1,4 @@
-//! `visits.jsonl` in the folder of runs: the visits of participants and their outcomes, including visits without a run.
+//! `visits.jsonl` in the folder of runs: the visits of participants with their outcomes, including visits without a run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -12,21 +12,21 @@ use novamind_record::files::read_regular_text_or_empty;
 use novamind_record::files::{append_synced, create_folder};
 use novamind_session::Machine;
 
-/// Name of the file.
+/// Name of the file with the list of visits.
 pub const VISITS_FILE: &str = "visits.jsonl";
 
 /// A line of the list of visits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct VisitLine {
-    /// Time, RFC 3339.
+    /// Time of the event, RFC 3339.
     pub at: String,
-    /// Machine.
+    /// Identifier of the machine.
     pub machine: String,
     /// Digest of the study's protocol.
     pub study: String,
     /// Label as typed; empty for a rejected code.
     pub label: String,
-    /// Event.
+    /// Event of the visit.
     pub event: VisitEvent,
 }
 
@@ -36,17 +36,17 @@ pub struct VisitLine {
 pub enum VisitEvent {
     /// A participant entered a valid label.
     Came,
-    /// A label was rejected.
+    /// A label that is not valid for the study was entered.
     LabelRefused,
     /// The participant declined consent.
     ConsentDeclined,
     /// The participant skipped the practice run.
     PassedPractice,
-    /// The participant withdrew; their runs were erased.
+    /// The participant withdrew, and the participant's runs were erased.
     Withdrew,
     /// The participant completed the study.
     Finished,
-    /// A wrong experimenter's code was entered. The line contains neither a label nor the code.
+    /// A wrong code was entered instead of the experimenter's code. The line contains neither a label nor the code.
     CodeRefused,
 }
 
@@ -58,12 +58,12 @@ pub(super) struct VisitLog {
 }
 
 impl VisitLog {
-    /// Opens the list in a machine's folder of runs.
+    /// Returns the list of visits in a machine's folder of runs.
     pub(super) fn new(runs: &Path, study: &Study) -> VisitLog {
         VisitLog { path: runs.join(VISITS_FILE), study: study.digest.clone() }
     }
 
-    /// Appends a line. Failures are ignored because the runs are the record.
+    /// Appends an event to the list of visits. Failures are ignored, because the runs contain the record of the study.
     pub(super) fn append(&self, label: &str, event: VisitEvent) {
         let label = label.chars().take(80).collect();
         let line =
@@ -76,42 +76,42 @@ impl VisitLog {
             .and_then(|()| append_synced(&self.path, text.as_bytes()));
     }
 
-    /// Returns whether the list has an event of a participant of this study.
+    /// Returns whether the list contains this event for a participant of the study.
     pub(super) fn contains(&self, label: &str, event: VisitEvent) -> bool {
         let lines = read_visits(&self.path);
         lines.iter().any(|line| line.study == self.study && line.label == label && line.event == event)
     }
 }
 
-/// Returns whether a participant with a label has visited a study, by the list in a folder of runs.
+/// Returns whether the list in a folder of runs contains a visit of a label to a study.
 pub fn has_visited(study: &Study, runs: &Path, label: &str) -> bool {
     VisitLog::new(runs, study).contains(label, VisitEvent::Came)
 }
 
-/// Records that a wrong experimenter's code was entered.
+/// Records that a wrong code was entered instead of the experimenter's code.
 pub fn record_rejected_code(study: &Study, runs: &Path) {
     VisitLog::new(runs, study).append("", VisitEvent::CodeRefused);
 }
 
-/// The number of participants who came to a study, by outcome.
+/// Number of participants who visited a study, by outcome.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct VisitSummary {
-    /// Labels with a visit.
+    /// Number of labels with a visit.
     pub came: usize,
-    /// Labels that declined consent and have no run.
+    /// Number of labels that declined consent and have no run.
     pub declined: usize,
-    /// Labels that withdrew.
+    /// Number of labels that withdrew.
     pub withdrew: usize,
-    /// Labels that finished and did not withdraw.
+    /// Number of labels that finished and did not withdraw.
     pub finished: usize,
-    /// Number of rejected labels, repetitions included.
+    /// Number of rejected entries of a label, including repetitions.
     pub refused_labels: usize,
-    /// Number of rejected codes.
+    /// Number of rejected entries of the experimenter's code.
     pub refused_codes: usize,
 }
 
 impl VisitSummary {
-    /// Summarizes the lines of all machines, given the labels that have runs.
+    /// Summarizes the lists of visits of all machines. Takes the labels that have runs.
     pub fn from_lines<'a>(
         lines: impl IntoIterator<Item = &'a VisitLine>,
         with_runs: &BTreeSet<&str>,
@@ -152,7 +152,7 @@ impl fmt::Display for VisitSummary {
     }
 }
 
-/// Returns the visits that finished the study and were not withdrawn, of labels without a run.
+/// Returns the visits in which a participant finished the study, for labels that have no run and did not withdraw.
 pub fn finished_without_run<'a>(
     lines: &'a BTreeSet<VisitLine>,
     with_runs: &BTreeSet<&str>,
@@ -164,7 +164,7 @@ pub fn finished_without_run<'a>(
     lines.iter().filter(is_finished).filter(has_no_run).collect()
 }
 
-/// Returns the visits to a study on the given machines, each line once: folders may be copies of one another.
+/// Returns the visits to a study on the given machines. Lines that occur in copies of a folder are returned once.
 pub fn read_study_visits(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
     let lines = machines.iter().flat_map(|runs| read_visits(&runs.join(VISITS_FILE)));
     lines.filter(|line| line.study == study.digest).collect()

@@ -1,5 +1,4 @@
-//! Parsing of arguments from JSON to typed values, with the rejections that all tools share
-//! (docs/interfaces/tools.md#arguments).
+//! Converts JSON arguments to typed values, with the rejections that all tools share (docs/interfaces/tools.md#arguments).
 
 use std::sync::Arc;
 
@@ -15,7 +14,7 @@ use novamind_base::formatting::normalize_json_numbers;
 use novamind_world::identifiers::{Channel, Group, Plan};
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan};
 
-/// Arguments of a call with valid names, without absent and null ones.
+/// Arguments of a call with checked names. Null arguments are removed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arguments(Map<String, Value>);
 
@@ -23,7 +22,7 @@ impl Arguments {
     /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
     ///
     /// # Errors
-    /// `wrong_type` if they are not an object, `unknown_argument`, `argument_missing`.
+    /// `wrong_type` if the arguments are not an object, `unknown_argument`, `argument_missing`.
     pub fn parse(
         spec: &ToolSpec,
         given: &Value,
@@ -72,15 +71,15 @@ impl Arguments {
         &self.0
     }
 
-    /// Returns an argument, if it was given.
+    /// Returns the JSON value of an argument, or `None` if the argument was not given.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.0.get(name)
     }
 
-    /// Parses an argument, if it was given.
+    /// Parses an argument with `reader`. Returns `None` if the argument was not given.
     ///
     /// # Errors
-    /// Those of `reader`.
+    /// The rejections of `reader`.
     pub fn read<T>(
         &self,
         name: &'static str,
@@ -99,8 +98,8 @@ fn is_argument_name(spec: &ToolSpec, name: &str) -> bool {
     spec.arguments.iter().any(|argument| argument.name == name || argument.alias == Some(name))
 }
 
-/// Returns whether an object without argument names can be the single argument itself. A deal has a customer or offerings; a
-/// map can have any key.
+/// Returns whether an object can be the value of the tool's unnamed argument. A deal must have the key `customer_id`
+/// or `offerings`. A map can have any keys.
 fn is_unnamed_argument(spec: &ToolSpec, map: &Map<String, Value>) -> bool {
     let is_deal = spec
         .arguments
@@ -114,33 +113,33 @@ fn argument_names(spec: &ToolSpec) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// Returns a JSON number, but not a Boolean or a text.
+/// Returns the value of a JSON number, or `None` for other types.
 pub fn json_f64(value: &Value) -> Option<f64> {
     value.as_f64()
 }
 
-/// Returns a JSON integer, including integral floats, but not a Boolean or a text.
+/// Returns the value of a JSON integer or an integral float, or `None` for other values.
 pub fn json_i64(value: &Value) -> Option<i64> {
     let exact = |number: &f64| number.fract() == 0.0 && number.abs() < 9.2e18;
     value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
 }
 
 impl NumberRange {
-    /// Returns a JSON integer in this range, including integral floats.
+    /// Parses a JSON integer or an integral float. Returns `None` if the number is outside this range.
     pub fn parse_integer<T: TryFrom<i64>>(&self, value: &Value) -> Option<T> {
         let number = json_i64(value).filter(|number| self.contains(*number as f64))?;
         T::try_from(number).ok()
     }
 }
 
-/// Replaces a setting if a call gives it.
+/// Replaces a setting if a call contains a new value.
 pub fn replace_if_given<T>(now: &mut T, given: Option<T>) {
     if let Some(given) = given {
         *now = given;
     }
 }
 
-/// Returns a text argument, or an empty text if it was not given.
+/// Returns a text argument, or an empty text if the argument was not given.
 pub fn text_argument<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Rejection> {
     match arguments.get(name) {
         None => Ok(""),
@@ -148,27 +147,28 @@ pub fn text_argument<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str
     }
 }
 
-/// A number in its sent notation: 80 and 80.0 are the same amount, but are written differently.
+/// A number in the notation of the caller, which distinguishes 80 from 80.0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SentNumber {
-    /// Value.
+    /// Value of the number.
     pub value: f64,
     number: Number,
 }
 
 impl SentNumber {
-    /// Parses a JSON number, but not a Boolean or a text.
+    /// Converts a JSON number. Returns `None` for other types.
     pub fn from_json(value: &Value) -> Option<SentNumber> {
         let written = value.as_number()?.clone();
         Some(SentNumber { value: written.as_f64()?, number: written })
     }
 
-    /// Returns the notation of a setting: with a decimal point.
+    /// Converts the value of a setting, which is always written with a decimal point.
     pub fn from_setting(value: f64) -> SentNumber {
         SentNumber { value, number: Number::from_f64(value).unwrap_or_else(|| 0.into()) }
     }
 
-    /// Returns the sum of `parts`, without a decimal point if none of them has one, as in the release.
+    /// Returns `value`, the sum of `parts`. The sum is written without a decimal point if no part has one, as in the
+    /// released simulator.
     pub fn sum<'a>(value: f64, mut parts: impl Iterator<Item = &'a SentNumber>) -> SentNumber {
         const EXACT: f64 = 9e15;
         match parts.all(|part| !part.number.is_f64()) && value.abs() < EXACT {
@@ -189,14 +189,14 @@ pub fn wrong_type_rejection(field: &str, expected: &str) -> Rejection {
     Rejection::for_field(field, "wrong_type", format!("{field} has the wrong type: expected {expected}"))
 }
 
-/// The requirement for numbers of a map, with its rejection.
+/// The requirement for the numbers in a map, and the rejection of other numbers.
 #[derive(Clone, Copy)]
 pub struct AmountRule {
-    /// Rejection code.
+    /// Code of the rejection.
     pub code: &'static str,
     /// Message after "the value for KEY".
     pub requirement: &'static str,
-    /// Allowed numbers.
+    /// Range of allowed numbers.
     pub range: NumberRange,
 }
 
@@ -217,7 +217,7 @@ fn last_segment(field: &str) -> &str {
     field.rsplit('.').next().unwrap_or(field)
 }
 
-/// Parses a known group.
+/// Parses the id of a known group.
 pub fn parse_known_group(key: &str, field: &str, view: &ToolContext<'_>) -> Result<Group, Rejection> {
     Group::parse(key).filter(|group| view.is_known(*group)).ok_or_else(|| {
         let known: Vec<&str> = view.known_groups().map(Group::id).collect();
@@ -229,7 +229,7 @@ pub fn parse_known_group(key: &str, field: &str, view: &ToolContext<'_>) -> Resu
     })
 }
 
-/// Parses a plan.
+/// Parses the name of a plan.
 pub fn parse_plan(key: &str, field: &str) -> Result<Plan, Rejection> {
     Plan::parse(key).ok_or_else(|| {
         Rejection::for_field(
@@ -240,7 +240,7 @@ pub fn parse_plan(key: &str, field: &str) -> Result<Plan, Rejection> {
     })
 }
 
-/// Parses a channel.
+/// Parses the name of an advertising channel.
 pub fn parse_channel(key: &str, field: &str) -> Result<Channel, Rejection> {
     Channel::parse(key).ok_or_else(|| {
         let known = Channel::ALL.map(Channel::id).join(", ");
@@ -268,7 +268,7 @@ fn parse_amounts<K: std::hash::Hash + Eq>(
     parse_entries(value, field, key, |value, field| amount.read(value, field))
 }
 
-/// Parses a map: first all keys, then the values.
+/// Parses a map. All keys are checked before the values.
 fn parse_entries<K: std::hash::Hash + Eq, V>(
     value: &Value,
     field: &str,
@@ -292,7 +292,7 @@ fn to_values<K: std::hash::Hash + Eq>(map: IndexMap<K, SentNumber>) -> IndexMap<
     map.into_iter().map(|(key, sent)| (key, sent.value)).collect()
 }
 
-/// Parses a map of groups, keeping the sent notation of numbers.
+/// Parses a map from groups to numbers, and keeps the notation of the numbers.
 pub fn parse_sent_per_group(
     value: &Value,
     field: &str,
@@ -302,7 +302,7 @@ pub fn parse_sent_per_group(
     parse_amounts(value, field, amount, |key, field| parse_known_group(key, field, view))
 }
 
-/// Parses a map of channels to maps of groups, keeping the sent notation of numbers.
+/// Parses a map from channels to maps from groups to numbers, and keeps the notation of the numbers.
 pub fn parse_sent_per_channel_group(
     value: &Value,
     field: &str,
@@ -314,7 +314,7 @@ pub fn parse_sent_per_channel_group(
     })
 }
 
-/// Parses a map of groups.
+/// Parses a map from groups to numbers.
 pub fn parse_per_group(
     value: &Value,
     field: &str,
@@ -324,12 +324,12 @@ pub fn parse_per_group(
     parse_sent_per_group(value, field, amount, view).map(to_values)
 }
 
-/// Parses a map of plans.
+/// Parses a map from plans to numbers.
 pub fn parse_per_plan(value: &Value, field: &str, amount: AmountRule) -> Result<PerPlan, Rejection> {
     parse_amounts(value, field, amount, parse_plan).map(to_values)
 }
 
-/// Parses a map of channels.
+/// Parses a map from channels to numbers.
 pub fn parse_per_channel(
     value: &Value,
     field: &str,
@@ -338,7 +338,8 @@ pub fn parse_per_channel(
     parse_amounts(value, field, amount, parse_channel).map(to_values)
 }
 
-/// Parses a map of customers entry by entry, which the release does for this map only.
+/// Parses a map from customers to numbers. Key and value of an entry are checked together, because the released
+/// simulator does so for this map only.
 pub fn parse_per_customer(value: &Value, field: &str, amount: AmountRule) -> Result<PerCustomer, Rejection> {
     let entry = |(name, value): (&String, &Value)| {
         let path = format!("{field}.{name}");
@@ -347,7 +348,7 @@ pub fn parse_per_customer(value: &Value, field: &str, amount: AmountRule) -> Res
     to_map(value, field)?.iter().map(entry).collect()
 }
 
-/// Parses a map of groups to maps of plans.
+/// Parses a map from groups to maps from plans to numbers.
 pub fn parse_per_group_plan(
     value: &Value,
     field: &str,
@@ -358,7 +359,7 @@ pub fn parse_per_group_plan(
     parse_entries(value, field, group, |value, field| parse_per_plan(value, field, amount))
 }
 
-/// Parses a map of channels to maps of groups.
+/// Parses a map from channels to maps from groups to numbers.
 pub fn parse_per_channel_group(
     value: &Value,
     field: &str,
@@ -369,10 +370,10 @@ pub fn parse_per_channel_group(
     Ok(matrix.into_iter().map(|(channel, groups)| (channel, to_values(groups))).collect())
 }
 
-/// Serializes whole numbers without a decimal point, for fields that are integers in the release.
+/// Serializes whole numbers without a decimal point, for fields that are integers in the released simulator.
 ///
 /// # Errors
-/// Those of the serializer.
+/// The errors of the serializer.
 pub(super) fn serialize_whole_as_integer<T: Serialize, S: Serializer>(
     data: &T,
     serializer: S,
@@ -381,7 +382,7 @@ pub(super) fn serialize_whole_as_integer<T: Serialize, S: Serializer>(
     normalize_json_numbers(value).serialize(serializer)
 }
 
-/// Returns data as the JSON of a call.
+/// Converts data to JSON in the notation of a tool call.
 pub(super) fn to_json(data: &impl Serialize) -> Value {
     serde_json::to_value(data).map_or(Value::Null, normalize_json_numbers)
 }

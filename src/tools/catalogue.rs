@@ -1,4 +1,4 @@
-//! The catalogue of all tools as [`AnyTool`], with search by name and code.
+//! The catalog of all tools, with lookup by name and code.
 
 mod get_tool_documentation;
 
@@ -25,28 +25,28 @@ use super::{Arguments, PlannedCall, Rejection, Tool, ToolContext, ToolId, ToolKi
 use get_tool_documentation::GetToolDocumentation;
 use novamind_world::settings::Settings;
 
-/// A tool with JSON arguments and an [`Answer`], independent of its type.
+/// A tool with JSON arguments and an [`Answer`]. Unlike [`Tool`], the trait has no associated types.
 pub trait AnyTool: Sync {
-    /// Returns the specification.
+    /// Returns the specification of the tool.
     fn spec(&self) -> &'static ToolSpec;
 
-    /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
+    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without settings.
     fn current_arguments(&self, settings: &Settings) -> Map<String, Value>;
 
-    /// Returns the effect and the result of a call with these arguments.
+    /// Plans a call with these arguments, and returns its effect and result.
     ///
     /// # Errors
-    /// The rejections that its [`ToolSpec`] lists, in the order of its checks.
+    /// The rejections that the tool's [`ToolSpec`] lists, in the order of the checks.
     fn plan(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PlannedCall<Answer>, Rejection>;
 }
 
-/// Defines the catalogue and the results from the list of tool types.
+/// Defines the catalog and the type of results from the list of tool types.
 macro_rules! catalogue {
     ($($tool:ident),* $(,)?) => {
         /// All tools, in display order.
         pub static CATALOGUE: [&dyn AnyTool; [$(ToolId::$tool),*].len()] = [$(&$tool),*];
 
-        /// The result of a tool. Its JSON is that of the tool's own type.
+        /// The result of any tool. An answer is serialized like the result type of its tool.
         #[derive(Debug, Clone, PartialEq, Serialize)]
         #[serde(untagged)]
         #[allow(missing_docs)] // Each is described by its `ToolSpec`.
@@ -74,23 +74,23 @@ macro_rules! catalogue {
 with_all_tools!(catalogue);
 
 impl ToolId {
-    /// Returns the tool.
+    /// Returns the tool with this identifier.
     pub fn tool(self) -> &'static dyn AnyTool {
         CATALOGUE[self as usize]
     }
 
-    /// Returns the specification.
+    /// Returns the specification of the tool with this identifier.
     pub fn spec(self) -> &'static ToolSpec {
         self.tool().spec()
     }
 
-    /// Returns whether a call executes code at once, which can be slow.
+    /// Returns whether a call of the tool executes code immediately, which can be slow.
     pub fn executes_code(self) -> bool {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }
 
-    /// Returns whether a request can have an id, which prevents a retry from running it twice. Reads and scripts need none,
-    /// because repeating them changes nothing.
+    /// Returns whether requests for the tool can have an id, so that a retry is not executed twice. Reads and
+    /// scripts need no id, because repeating them changes nothing.
     pub fn takes_request_id(self) -> bool {
         self.spec().kind != ToolKind::Read && !self.executes_code()
     }
@@ -102,13 +102,13 @@ impl ToolId {
 }
 
 impl Answer {
-    /// Returns the JSON for the trajectory and for clients.
+    /// Converts the result to JSON, for the trajectory and for clients.
     pub fn to_json(&self) -> Value {
         serde_json::to_value(self).unwrap_or(Value::Null)
     }
 }
 
-/// Returns the tool with a case-sensitive name, optionally with its module: `pricing.set_prices`.
+/// Finds a tool by its case-sensitive name. The name can include the module, for example `pricing.set_prices`.
 pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| {
         let spec = tool.spec();
@@ -119,12 +119,12 @@ pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     })
 }
 
-/// Returns the tool with a case-insensitive code.
+/// Finds a tool by its code, ignoring case.
 pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| tool.spec().code.eq_ignore_ascii_case(code.trim()))
 }
 
-/// Returns the list of all tools by module, one line each.
+/// Returns a text that lists all tools by module, one line per tool.
 pub fn list_by_module() -> String {
     let mut text = String::new();
     for module in ToolModule::ALL {
@@ -136,7 +136,7 @@ pub fn list_by_module() -> String {
     text
 }
 
-/// Returns up to three tool names that are similar to an unknown one.
+/// Returns up to three names of tools that are similar to an unknown name.
 pub fn similar_tools(name: &str) -> Vec<&'static str> {
     novamind_base::similar_names(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
 }

@@ -1,4 +1,4 @@
-//! Documentation of a tool as text and as JSON.
+//! Generates the documentation of a tool as text and as JSON.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::ParameterNumbers;
 use super::spec::{Argument, ResultField, ToolSpec};
 
-/// Returns the manual of a tool, with the numbers in force.
+/// Returns the manual of a tool as text, with the current parameters.
 pub fn format_manual(spec: &ToolSpec, numbers: &ParameterNumbers) -> String {
     let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name(), spec.code, spec.summary);
     for argument in spec.arguments {
@@ -43,7 +43,7 @@ fn format_argument(argument: &Argument) -> String {
     format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.describe(), argument.description)
 }
 
-/// Documentation of a tool for programs, with the numbers in force.
+/// Documentation of a tool for programs, with the current parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ToolDocument {
     name: &'static str,
@@ -85,7 +85,7 @@ struct OutputDocument {
     description: String,
 }
 
-/// Documentation of a tool for programs, with the numbers in force.
+/// Returns the documentation of a tool for programs, with the current parameters.
 pub fn document_tool(spec: &'static ToolSpec, numbers: &ParameterNumbers) -> ToolDocument {
     let argument = |argument: &Argument| ArgumentDocument {
         name: argument.name,

@@ -1,6 +1,6 @@
 //! Limits of numbers in arguments, which keep all sums of money exact.
 //!
-//! A session checks them for new calls only. Recorded calls of older versions can have larger numbers and are replayed
+//! A session checks these limits only for new calls. Recorded calls of older versions can have larger numbers and are replayed
 //! unchanged.
 
 use serde_json::Value;
@@ -13,7 +13,7 @@ use novamind_base::formatting::grouped_number;
 /// Maximum magnitude of a forecast, in dollars.
 pub const MAX_FORECAST_DOLLARS: f64 = 1e15;
 
-/// Rejection code.
+/// Rejection code for numbers beyond their limit.
 pub const REJECTION_CODE: &str = "amount_too_large";
 
 /// Rejects arguments with a number beyond its limit.
@@ -43,7 +43,7 @@ fn check_value(value: &Value, bound: f64, path: &str, unit: &str) -> Result<(), 
     let within = |name: &str, value: &Value| check_value(value, bound, &format!("{path}.{name}"), unit);
     match value {
         Value::Array(list) => {
-            // The first element of a deal is the number of its customer.
+            // Skip the first element of a deal, which is the customer number.
             let is_deal = matches!(list.as_slice(), [_, Value::Array(_), ..]) && !list[0].is_array();
             let values = list.iter().enumerate().skip(usize::from(is_deal));
             values.into_iter().try_for_each(|(at, value)| within(&at.to_string(), value))

@@ -1,73 +1,73 @@
 //! The notebook of a run: named calculations for the dashboard, and scripts.
 //!
-//! Both are SQL statements or Python. They never affect the simulation.
+//! Calculations and scripts are SQL statements or Python programs. They never affect the simulation.
 
 use serde::{Deserialize, Serialize};
 
 use super::rejection::Rejection;
 use novamind_base::formatting::grouped_number;
 
-/// Maximum number of scripts of a run, and of calculations.
+/// Maximum number of scripts of a run, and maximum number of calculations.
 const MAX_ENTRIES: usize = 100;
 const MAX_CODE_BYTES: usize = 256 * 1024;
 const MAX_NAME_BYTES: usize = 200;
-/// Maximum bytes of all scripts and calculations of a run together.
+/// Maximum total size of all scripts and calculations of a run, in bytes.
 const MAX_BYTES: usize = 4 * 1024 * 1024;
 
-/// Rejection code of entries beyond a quota.
+/// Rejection code for a script or calculation that exceeds a quota.
 pub(super) const QUOTA_EXCEEDED: &str = "quota_exceeded";
 
-/// Section of the notebook.
+/// A section of the notebook.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NotebookSection {
-    /// Code that runs before every week, with its output on the dashboard.
+    /// Code that runs before every week. The dashboard shows the output of the code.
     Calculation,
-    /// Code that runs on request.
+    /// Code that runs when the player calls it.
     Script,
 }
 
 /// A change of the notebook.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotebookChange {
-    /// Store statements under a name.
+    /// Stores code under a name.
     Store {
-        /// Section.
+        /// Section that stores the code.
         section: NotebookSection,
-        /// Name.
+        /// Name of the code.
         name: String,
-        /// Statements.
+        /// SQL statements or Python code.
         code: String,
     },
-    /// Remove the statements stored under a name.
+    /// Removes the code stored under a name.
     Remove {
-        /// Section.
+        /// Section that contains the code.
         section: NotebookSection,
-        /// Name.
+        /// Name of the code to remove.
         name: String,
     },
 }
 
-/// Named statements in the order in which their names were first stored.
+/// Named code, in the order in which the names were first stored.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct NamedStatements(Vec<(String, String)>);
 
 impl NamedStatements {
-    /// Returns the statements of a name.
+    /// Returns the code stored under a name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(text, _)| text == name).map(|(_, code)| code.as_str())
     }
 
-    /// Returns all names.
+    /// Returns the names of all stored code.
     pub fn names(&self) -> Vec<&str> {
         self.0.iter().map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Returns all names except one.
+    /// Returns all names except `name`.
     pub fn names_without(&self, name: &str) -> Vec<&str> {
         self.names().into_iter().filter(|text| *text != name).collect()
     }
 
-    /// Returns names and statements.
+    /// Returns the names with the stored code.
     pub fn entries(&self) -> &[(String, String)] {
         &self.0
     }
@@ -97,7 +97,7 @@ impl Notebook {
         Notebook { calculations: NamedStatements(Vec::new()), scripts: NamedStatements(Vec::new()) }
     }
 
-    /// Returns the statements of a section.
+    /// Returns the named code of a section.
     pub fn statements(&self, what: NotebookSection) -> &NamedStatements {
         match what {
             NotebookSection::Calculation => &self.calculations,
@@ -112,8 +112,8 @@ impl Notebook {
         }
     }
 
-    /// Rejects a change beyond the quotas. A session checks new calls only; recorded calls of older versions are applied at any
-    /// size.
+    /// Rejects a change beyond the quotas. A session checks only new calls. Recorded calls of older versions are
+    /// applied without this check.
     ///
     /// # Errors
     /// `quota_exceeded`, with the limit.
@@ -159,7 +159,7 @@ impl Notebook {
         Ok(())
     }
 
-    /// Applies a change.
+    /// Applies a change to the notebook.
     pub fn apply(&mut self, change: &NotebookChange) {
         match change {
             NotebookChange::Store { section: what, name, code } => {

@@ -1,7 +1,7 @@
 //! Numbers in documentation: placeholders in braces name a parameter and are replaced by the value in force.
 //!
-//! `{table.key}` is a value; `{info_level.2.cost}` is that of a list entry, named by its level, tier or id, or else by its
-//! index from 0. A colon introduces the format:
+//! `{table.key}` is a parameter. `{info_level.2.cost}` is a parameter in a list of tables, whose entries are named by
+//! level, tier or id, otherwise by index from 0. A colon introduces the format:
 //!
 //! * `%` percentage, `100` percentage without the sign,
 //! * `$` dollars, `,` thousands separators, `-` absolute value, `+1` value plus one,
@@ -14,17 +14,17 @@ use serde_json::Value;
 use novamind_base::formatting::{capitalize, grouped_number};
 use novamind_world::params::Params;
 
-/// All numbers of the parameters, by key.
+/// All numeric parameters, by key.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ParameterNumbers(BTreeMap<String, f64>);
 
 impl ParameterNumbers {
-    /// Returns the numbers of the bundled parameters.
+    /// Returns the numbers in the bundled parameters.
     pub fn bundled() -> ParameterNumbers {
         ParameterNumbers::for_params(&Params::bundled())
     }
 
-    /// Returns the numbers of parameters.
+    /// Collects the numbers in `params`.
     pub fn for_params(params: &Params) -> ParameterNumbers {
         let mut numbers = ParameterNumbers::default();
         numbers.collect_numbers("", &serde_json::to_value(params).unwrap_or(Value::Null));
@@ -50,12 +50,12 @@ impl ParameterNumbers {
         }
     }
 
-    /// Returns a number by the key of its parameter, or `None` if the parameter does not exist.
+    /// Returns the value of a parameter, or `None` if there is no numeric parameter with this key.
     pub fn value(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
     }
 
-    /// Replaces the placeholders of a text. Unknown names stay unchanged.
+    /// Replaces the placeholders in a text by parameter values. Placeholders with unknown names do not change.
     pub fn substitute(&self, text: &str) -> String {
         let mut filled = String::new();
         let mut rest = text;
@@ -94,13 +94,13 @@ impl ParameterNumbers {
     }
 }
 
-/// Returns the name of an entry of a list of tables.
+/// Returns the name by which a placeholder selects an entry in a list of tables.
 fn entry_name(entry: &Value) -> Option<String> {
     let value = ["level", "tier", "id"].into_iter().find_map(|key| entry.get(key))?;
     Some(value.as_str().map_or_else(|| value.to_string(), str::to_owned))
 }
 
-/// Formats a small whole number as a word, others in digits.
+/// Formats a small whole number as a word, and any other number in digits.
 fn number_word(value: f64) -> String {
     const WORDS: [&str; 13] = [
         "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
@@ -116,7 +116,7 @@ fn format_decimal(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns the placeholders of a text.
+/// Returns the names of the placeholders in a text.
 #[cfg(test)]
 pub fn placeholder_names(text: &str) -> Vec<String> {
     let pieces = text.split('{').skip(1).filter_map(|piece| piece.split_once('}'));
@@ -163,8 +163,8 @@ mod tests {
         }
     }
 
-    /// Digits that texts may contain: labels, limits that the tool itself defines, and parts of formulas. Values of parameters
-    /// must be placeholders.
+    /// Numbers that texts may contain as digits: labels, limits that the tool defines, and constants of formulas.
+    /// Parameter values must be placeholders.
     const ALLOWED_LITERALS: [(&str, &[&str]); 13] = [
         ("set_ads_strength", &["0 to 1", "(1 + "]),
         ("set_targeted_dev_spend", &["ln(1 + spend"]),

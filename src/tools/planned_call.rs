@@ -1,4 +1,4 @@
-//! Planned calls: their effects and their results, before random draws.
+//! Planned tool calls: the effect and the result of a call before random draws.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -8,48 +8,48 @@ use super::rejection::Rejection;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::settings::SettingsChange;
 
-/// An accepted call that is not applied yet.
+/// An accepted tool call that has not been applied yet.
 pub struct PlannedCall<A> {
-    /// Command for the simulator.
+    /// Command that the simulator executes.
     pub command: Command,
     /// Change to the notebook.
     pub notebook_change: Option<NotebookChange>,
-    /// Row of the settings in the database, if it differs from the settings.
+    /// Settings row for the database, if it differs from the settings of the simulator.
     pub settings_row: Option<Value>,
-    /// Result.
+    /// Result of the call, or the steps that compute it.
     pub reply: Reply<A>,
 }
 
-/// Builds a result from the resolved command; `None` for a command of another kind.
+/// Function that builds a result from the resolved command. Returns `None` for a command of another kind.
 type AnswerBuilder<A> = Box<dyn FnOnce(&ResolvedCommand) -> Option<A>>;
 
 /// Result of a planned call.
 pub enum Reply<A> {
-    /// A result without random draws.
+    /// A result that does not depend on random draws.
     Immediate(A),
-    /// A result from the random draws of the command.
+    /// A result that is built from the random draws of the command.
     FromDraws(AnswerBuilder<A>),
-    /// A result from the output of a script that the session runs.
+    /// A result that is built from the output of a script, which the session runs.
     FromScript(Script, Box<dyn FnOnce(ScriptOutput) -> A>),
 }
 
-/// A script to run.
+/// A script that the session runs for a call.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Script {
-    /// Statements, or Python.
+    /// SQL statements or Python code.
     pub code: String,
-    /// Time limit of the whole script, seconds.
+    /// Time limit of the whole script, in seconds.
     pub timeout_seconds: f64,
 }
 
-/// Output of a script.
+/// Exit code and output of a script.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ScriptOutput {
-    /// 0 if it ran to its end.
+    /// Exit code; 0 if the script ran to its end.
     pub returncode: i32,
-    /// Results as tables, or printed text.
+    /// Query results as tables, or the output of Python.
     pub stdout: String,
-    /// Warnings and hints.
+    /// Warnings and hints of the script.
     pub stderr: String,
 }
 
@@ -58,22 +58,22 @@ impl<A> PlannedCall<A> {
         PlannedCall { command, notebook_change: None, settings_row: None, reply }
     }
 
-    /// Returns a call without effects.
+    /// Returns a planned call without effects.
     pub fn read_only(answer: A) -> PlannedCall<A> {
         PlannedCall::new(Command::None, Reply::Immediate(answer))
     }
 
-    /// Returns a call with a command without random draws.
+    /// Returns a planned call whose command draws no random numbers.
     pub fn with_command(command: Command, answer: A) -> PlannedCall<A> {
         PlannedCall::new(command, Reply::Immediate(answer))
     }
 
-    /// Returns a call that changes settings.
+    /// Returns a planned call that changes settings.
     pub fn with_settings_change(change: SettingsChange, answer: A) -> PlannedCall<A> {
         PlannedCall::with_command(Command::Set(change), answer)
     }
 
-    /// Returns a call whose result depends on the random draws of its command.
+    /// Returns a planned call whose result depends on the random draws of its command.
     pub fn with_draws(
         command: Command,
         answer: impl FnOnce(&ResolvedCommand) -> Option<A> + 'static,
@@ -81,19 +81,19 @@ impl<A> PlannedCall<A> {
         PlannedCall::new(command, Reply::FromDraws(Box::new(answer)))
     }
 
-    /// Returns a call that changes the notebook.
+    /// Returns a planned call that changes the notebook.
     pub fn with_notebook_change(change: NotebookChange, answer: A) -> PlannedCall<A> {
         PlannedCall { notebook_change: Some(change), ..PlannedCall::read_only(answer) }
     }
 
-    /// Sets the row of the settings in the database.
+    /// Sets the settings row for the database.
     pub fn with_settings_row(self, row: Value) -> PlannedCall<A> {
         PlannedCall { settings_row: Some(row), ..self }
     }
 }
 
 impl PlannedCall<ScriptOutput> {
-    /// Returns a call that runs a script.
+    /// Returns a planned call that runs a script.
     pub fn with_script(script: Script) -> PlannedCall<ScriptOutput> {
         PlannedCall::new(Command::None, Reply::FromScript(script, Box::new(|output| output)))
     }
@@ -117,7 +117,7 @@ impl<A: 'static> PlannedCall<A> {
 }
 
 impl<A> Reply<A> {
-    /// Returns the result for a resolved command. `run` runs the script, if there is one.
+    /// Returns the result for a resolved command. `run` executes the script of the call, if the call has a script.
     ///
     /// # Errors
     /// The rejection of the script.
@@ -135,7 +135,7 @@ impl<A> Reply<A> {
         }
     }
 
-    /// Returns the result if it needs no script.
+    /// Returns the result, or `None` if the result needs a script.
     pub fn into_answer_without_script(self, resolved: &ResolvedCommand) -> Option<A> {
         let refuse = |_: &Script| Err(Rejection::new("script_failed", "scripts are not run here"));
         self.into_answer(resolved, refuse).ok()

@@ -4,28 +4,28 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// A rejected call, which has changed nothing.
+/// The rejection of a tool call, which has changed nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Rejection {
-    /// Code, for programs.
+    /// Rejection code for programs.
     pub code: &'static str,
-    /// Message with the error and the valid values.
+    /// Message that explains the error and names the valid values.
     pub message: String,
     /// Path of the invalid argument, for example `targeted_spend.linkedin.E9`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// Reasons for each deal, if a call has several deals and all were rejected.
+    /// Result of each deal, if the call has several deals and all were rejected.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<DealResult>,
 }
 
 impl Rejection {
-    /// Returns a rejection without an argument.
+    /// Returns a rejection that does not refer to an argument.
     pub fn new(code: &'static str, message: impl Into<String>) -> Rejection {
         Rejection { code, message: message.into(), field: None, results: Vec::new() }
     }
 
-    /// Returns a rejection of an argument.
+    /// Returns a rejection that names the invalid argument.
     pub fn for_field(field: impl Into<String>, code: &'static str, message: impl Into<String>) -> Rejection {
         Rejection { code, message: message.into(), field: Some(field.into()), results: Vec::new() }
     }
@@ -42,36 +42,37 @@ impl fmt::Display for Rejection {
 
 impl std::error::Error for Rejection {}
 
-/// Results of the deals of a call: first those that could not be parsed, then the others in the order of the call.
+/// Results of the deals in a call. Deals that could not be parsed are listed first. All other deals follow in the
+/// order of the call.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct DealResults {
-    /// One entry per deal.
+    /// One result for each deal.
     pub results: Vec<DealResult>,
 }
 
-/// Result of a deal.
+/// Result of a single deal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum DealResult {
-    /// The offer was sent, or the thread ended.
+    /// The offer was sent or the thread was ended.
     Done {
-        /// Customer.
+        /// Number of the customer.
         customer_id: u32,
-        /// Always true.
+        /// Always true, as in the released simulator.
         success: bool,
     },
     /// The deal failed.
     Failed {
-        /// Customer, if the deal names one.
+        /// Number of the customer, if the deal contains a number.
         #[serde(skip_serializing_if = "Option::is_none")]
         customer_id: Option<i64>,
-        /// Reason.
+        /// Reason for the failure.
         error: String,
     },
 }
 
 impl DealResult {
-    /// Returns the customer of a deal that was sent.
+    /// Returns the customer if the deal was sent.
     pub fn sent_customer(&self) -> Option<u32> {
         match self {
             DealResult::Done { customer_id, .. } => Some(*customer_id),

@@ -1,13 +1,13 @@
-//! Data of the session that tools read: descriptions of the economy, documentation of the tables, and the notebook.
+//! Session data that tools read: descriptions of the economy, documentation of the tables, and the notebook.
 //!
-//! The session provides them, so that this crate needs neither the voice nor the database.
+//! The session provides this data through a trait, so that this crate needs neither the voice nor the database.
 
 use super::notebook::Notebook;
 use novamind_world::events::Reading;
 
-/// Data of a session for tools.
+/// Interface through which tools read data of the session.
 pub trait SessionContext: Sync {
-    /// Returns the description of a reading of the economy.
+    /// Returns a description of a PMI reading in words.
     fn describe_economy(&self, reading: &Reading) -> String;
 
     /// Returns the tables that can be queried, with their columns.
@@ -20,29 +20,29 @@ pub trait SessionContext: Sync {
 /// Documentation of a visible table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TableDocument {
-    /// Name.
+    /// Name of the table.
     pub name: &'static str,
-    /// Description of the rows.
+    /// Description of what a row represents.
     pub description: &'static str,
-    /// Columns.
+    /// Documentation of the table's columns.
     pub columns: Vec<ColumnDocument>,
 }
 
 /// Documentation of a visible column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnDocument {
-    /// Name.
+    /// Name of the column.
     pub name: &'static str,
-    /// Declared type.
+    /// Declared type of the column.
     pub kind: &'static str,
-    /// All possible values, if they are few.
+    /// All possible values of the column, if they are few.
     pub values: &'static [String],
-    /// Description.
+    /// Description of the column.
     pub description: &'static str,
 }
 
 impl ColumnDocument {
-    /// Returns type, values and meaning in one line: `TEXT, one of 'open', 'resolved': status`.
+    /// Formats the type, the values and the description in one line: `TEXT, one of 'open', 'resolved': status`.
     pub fn format_line(&self) -> String {
         let values: Vec<String> = self.values.iter().map(|value| format!("'{value}'")).collect();
         let values =
@@ -51,7 +51,7 @@ impl ColumnDocument {
     }
 }
 
-/// Empty data: no descriptions, no tables, an empty notebook.
+/// A session context without descriptions and tables, and with an empty notebook.
 pub struct EmptyContext;
 
 static EMPTY_NOTEBOOK: Notebook = Notebook::new();

@@ -1,4 +1,4 @@
-//! The specification of a tool, from which its form, command, route, documentation and argument checks are derived.
+//! The specification of tools, from which forms, commands, routes, documentation and argument checks are derived.
 
 use super::tool_id::ToolId;
 use novamind_base::formatting::grouped_number;
@@ -11,66 +11,66 @@ pub const MAX_UNITS_PER_DAY: f64 = 1e15;
 /// The specification of a tool.
 #[derive(Debug)]
 pub struct ToolSpec {
-    /// Identifier.
+    /// Identifier of the tool.
     pub id: ToolId,
     /// Short code of three to five capitals, for example `PRC`.
     pub code: &'static str,
-    /// Module of the client library.
+    /// Module of the client library that contains the tool.
     pub module: ToolModule,
-    /// Kind.
+    /// Kind of the tool.
     pub kind: ToolKind,
-    /// Summary in one line.
+    /// Summary of the tool in one line.
     pub summary: &'static str,
-    /// Arguments, in the order in which they are checked.
+    /// Arguments of the tool, in the order in which they are checked.
     pub arguments: &'static [Argument],
-    /// Whether the tool has its own rejection code for unknown arguments.
+    /// Whether the tool rejects unknown arguments with a tool-specific code.
     pub has_own_unknown_code: bool,
     /// The argument that a call can give without its name, for example the matrix of ad spend.
     pub unnamed_argument: Option<&'static str>,
-    /// Time of the effect.
+    /// Time at which a call takes effect.
     pub effect_timing: EffectTiming,
-    /// Effect.
+    /// Description of the tool's effect.
     pub effect: &'static str,
-    /// Cost.
+    /// Description of the tool's cost.
     pub cost: &'static str,
-    /// Tables that it writes.
+    /// Tables to which a call adds rows.
     pub written_tables: &'static [&'static str],
-    /// Rejection codes, in the order of its checks.
+    /// Rejection codes, in the order of the checks.
     pub rejection_codes: &'static [&'static str],
-    /// Fields of the result.
+    /// Fields of the tool's result.
     pub result_fields: &'static [ResultField],
     /// Arguments of an example, as JSON.
     pub example: &'static str,
 }
 
-/// Modules of the client library.
+/// A module of the client library, which groups tools.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ToolModule {
-    /// Prices, tiers, quotas, discounts.
+    /// Prices, model tiers, quotas and discounts.
     Pricing,
-    /// Budgets, advertising, posts.
+    /// Budgets, advertising and posts of the company.
     Marketing,
-    /// Targeted budgets and posts of others.
+    /// Targeted budgets, and posts of other authors.
     Analytics,
-    /// R&D.
+    /// R&D projects.
     Research,
-    /// Discovery and market studies.
+    /// Discovery of groups and market studies.
     Market,
     /// Capacity and costs.
     Infrastructure,
     /// Negotiations with enterprises.
     Enterprise,
-    /// Time and data.
+    /// Weeks, calculations, scripts, queries and documentation.
     Time,
 }
 
 impl ToolSpec {
-    /// Returns the name, for example `set_prices`.
+    /// Returns the name of the tool, for example `set_prices`.
     pub fn name(&self) -> &'static str {
         self.id.name()
     }
 
-    /// Returns whether the tool has its own rejection code for missing arguments.
+    /// Returns whether the tool rejects missing arguments with a tool-specific code.
     pub fn has_own_missing_code(&self) -> bool {
         self.rejection_codes.iter().any(|code| code.ends_with("_missing"))
     }
@@ -89,7 +89,7 @@ impl ToolModule {
         ToolModule::Time,
     ];
 
-    /// Returns the name.
+    /// Returns the name of the module.
     pub fn id(self) -> &'static str {
         match self {
             ToolModule::Pricing => "pricing",
@@ -104,30 +104,30 @@ impl ToolModule {
     }
 }
 
-/// Kinds of tools.
+/// The kind of a tool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ToolKind {
-    /// Changes a setting from the next day on.
+    /// A tool that changes a setting from the next day on.
     Setting,
-    /// Spends money at once.
+    /// A tool that spends money immediately.
     Purchase,
-    /// Acts once and costs nothing.
+    /// A tool that acts once and costs nothing.
     OneShot,
-    /// Reads.
+    /// A tool that only reads.
     Read,
-    /// Advances the simulation.
+    /// A tool that advances the simulation.
     Time,
-    /// Works on the notebook and the documentation, never on the company.
+    /// A tool for the notebook or the documentation, which never affects the company.
     Engine,
 }
 
 impl ToolKind {
-    /// Returns whether a call can change the company.
+    /// Returns whether tools of this kind can change the company.
     pub fn changes_company(self) -> bool {
         !matches!(self, ToolKind::Read | ToolKind::Engine)
     }
 
-    /// Returns the name in documentation.
+    /// Returns the name of the kind in documentation.
     pub fn id(self) -> &'static str {
         match self {
             ToolKind::Setting => "setting",
@@ -140,25 +140,25 @@ impl ToolKind {
     }
 }
 
-/// Time of the effect of a tool.
+/// The time at which a tool call takes effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EffectTiming {
-    /// From the next simulated day on.
+    /// The call takes effect from the next simulated day on.
     NextDay,
-    /// On each customer's next bill.
+    /// The call takes effect on each customer's next bill.
     NextBilling,
-    /// At once.
+    /// The call takes effect immediately.
     Now,
-    /// After a delay, which the result states.
+    /// The call takes effect after a delay, which the result contains.
     AtCompletion,
-    /// When the customer replies.
+    /// The call takes effect when the customer replies.
     CustomerReply,
-    /// No effect.
+    /// The call has no effect on the company.
     Never,
 }
 
 impl EffectTiming {
-    /// Returns the name in documentation.
+    /// Returns the description of the time in documentation.
     pub fn id(self) -> &'static str {
         match self {
             EffectTiming::NextDay => "next day",
@@ -171,44 +171,44 @@ impl EffectTiming {
     }
 }
 
-/// One argument.
+/// The specification of one argument of a tool.
 #[derive(Debug)]
 pub struct Argument {
-    /// Name.
+    /// Name of the argument.
     pub name: &'static str,
-    /// Second name, for older callers.
+    /// Second name of the argument, which older programs use.
     pub alias: Option<&'static str>,
-    /// Type.
+    /// Type of the argument.
     pub kind: ArgumentKind,
-    /// Whether a call without it is rejected, as `argument_missing` or with the tool's own code.
+    /// Whether a call without the argument is rejected, with `argument_missing` or a tool-specific code.
     pub required: bool,
-    /// Unit of its numbers.
+    /// Unit of the numbers in the argument.
     pub unit: &'static str,
-    /// Meaning.
+    /// Description of the argument.
     pub description: &'static str,
 }
 
-/// Type of an argument.
+/// The type of an argument.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ArgumentKind {
-    /// A number.
+    /// A number in a range.
     Number(NumberRange),
-    /// An integer.
+    /// An integer in a range.
     Integer(NumberRange),
-    /// Text.
+    /// A text.
     Text,
-    /// Another list or object, with a description.
+    /// A list or object of another structure, with a description.
     Structure(&'static str),
-    /// A list of deals with prices, with a description.
+    /// A list of deals that contain prices, with a description.
     Deals(&'static str),
-    /// A map from a key to a number.
+    /// A map from keys to numbers.
     Map(MapKey, NumberRange),
-    /// A map of maps to a number.
+    /// A map from keys to maps from keys to numbers.
     Matrix(MapKey, MapKey, NumberRange),
 }
 
 impl ArgumentKind {
-    /// Returns a description, for example `map channel -> map group -> number, >= 0`.
+    /// Returns a description of the type, for example `map channel -> map group -> number, >= 0`.
     pub fn describe(&self) -> String {
         match self {
             ArgumentKind::Number(range) => format!("number, {}", range.describe_with_limit()),
@@ -228,29 +228,29 @@ impl ArgumentKind {
     }
 }
 
-/// Allowed numbers.
+/// A range of allowed numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumberRange {
-    /// Minimum.
+    /// Minimum of the range.
     pub min: f64,
     /// Whether the minimum itself is excluded.
     pub excludes_min: bool,
-    /// Maximum.
+    /// Maximum of the range.
     pub max: f64,
-    /// Maximum magnitude, which keeps sums exact.
+    /// Maximum magnitude of a number, which keeps sums exact.
     pub magnitude_limit: f64,
 }
 
 impl NumberRange {
-    /// Dollars of at least 0.
+    /// Range of dollar amounts of at least 0.
     pub const AT_LEAST_ZERO: NumberRange =
         NumberRange { min: 0.0, excludes_min: false, max: f64::INFINITY, magnitude_limit: MAX_DOLLARS };
-    /// Dollars above 0.
+    /// Range of dollar amounts above 0.
     pub const ABOVE_ZERO: NumberRange = NumberRange { excludes_min: true, ..NumberRange::AT_LEAST_ZERO };
-    /// Units of at least 0.
+    /// Range of units of at least 0.
     pub const UNITS: NumberRange =
         NumberRange { magnitude_limit: MAX_UNITS_PER_DAY, ..NumberRange::AT_LEAST_ZERO };
-    /// Numbers from 0 to 1.
+    /// Range of shares from 0 to 1.
     pub const SHARE: NumberRange = NumberRange::between(0.0, 1.0);
 
     /// Returns the range from `least` to `most`, inclusive.
@@ -270,7 +270,7 @@ impl NumberRange {
         value.abs() <= self.magnitude_limit
     }
 
-    /// Returns a description with the maximum magnitude.
+    /// Returns a description of the range that includes the maximum magnitude.
     pub fn describe_with_limit(&self) -> String {
         match self.magnitude_limit.is_finite() {
             true => format!("{}, at most {}", self.describe(), grouped_number(self.magnitude_limit, 0)),
@@ -278,7 +278,7 @@ impl NumberRange {
         }
     }
 
-    /// Returns a description, for example `> 0`, `0 to 7`, `any`.
+    /// Returns a description of the range, for example `> 0`, `0 to 7` or `any`.
     pub fn describe(&self) -> String {
         match (self.excludes_min, self.max.is_finite()) {
             _ if self.min.is_infinite() => "any".to_owned(),
@@ -290,21 +290,21 @@ impl NumberRange {
     }
 }
 
-/// Kind of the keys of a map.
+/// The kind of keys in a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapKey {
-    /// Known groups.
+    /// Keys that are ids of known groups.
     Group,
-    /// Plans.
+    /// Keys that are names of plans.
     Plan,
-    /// Advertising channels.
+    /// Keys that are names of advertising channels.
     Channel,
-    /// Customer numbers.
+    /// Keys that are customer numbers.
     Customer,
 }
 
 impl MapKey {
-    /// Returns the name in documentation.
+    /// Returns the name of the key kind in documentation.
     pub fn id(self) -> &'static str {
         match self {
             MapKey::Group => "group",
@@ -315,16 +315,16 @@ impl MapKey {
     }
 }
 
-/// Type of a result field with a remark, whose wording can change between versions.
+/// Type of a result field that contains a remark. The wording of remarks can change between versions.
 pub const REMARK_TYPE: &str = "remark";
 
-/// One field of a result.
+/// The specification of one field in a result.
 #[derive(Debug)]
 pub struct ResultField {
-    /// Name.
+    /// Name of the field.
     pub name: &'static str,
     /// Description of the type, for example `map plan -> number`.
     pub kind: &'static str,
-    /// Unit or meaning.
+    /// Unit or meaning of the field.
     pub description: &'static str,
 }

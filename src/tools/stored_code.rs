@@ -1,30 +1,30 @@
-//! Storing and removing named statements, for calculations and scripts.
+//! Stores and removes named code, for calculations and scripts.
 
 use serde::Serialize;
 
 use super::notebook::{NamedStatements, NotebookChange, NotebookSection};
 use super::planned_call::PlannedCall;
 
-/// Statements with their name in a call.
+/// Name and code in the arguments of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedCode {
-    /// Name.
+    /// Name under which the code is stored.
     pub name: String,
-    /// Statements.
+    /// SQL statements or Python code.
     pub code: String,
 }
 
-/// The result of storing statements.
+/// The result of a call that stores code.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct StoredCode {
-    /// Name.
+    /// Name under which the code was stored.
     pub name: String,
-    /// Characters of the code.
+    /// Length of the code in characters.
     pub code_length: usize,
 }
 
 impl NamedCode {
-    /// Returns the call that stores the statements.
+    /// Returns the planned call that stores the code in a section of the notebook.
     pub(super) fn store(self, what: NotebookSection) -> PlannedCall<StoredCode> {
         let NamedCode { name, code } = self;
         let answer = StoredCode { name: name.clone(), code_length: code.chars().count() };
@@ -32,17 +32,17 @@ impl NamedCode {
     }
 }
 
-/// The result of removing statements.
+/// The result of a call that removes code.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct RemainingNames {
-    /// Removed name.
+    /// Name of the removed code.
     pub name: String,
-    /// Remaining names.
+    /// Names that remain in the section.
     pub remaining: Vec<String>,
 }
 
 impl RemainingNames {
-    /// Returns the call that removes a name.
+    /// Returns the planned call that removes the code stored under a name.
     pub(super) fn after_removal(
         statements: &NamedStatements,
         what: NotebookSection,

@@ -46,7 +46,7 @@ impl TestCompany {
             .unwrap_or_else(|refusal| panic!("{name} {arguments}: {refusal}"))
     }
 
-    /// Returns code and field of a rejection, and checks that nothing has changed.
+    /// Returns the code and field of an expected rejection. Checks that the call has changed nothing.
     fn call_rejected(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
         let before = self.world.part_hashes();
         let refusal =
@@ -56,7 +56,7 @@ impl TestCompany {
         (refusal.code, refusal.field)
     }
 
-    /// Returns the results of each deal of a rejected call.
+    /// Returns the results of all deals in a call that is expected to be rejected.
     fn rejected_results(&mut self, name: &str, arguments: Value) -> Value {
         let refusal = self.try_call(name, arguments).expect_err("a refusal");
         serde_json::to_value(refusal.results).expect("results are JSON")
@@ -170,7 +170,7 @@ fn set_promotion_validates_and_updates() {
             (json!({"by_group_plan": {"S1": {"A": 1e300}}}), "amount_too_large", "by_group_plan.S1.A"),
         ],
     );
-    // An empty map clears its scope only.
+    // An empty map clears only its scope.
     let all = json!({
         "global_promotion": 5,
         "by_group": {"S1": 2},
@@ -307,13 +307,13 @@ fn set_targeted_ops_spend_keeps_other_scopes() {
             (json!({"by_plan": {"D": 4}}), "unknown_plan", "by_plan.D"),
             (json!({"by_group_plan": {"S1": {"A": -4}}}), "amount_invalid", "by_group_plan.S1.A"),
             (json!({"by_customer": {"x": 4}}), "customer_not_integer", "by_customer.x"),
-            // The first scope does not change, as the sums below show.
+            // If a later scope is invalid, the first scope does not change, as the sums below show.
             (json!({"by_group": {"S2": 9}, "by_plan": {"D": 1}}), "unknown_plan", "by_plan.D"),
             (json!({"by_customer": {"7": 1e10}}), "amount_too_large", "by_customer.7"),
             (json!({"targeted_spend": {"S1": 1e10}}), "amount_too_large", "targeted_spend.S1"),
         ],
     );
-    // Every scope is a separate budget, which stays until a call sets it again.
+    // Each scope has a separate budget, which stays in force until a call sets it again.
     company.call("set_targeted_ops_spend", json!({"E1": 30, "S1": 20}));
     company.call("set_targeted_ops_spend", json!({"by_plan": {"A": 10}}));
     company.call("set_targeted_ops_spend", json!({"by_group_plan": {"S1": {"A": 5}}}));
@@ -359,7 +359,7 @@ fn start_research_project_charges_the_price_once() {
             (json!({"tier": 20}), "insufficient_funds", ""),
         ],
     );
-    // The price is paid at once, and the rejections above cost nothing.
+    // The price was paid immediately, and the rejected calls cost nothing.
     assert_eq!(company.world.finance.cash, 833_333.0);
     let project = company.world.product.research[0];
     assert!(project.due_day >= 30);
@@ -487,7 +487,7 @@ fn send_enterprise_deal_rejects_invalid_deals() {
             (deal(json!([["two", [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
             (deal(json!([[true, [["B", 5]]]])), "wrong_type", "deals.0.customer_id"),
             (deal(json!([[2, [["B", "inf"]]]])), "wrong_type", "deals.0.offerings.0.price_per_seat"),
-            // If all deals fail, the first one determines the rejection.
+            // If all deals fail, the first deal determines the rejection.
             (deal(json!([[99, [["B", 5]]], [2, []]])), "customer_not_found", "deals.0.customer_id"),
             (deal(json!([[4_000_000_000u64, [["B", 5]]]])), "customer_not_found", "deals.0.customer_id"),
             (deal(json!([[2, [["B", 5], ["C", 1e308]]]])), "amount_too_large", "deals.0.1.1.1"),

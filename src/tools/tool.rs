@@ -1,4 +1,4 @@
-//! The trait of tools.
+//! The trait that all tools implement.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -12,15 +12,15 @@ use novamind_world::settings::Settings;
 
 /// A tool of the player.
 pub trait Tool: Sync {
-    /// Parsed and checked arguments.
+    /// Type of the parsed and checked arguments.
     type Args;
-    /// Result; its JSON is the data of the response.
+    /// Type of the result, which is serialized to the data of the response.
     type Answer: Serialize;
 
-    /// Returns the specification.
+    /// Returns the specification of the tool.
     fn spec(&self) -> &'static ToolSpec;
 
-    /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
+    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without settings.
     fn current_arguments(&self, _settings: &Settings) -> Map<String, Value> {
         Map::new()
     }
@@ -28,12 +28,12 @@ pub trait Tool: Sync {
     /// Parses the arguments of a call.
     ///
     /// # Errors
-    /// The first rejections that its [`ToolSpec`] lists: those that follow from the arguments and the player's knowledge.
+    /// The first rejections in the [`ToolSpec`], which depend only on the arguments and the player's knowledge.
     fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection>;
 
-    /// Returns the effect and the result of a call with these arguments.
+    /// Plans a call with these arguments, and returns its effect and result.
     ///
     /// # Errors
-    /// The other rejections, in the order of its checks.
+    /// The remaining rejections in the [`ToolSpec`], in the order of the checks.
     fn plan(&self, view: &ToolContext<'_>, args: Self::Args) -> Result<PlannedCall<Self::Answer>, Rejection>;
 }

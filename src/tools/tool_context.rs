@@ -1,4 +1,4 @@
-//! The data that tools read.
+//! The company data that tools read.
 
 use std::borrow::Cow;
 
@@ -20,15 +20,15 @@ pub struct ToolContext<'a> {
 /// A post of an author other than the player.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct PublicPost {
-    /// Number.
+    /// Number of the post.
     pub post: u32,
-    /// Day.
+    /// Day on which the post was published.
     pub day: u32,
-    /// Text.
+    /// Text of the post.
     pub content: String,
-    /// Number of the player's post on which it comments.
+    /// Number of the player's post, if this post is a comment.
     pub own_post: Option<u32>,
-    /// Group whose mood such a comment expresses.
+    /// Group whose mood a comment on the player's post expresses.
     #[serde(skip)]
     pub source_group: Option<Group>,
     /// Group of the author; `None` for the press.
@@ -40,22 +40,22 @@ pub struct PublicPost {
 }
 
 impl<'a> ToolContext<'a> {
-    /// Returns a view of a simulator state without session data.
+    /// Returns a view of a simulator state with an empty session context.
     pub fn new(world: &'a World, params: &'a Params) -> ToolContext<'a> {
         ToolContext { world, params, session: &EmptyContext, posts: &[] }
     }
 
-    /// Adds the data of a session.
+    /// Returns this view with the data of a session.
     pub fn with_session(self, surroundings: &'a dyn SessionContext) -> ToolContext<'a> {
         ToolContext { session: surroundings, ..self }
     }
 
-    /// Returns the data of the session.
+    /// Returns the session data of the view.
     pub fn session(&self) -> &'a dyn SessionContext {
         self.session
     }
 
-    /// Adds the posts of other authors, in the order of their numbers.
+    /// Returns this view with the posts of other authors, in the order of their numbers.
     pub fn with_posts(self, posts: &'a [PublicPost]) -> ToolContext<'a> {
         ToolContext { posts, ..self }
     }
@@ -70,7 +70,7 @@ impl<'a> ToolContext<'a> {
         self.world.day
     }
 
-    /// Returns cash, in dollars.
+    /// Returns the company's cash in dollars.
     pub fn cash(&self) -> f64 {
         self.world.finance.cash
     }
@@ -80,17 +80,17 @@ impl<'a> ToolContext<'a> {
         &self.world.settings
     }
 
-    /// Returns the parameters. A tool shows only those that agents know.
+    /// Returns the parameters. Tools must show only parameters that are known to agents.
     pub fn params(&self) -> &'a Params {
         self.params
     }
 
-    /// Returns the simulator state.
+    /// Returns the complete simulator state.
     pub(super) fn world(&self) -> &'a World {
         self.world
     }
 
-    /// Returns whether a group is known.
+    /// Returns whether a group is known to the player.
     pub fn is_known(&self, group: Group) -> bool {
         self.world.market.is_known(group)
     }

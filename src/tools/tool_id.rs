@@ -1,4 +1,4 @@
-//! The list of all tools, from which the identifiers and the catalogue are built.
+//! The list of all tools, from which the identifiers and the catalog are built.
 
 use serde::{Deserialize, Serialize};
 use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
@@ -50,7 +50,7 @@ pub(super) use with_all_tools;
 
 macro_rules! identifiers {
     ($($tool:ident),* $(,)?) => {
-        /// A tool. Its serialized form is its name, for example `set_prices`.
+        /// The identifier of a tool. The serialized form is the name of the tool, for example `set_prices`.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
             EnumString, IntoStaticStr,
@@ -67,7 +67,7 @@ macro_rules! identifiers {
 with_all_tools!(identifiers);
 
 impl ToolId {
-    /// Returns the name.
+    /// Returns the name of the tool.
     pub fn name(self) -> &'static str {
         self.into()
     }

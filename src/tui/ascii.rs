@@ -14,7 +14,7 @@ pub fn replace_non_ascii(buffer: &mut Buffer) {
 
 fn ascii_substitute(letter: char) -> char {
     match letter {
-        // Thick lines mark the focus.
+        // Thick lines mark the focused pane, so their ASCII character differs from the character of thin lines.
         '━' => '=',
         '┃' | '┏' | '┓' | '┗' | '┛' => '#',
         '─' | '–' | '—' | '⠤' | '⎯' => '-',

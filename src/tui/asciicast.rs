@@ -1,4 +1,4 @@
-//! Writes frames as an asciicast, version 2, for terminal players (<https://docs.asciinema.org>).
+//! Writes frames as an asciicast recording, version 2, for terminal players (<https://docs.asciinema.org>).
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use serde_json::json;
 
-/// Hides the cursor and clears the window.
+/// Escape sequence that hides the cursor and clears the window.
 const INITIAL_SEQUENCE: &str = "\u{1b}[?25l\u{1b}[0m\u{1b}[2J";
 
-/// A recording of frames. Each frame is stored as its differences from the previous one.
+/// A recording of frames. Each frame is stored as its differences from the previous frame.
 pub struct Asciicast {
     lines: String,
     last_frame: Buffer,
@@ -20,7 +20,7 @@ pub struct Asciicast {
 impl Asciicast {
     /// Starts a recording of a window with a size in columns and rows.
     pub fn new((columns, rows): (u16, u16), title: &str) -> Asciicast {
-        // The recording needs colors even if the terminal of this process has none.
+        // The recording needs colors even if the terminal of this process has no colors.
         crossterm::style::force_color_output(true);
         let header = json!({
             "version": 2, "width": columns, "height": rows, "title": title, "env": { "TERM": "xterm-256color" },
@@ -34,7 +34,7 @@ impl Asciicast {
         recording
     }
 
-    /// Adds a frame that stays for some time.
+    /// Adds a frame that is shown for a duration.
     ///
     /// # Errors
     /// The frame cannot be written as terminal output.
@@ -47,7 +47,7 @@ impl Asciicast {
         Ok(())
     }
 
-    /// Returns the recording. The last frame stays for its requested time.
+    /// Returns the recording as text. The last frame is shown for its full duration.
     pub fn finish(mut self) -> String {
         self.write("");
         self.lines

@@ -1,4 +1,4 @@
-//! The drawing surface of views: cells of a frame, clickable areas, and the cursor.
+//! The drawing surface: the cells of a frame, clickable areas, and the cursor.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -18,49 +18,49 @@ pub struct CommandId(pub u16);
 /// The target of a click.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Click {
-    /// A command.
+    /// A command to execute.
     Command(CommandId),
-    /// A pane, by its number on the screen: it receives the focus.
+    /// A pane that receives the focus, by its number on the screen.
     Pane(usize),
-    /// A row, by the number of its pane and its own.
+    /// A row of a pane, by the number of the pane and the number of the row.
     Row(usize, usize),
 }
 
 /// A frame that is being drawn.
 pub struct Canvas<'a> {
-    /// Cells.
+    /// Cells of the frame.
     pub buffer: &'a mut Buffer,
-    /// Colors.
+    /// Colors by role.
     pub theme: &'a Theme,
-    /// Clickable areas; later ones are on top.
+    /// Clickable areas of the frame. Later areas cover earlier areas.
     pub clicks: Vec<(Rect, Click)>,
-    /// Position of the cursor, if it is shown.
+    /// Position of the cursor, if the cursor is visible.
     pub cursor: Option<Position>,
-    /// Rows that the focused list shows, for paging.
+    /// Number of rows that the focused list shows, for paging.
     pub page_rows: u16,
-    /// Whether the focused pane fills the screen and the others are not drawn.
+    /// Whether the focused pane fills the screen and other panes are not drawn.
     pub zoomed: bool,
-    /// Whether the data is from a database that is behind; every pane shows that.
+    /// Whether the data is outdated, which the border of every pane indicates.
     pub stale: bool,
-    /// Text of a chart without data.
+    /// Text that is shown in place of a chart without data.
     pub empty_chart_text: &'static str,
-    /// Marker that curves are drawn with.
+    /// Marker with which curves are drawn.
     pub marker: Marker,
-    /// Breadcrumbs of the focused pane, which precede its title.
+    /// Breadcrumbs that are shown before the title of the focused pane.
     pub breadcrumbs: Vec<String>,
 }
 
-/// Alignment of text.
+/// Horizontal alignment of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// Left.
+    /// Left-aligned text.
     Left,
-    /// Right.
+    /// Right-aligned text.
     Right,
 }
 
 impl<'a> Canvas<'a> {
-    /// Returns a canvas over cells.
+    /// Returns a canvas that draws into a buffer.
     pub fn new(buffer: &'a mut Buffer, theme: &'a Theme) -> Canvas<'a> {
         Canvas {
             buffer,
@@ -76,7 +76,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Returns the whole area.
+    /// Returns the area of the complete canvas.
     pub fn area(&self) -> Rect {
         self.buffer.area
     }
@@ -86,12 +86,12 @@ impl<'a> Canvas<'a> {
         self.theme.style(role)
     }
 
-    /// Returns a styled span.
+    /// Returns a span of text with the style of a role.
     pub fn span<'t>(&self, text: impl Into<std::borrow::Cow<'t, str>>, role: Role) -> Span<'t> {
         Span::styled(text, self.style(role))
     }
 
-    /// Fills an area with spaces and the background of a role.
+    /// Fills an area with spaces in the style of a role.
     pub fn clear(&mut self, area: Rect, role: Role) {
         let area = area.intersection(self.buffer.area);
         ratatui::widgets::Clear.render(area, self.buffer);
@@ -117,24 +117,24 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws spans in one row, truncated.
+    /// Draws a line of spans in one row, truncated to the width of the area.
     pub fn draw_line(&mut self, area: Rect, line: &Line<'_>) {
         if !area.is_empty() && self.buffer.area.contains(area.as_position()) {
             self.buffer.set_line(area.x, area.y, line, area.width);
         }
     }
 
-    /// Draws lines below each other; lines that do not fit are omitted.
+    /// Draws lines below each other. Lines that do not fit are omitted.
     pub fn draw_lines(&mut self, area: Rect, lines: &[Line<'_>]) {
         for (row, line) in row_rects(area).zip(lines) {
             self.draw_line(row, line);
         }
     }
 
-    /// Draws the border of a pane and returns the area inside. The title is at the left, the note at the right end of
-    /// the upper border.
+    /// Draws the border of a pane and returns the area inside. The title is at the left end and the note at the right
+    /// end of the upper border.
     pub fn draw_pane_frame(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
-        // Line styles show the focus without color, too.
+        // The line style shows the focus even without color.
         let (kind, role) =
             if focused { (BorderType::Thick, Role::Focus) } else { (BorderType::Plain, Role::Border) };
         let mut block = Block::bordered().border_type(kind).border_style(self.style(role));
@@ -146,7 +146,7 @@ impl<'a> Canvas<'a> {
         };
         let way = if focused && !title.is_empty() { self.breadcrumbs.as_slice() } else { &[] };
         let in_room = |room: usize| breadcrumb_prefix(way, title, room);
-        // The nearest breadcrumb takes precedence over the note.
+        // The last breadcrumb takes precedence over the note.
         let path = Some(in_room(room.saturating_sub(note.width() + 6)))
             .filter(|path| !path.is_empty())
             .unwrap_or_else(|| in_room(room.saturating_sub(2)));
@@ -183,8 +183,8 @@ impl<'a> Canvas<'a> {
     }
 }
 
-/// Formats the breadcrumbs before a title in the available width: `Customers › S2 › `. Distant ones are dropped
-/// first, and one that the title names is omitted.
+/// Formats the breadcrumbs before a title in the available width: `Customers › S2 › `. The first breadcrumbs are
+/// dropped first. The last breadcrumb is omitted if the title contains it.
 fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
     let is_in_title = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
     let path = &path[..path.len() - usize::from(is_in_title)];
@@ -196,7 +196,7 @@ fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
     (0..path.len()).map(words).find(fits).unwrap_or_default()
 }
 
-/// Truncates a list of keys between its items; the first item always stays.
+/// Truncates a list of keys between items, so that no item is cut off. The first item is always kept.
 fn fitting_keys(text: &str, width: usize) -> String {
     let mut shown = String::new();
     for key in text.split(" · ") {
@@ -209,7 +209,7 @@ fn fitting_keys(text: &str, width: usize) -> String {
     truncate_to_width(&shown, width)
 }
 
-/// Returns the rows of an area, each one cell high.
+/// Returns the rows of an area. Each row is one cell high.
 pub fn row_rects(area: Rect) -> impl Iterator<Item = Rect> {
     (area.top()..area.bottom()).map(move |y| Rect { y, height: 1, ..area })
 }
@@ -239,7 +239,7 @@ pub fn truncate_to_width(text: &str, width: usize) -> String {
     fitted
 }
 
-/// Returns a rectangle in the middle of an area, clipped to it.
+/// Returns a rectangle in the middle of an area, limited to the size of the area.
 pub fn centered_rect(area: Rect, width: u16, height: u16) -> Rect {
     let (width, height) = (width.min(area.width), height.min(area.height));
     Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }

@@ -1,4 +1,4 @@
-//! Keys with modifiers, in the notation of key files: `n`, `ctrl-s`, `shift-tab`.
+//! Chords: keys with modifiers, in the notation of key files, for example `n`, `ctrl-s` and `shift-tab`.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 const MAX_SEQUENCE_CHORDS: usize = 3;
 
-/// A key with its modifiers.
+/// A key with its modifiers, such as ctrl and shift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd)]
 pub struct Chord {
     code: KeyCode,
@@ -42,7 +42,7 @@ impl Chord {
         if code == KeyCode::BackTab {
             (code, shift) = (KeyCode::Tab, true);
         }
-        // The character already reflects the shift key.
+        // The character already depends on the shift key.
         if matches!(code, KeyCode::Char(_)) {
             shift = false;
         }
@@ -52,7 +52,7 @@ impl Chord {
     /// Parses a chord in the notation of key files.
     ///
     /// # Errors
-    /// The text is not a chord; the message says why.
+    /// The text is not a chord. The message contains the reason.
     pub fn parse(text: &str) -> Result<Chord, String> {
         let mut chord = Chord { code: KeyCode::Null, ctrl: false, alt: false, shift: false };
         let mut rest = text;
@@ -89,7 +89,7 @@ impl Chord {
         Ok(chord)
     }
 
-    /// Returns the event that a terminal would send.
+    /// Returns the key event that a terminal would send for the chord.
     pub fn to_event(&self) -> KeyEvent {
         let mut modifiers = KeyModifiers::NONE;
         for (held, modifier) in [
@@ -102,24 +102,24 @@ impl Chord {
         KeyEvent::new(self.code, modifiers)
     }
 
-    /// Returns whether it is the escape key.
+    /// Returns whether the chord is the escape key.
     pub fn is_escape(&self) -> bool {
         self.code == KeyCode::Esc
     }
 
-    /// Returns whether it is a printable character.
+    /// Returns whether the chord is a printable character.
     pub fn is_printable(&self) -> bool {
         matches!(self.code, KeyCode::Char(_)) && !self.ctrl && !self.alt
     }
 
-    /// Returns whether it can start a number.
+    /// Returns whether the chord can start a number.
     pub fn starts_number(&self) -> bool {
         matches!(self.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'))
             && !self.ctrl
             && !self.alt
     }
 
-    /// Returns whether a text field handles it.
+    /// Returns whether a text field or an editor handles the chord.
     pub fn is_text_input(&self) -> bool {
         match self.code {
             KeyCode::Char(_) => !self.ctrl && !self.alt,
@@ -161,7 +161,7 @@ impl fmt::Display for Chord {
 /// Parses a sequence of chords.
 ///
 /// # Errors
-/// A chord cannot be parsed, or there are too many.
+/// A chord cannot be parsed, or the sequence has too many chords.
 pub fn parse_sequence(text: &str) -> Result<Vec<Chord>, String> {
     let chords: Result<Vec<Chord>, String> = text.split(' ').map(Chord::parse).collect();
     let chords = chords?;

@@ -71,7 +71,7 @@ fn draw_row(out: &mut String, buffer: &Buffer, y: u16, paper: TerminalColors) {
     }
 }
 
-/// Draws consecutive cells of a row that have the same style: background, drawn characters and text.
+/// Draws consecutive cells of a row that have the same style: their background, characters drawn as paths, and text.
 fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper: TerminalColors) {
     let (ink, ground) = cell_colors(cells[0], paper);
     let place = |column: usize| MARGIN + (x + column) as f64 * CELL_WIDTH;
@@ -92,7 +92,7 @@ fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper:
             let path = symbols::symbol_path(sign, place(column), top, (CELL_WIDTH, CELL_HEIGHT));
             path.map(|path| shapes.push_str(&path)).is_some()
         });
-        // Spaces between words belong to neither.
+        // Spaces are neither drawn as paths nor written as text.
         let written = !drawn && cell.symbol() != " ";
         match letters.last_mut() {
             Some((_, word)) if written && follows_letter => word.push_str(cell.symbol()),
@@ -113,7 +113,7 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, looks
     let weight = if looks.contains(Modifier::BOLD) { " font-weight=\"bold\"" } else { "" };
     let faint = if looks.contains(Modifier::DIM) { " opacity=\"0.6\"" } else { "" };
     let line = if looks.contains(Modifier::UNDERLINED) { " text-decoration=\"underline\"" } else { "" };
-    // The length keeps columns aligned with any font.
+    // An explicit text length keeps columns aligned in any font.
     let length = word.width() as f64 * CELL_WIDTH;
     let base = top + CELL_HEIGHT * 0.76;
     let _ = writeln!(
@@ -124,7 +124,7 @@ fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, looks
     );
 }
 
-/// Returns the foreground of a cell, and its background if it differs from the default.
+/// Returns the foreground color of a cell, and the background color if the cell does not have the default background.
 fn cell_colors(cell: &Cell, paper: TerminalColors) -> (String, Option<String>) {
     let ink = css_color(cell.fg).unwrap_or_else(|| paper.foreground.to_owned());
     let ground = css_color(cell.bg);
@@ -161,7 +161,7 @@ fn css_color(colour: Color) -> Option<String> {
     Some(name.to_owned())
 }
 
-/// Returns a color of the 256-color palette.
+/// Returns a color of the 256-color terminal palette in CSS notation.
 fn indexed_color(number: u8) -> String {
     let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * step };
     let (red, green, blue) = match number {

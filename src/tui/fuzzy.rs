@@ -9,11 +9,11 @@ use unicode_width::UnicodeWidthStr;
 use super::canvas::Canvas;
 use super::theme::Role;
 
-/// A match: the index of the entry, and the positions of matched letters in its title.
+/// A match: the index of the entry, and the positions of the matched letters in the entry's title.
 pub type FuzzyMatch = (usize, Vec<u32>);
 
-/// Returns the matches, the best first; matches in titles rank higher than those in explanations. Without a search
-/// text, returns everything in order.
+/// Returns the matching entries, the best first. Matches in titles rank higher than matches in explanations. Without a
+/// search text, returns all entries in their order.
 pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<FuzzyMatch> {
     let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
     let mut matcher = Matcher::new(Config::DEFAULT);
@@ -32,7 +32,7 @@ pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> V
     scored.into_iter().map(|(_, at, places)| (at, places)).collect()
 }
 
-/// Draws a title with its matched letters highlighted.
+/// Draws the title of an entry with highlighted matched letters.
 pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u32], roles: [Role; 2]) {
     canvas.draw_text(area, title, roles[0]);
     // A truncated title ends with an ellipsis in the last column.

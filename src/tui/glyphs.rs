@@ -11,12 +11,12 @@ pub enum Glyphs {
     Braille,
     /// Half blocks for curves, for fonts without braille.
     Blocks,
-    /// ASCII only.
+    /// ASCII characters only.
     Ascii,
 }
 
 impl Glyphs {
-    /// Returns the next set, cyclically.
+    /// Returns the next set of characters, cyclically.
     pub fn next(self) -> Glyphs {
         match self {
             Glyphs::Braille => Glyphs::Blocks,
@@ -25,7 +25,7 @@ impl Glyphs {
         }
     }
 
-    /// Returns the marker for curves.
+    /// Returns the marker with which curves are drawn.
     pub fn marker(self) -> Marker {
         match self {
             Glyphs::Braille => Marker::Braille,
@@ -34,7 +34,7 @@ impl Glyphs {
         }
     }
 
-    /// Returns the name.
+    /// Returns the name of the set for messages.
     pub fn label(self) -> &'static str {
         match self {
             Glyphs::Braille => "braille dots",

@@ -1,5 +1,5 @@
-//! Parts of terminal applications that are independent of the game: canvas, themes, widgets, keys, fuzzy search, and
-//! pictures of frames.
+//! Components of terminal applications that do not depend on the simulator: canvas, themes, widgets, keys, fuzzy
+//! search, and pictures of frames.
 
 pub mod ascii;
 pub mod asciicast;
@@ -14,7 +14,7 @@ pub mod text;
 pub mod theme;
 pub mod widgets;
 
-/// Returns the rows of a window after `draw`, without trailing spaces.
+/// Draws into a window of a size and returns the text of each row, without trailing spaces.
 #[cfg(test)]
 fn render_rows(
     width: u16,

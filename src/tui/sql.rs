@@ -1,11 +1,11 @@
-//! SQL tokens, for highlighting and completion. Unfinished statements are common, so nothing is an error: an
-//! unterminated token extends to the end of the text.
+//! SQL tokens, for highlighting and completion. Statements are often unfinished, so the tokenizer reports no errors.
+//! An unterminated token extends to the end of the text.
 
 use std::ops::Range;
 
 use crate::theme::Role;
 
-/// The kind of a token.
+/// The kind of a SQL token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenKind {
     /// A keyword.
@@ -23,7 +23,7 @@ pub enum TokenKind {
 }
 
 impl TokenKind {
-    /// Returns the role for drawing it.
+    /// Returns the display role of the token kind.
     pub fn role(self) -> Role {
         match self {
             TokenKind::Keyword => Role::Keyword,
@@ -35,16 +35,16 @@ impl TokenKind {
     }
 }
 
-/// A token and its byte range.
+/// A SQL token with its byte range.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
-    /// The kind.
+    /// The kind of the token.
     pub kind: TokenKind,
-    /// The byte range.
+    /// The byte range of the token in the text.
     pub range: Range<usize>,
 }
 
-/// Keywords for completion.
+/// SQL keywords for highlighting and completion.
 pub const KEYWORDS: [&str; 66] = [
     "SELECT",
     "FROM",
@@ -114,7 +114,7 @@ pub const KEYWORDS: [&str; 66] = [
     "FALSE",
 ];
 
-/// Functions for completion; an opening parenthesis follows them.
+/// SQL functions for completion, without the opening parenthesis.
 pub const FUNCTIONS: [&str; 32] = [
     "count",
     "sum",
@@ -150,12 +150,12 @@ pub const FUNCTIONS: [&str; 32] = [
     "ceil",
 ];
 
-/// Returns whether a character is part of a word.
+/// Returns whether a character can be part of an identifier.
 pub fn is_identifier_char(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// Returns the tokens of a text in order, without white space.
+/// Splits a text into SQL tokens without whitespace.
 pub fn tokenize(sql: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let mut at = 0;
@@ -190,7 +190,7 @@ pub fn tokenize(sql: &str) -> Vec<Token> {
     found
 }
 
-/// Returns the length of a quoted token; a doubled quote does not end it.
+/// Returns the length of a quoted token. A doubled quote does not end the token.
 fn quoted_length(rest: &str, quote: char) -> usize {
     let mut at = 1;
     while let Some(end) = rest[at..].find(quote) {
@@ -203,7 +203,7 @@ fn quoted_length(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// Returns the length of a number: digits, a point, an exponent.
+/// Returns the length of a number token, which can contain digits, letters, a decimal point and an exponent with a sign.
 fn number_length(rest: &str) -> usize {
     let mut before = ' ';
     let part_of = |letter: char| {
@@ -215,8 +215,8 @@ fn number_length(rest: &str) -> usize {
     rest.find(|letter| !part_of(letter)).unwrap_or(rest.len())
 }
 
-/// Returns the statement at a position without its final semicolon, its number, and the number of statements. A
-/// position after the last semicolon belongs to the last statement if nothing follows.
+/// Returns the range of the statement at a position without its final semicolon, the index of the statement, and the
+/// number of statements. A position after the last semicolon belongs to the last statement if no further statement follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokenize(sql);
     let ends =

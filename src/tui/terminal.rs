@@ -1,4 +1,4 @@
-//! Setup of the terminal, which is restored in every case.
+//! Setup of the terminal. The terminal is restored on exit, on suspension and after a panic.
 
 use std::io::{self, Stdout, Write};
 use std::sync::Mutex;
@@ -19,15 +19,15 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Position;
 
-/// The terminal while the application uses it; restored on drop.
+/// The terminal in console mode. Dropping this value restores the terminal.
 pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
 
-/// Line printed after the message of a panic.
+/// Line that is printed after the message of a panic.
 static PANIC_NOTE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Sets the line printed after the message of a panic, for example where the user's work is saved.
+/// Sets the line that is printed after the message of a panic, for example the location of the user's saved work.
 pub fn set_panic_note(note: Option<String>) {
     *PANIC_NOTE.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = note;
 }
@@ -42,7 +42,7 @@ impl TerminalScreen {
         let terminal = taken.inspect_err(|_| restore_terminal())?;
         let usual = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
-            // The application handles panics of its other threads.
+            // The application handles panics of all other threads.
             if std::thread::current().name() == Some("main") {
                 restore_terminal();
                 usual(panic);
@@ -66,21 +66,21 @@ impl TerminalScreen {
         self.resume(mouse)
     }
 
-    /// Prepares the terminal again after the program was stopped, because the terminal may have been changed
-    /// meanwhile.
+    /// Prepares the terminal again after the program was stopped. Another program may have changed the terminal
+    /// settings in the meantime.
     ///
     /// # Errors
     /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn resume(&mut self, mouse: bool) -> io::Result<()> {
-        // Enabling raw mode has no effect while it counts as enabled.
+        // Raw mode must be disabled first. While the library considers raw mode enabled, enabling it has no effect.
         let _ = disable_raw_mode();
         enter_console_mode()?;
         self.set_mouse_capture(mouse);
         self.clear()
     }
 
-    /// Draws a frame with `paint`, which returns the position of the cursor.
+    /// Draws a frame. `paint` fills the buffer and returns the position of the cursor.
     ///
     /// # Errors
     /// Writing to the terminal fails.
@@ -94,20 +94,20 @@ impl TerminalScreen {
         execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)
     }
 
-    /// Clears the screen, so that the next frame is drawn completely.
+    /// Clears the terminal, so that the next frame is drawn completely.
     ///
     /// # Errors
     /// Writing to the terminal fails.
     pub fn clear(&mut self) -> io::Result<()> {
-        // The clear function of the library asks for the cursor position, but the thread that reads keys would
-        // receive the answer.
+        // The clear function of the library is not used. That function requests the cursor position, but the thread
+        // that reads keys would receive the answer.
         let size = self.terminal.size()?;
         self.terminal.resize(size.into())
     }
 
-    /// Captures the mouse, or leaves it to the terminal, which then selects text with it.
+    /// Captures the mouse, or leaves the mouse to the terminal for selecting text.
     pub fn set_mouse_capture(&mut self, taken: bool) {
-        // Terminals without a mouse ignore it.
+        // Terminals without a mouse ignore the escape sequence.
         let _ = match taken {
             true => execute!(self.terminal.backend_mut(), EnableMouseCapture),
             false => execute!(self.terminal.backend_mut(), DisableMouseCapture),
@@ -116,7 +116,7 @@ impl TerminalScreen {
 
     /// Copies text to the clipboard, if the terminal permits it.
     pub fn copy_to_clipboard(&mut self, text: &str) {
-        // Terminals without a clipboard ignore it; the text is on the screen anyway.
+        // Terminals without a clipboard ignore the escape sequence. Errors are ignored, because the text is also on the screen.
         let _ = execute!(self.terminal.backend_mut(), CopyToClipboard::to_clipboard_from(text));
     }
 }
@@ -133,10 +133,10 @@ fn enter_console_mode() -> io::Result<()> {
     execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, EnableMouseCapture)
 }
 
-/// Restores the terminal. May be called repeatedly.
+/// Restores the terminal. This function may be called repeatedly.
 fn restore_terminal() {
     let mut out = io::stdout();
-    // Errors are ignored, because the terminal may be gone.
+    // Errors are ignored, because the terminal may be closed already.
     let _ = execute!(
         out,
         DisableMouseCapture,

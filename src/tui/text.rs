@@ -1,15 +1,15 @@
-//! Wrapping of text, and short formats of figures.
+//! Functions that wrap text and format figures in short form.
 
 use unicode_width::UnicodeWidthStr;
 
 use novamind_base::formatting::grouped_number;
 
-/// Wraps text to a width, between words if possible.
+/// Wraps text to a width. Lines are broken between words if possible.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = Vec::new();
     for paragraph in text.lines() {
-        // Text that fits is kept, because spaces may align columns.
+        // A paragraph that fits is kept unchanged, because spaces may align columns.
         if paragraph.width() <= width {
             lines.push(paragraph.to_owned());
             continue;
@@ -41,7 +41,7 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Formats a change with its direction: `▲ 120`, `▼ 3`, `=`.
+/// Formats a change with a sign for its direction: `▲ 120`, `▼ 3`, `=`.
 pub fn format_change(change: f64, shown: &str) -> String {
     match change {
         change if change > 0.0 => format!("▲ {shown}"),
@@ -55,15 +55,15 @@ pub fn format_count(number: f64, noun: &str) -> String {
     novamind_base::formatting::pluralize(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
 }
 
-/// Formats a number with as many decimals as it needs, at most two.
+/// Formats a number with as many decimals as necessary, at most two.
 pub fn format_number(value: f64) -> String {
-    // An empty sum is minus zero.
+    // The sum of an empty iterator is minus zero. Adding zero removes its sign.
     let value = value + 0.0;
     let decimals = if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 };
     grouped_number(value, decimals)
 }
 
-/// Returns the first wording that fits into a width, or the last one.
+/// Returns the first wording that fits into a width, otherwise the last wording.
 pub fn first_fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> String {
     let mut last = String::new();
     for wording in wordings {
@@ -75,7 +75,7 @@ pub fn first_fitting(wordings: impl IntoIterator<Item = String>, width: usize) -
     last
 }
 
-/// Joins pieces with dots and wraps the result between pieces. Only a piece wider than a line is split.
+/// Joins pieces with dots and wraps the result between pieces. A piece is split only if it is wider than a line.
 pub fn join_into_lines(pieces: &[String], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for piece in pieces {

@@ -3,44 +3,44 @@
 use ratatui::style::{Color, Modifier, Style};
 use serde::Deserialize;
 
-/// The role of a piece of the screen.
+/// The role of a text or symbol on the screen, which determines its style.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Ordinary text.
     Text,
-    /// Less important.
+    /// Less important text.
     Dim,
-    /// More important.
+    /// Emphasized text.
     Strong,
     /// Titles of panes.
     Title,
-    /// Borders.
+    /// Borders of panes.
     Border,
     /// Border of the focused pane.
     Focus,
     /// Selected row of the focused list.
     Selection,
-    /// Selected row of another list.
+    /// Selected row of a list without the focus.
     InactiveSelection,
     /// Tabs of screens.
     Tab,
     /// Tab of the current screen.
     ActiveTab,
-    /// Keys.
+    /// Key labels.
     Key,
-    /// An improvement.
+    /// Improvements and favorable values.
     Good,
-    /// A deterioration or a rejection.
+    /// Deteriorations, unfavorable values and errors.
     Bad,
-    /// Requires attention.
+    /// Text that requires attention.
     Warning,
-    /// Column heads.
+    /// Column headings.
     Header,
-    /// Text fields.
+    /// Content of text fields.
     Field,
-    /// A value that differs from the current one.
+    /// Values that differ from the current setting.
     Changed,
-    /// Chart series, by number.
+    /// Series of a chart, by number.
     Series(usize),
     /// Forecast intervals.
     Fan,
@@ -107,16 +107,16 @@ struct ThemeFile {
     comment: RoleStyle,
 }
 
-/// A theme.
+/// A color theme: the styles of all roles.
 #[derive(Debug, Clone)]
 pub struct Theme {
-    /// Name.
+    /// Name of the theme.
     pub name: String,
     styles: ThemeFile,
 }
 
 impl Theme {
-    /// Returns a bundled theme, or `None` if there is none of this name.
+    /// Returns the bundled theme with a name, or `None` if there is no such theme.
     pub fn bundled(name: &str) -> Option<Theme> {
         let (_, text) = novamind_assets::themes().into_iter().find(|(bundled, _)| *bundled == name)?;
         Some(Theme::parse(name, text).expect("a test parses the bundled themes"))
@@ -188,7 +188,7 @@ mod tests {
             assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
         }
         assert!(!mono.has_distinct_series_colors(2));
-        // Color 8 is the background on many palettes, so no text uses it.
+        // Color 8 equals the background in many terminal palettes, so no text uses this color.
         for name in ["dark", "light"] {
             let theme = Theme::bundled(name).expect(name);
             for role in [Role::Text, Role::Dim, Role::Tab, Role::Key, Role::Header, Role::Comment] {

@@ -1,25 +1,25 @@
-//! Email addresses of enterprises: a pure function of the customer number
+//! Email addresses of enterprises, computed from the customer number
 //! (docs/mechanics/market/social/texts.md#addresses).
 
 use md5::{Digest, Md5};
 
 use novamind_world::params::EmailParts;
 
-/// Returns indexes into the word lists: first name, last name, company, suffix, and the form of the local part.
+/// Returns an index for each word list (first name, last name, company, suffix) and for the form of the local part.
 fn word_indexes(customer: u32) -> [u32; 5] {
     let digest = Md5::digest(format!("email_{customer}"));
     let h = u32::from_be_bytes([digest[0], digest[1], digest[2], digest[3]]);
     [h % 48, h / 48 % 48, h / 2_304 % 20, h / 46_080 % 6, h / 1_000 % 4]
 }
 
-/// Returns the word for the enterprise in its address.
+/// Returns the company word in the address of an enterprise.
 pub(super) fn enterprise_word(customer: u32, parts: &EmailParts) -> &str {
     let [_, _, company, ..] = word_indexes(customer);
     let words = &parts.company_domains;
     words.get(company as usize % words.len().max(1)).map_or("", String::as_str)
 }
 
-/// Returns the address of an enterprise.
+/// Returns the email address of an enterprise.
 pub fn enterprise_address(customer: u32, parts: &EmailParts) -> String {
     let [first, last, company, suffix, form] = word_indexes(customer);
     let word = |list: &[String], at: u32| list[at as usize % list.len()].to_lowercase();

@@ -1,6 +1,6 @@
-//! Names of enterprises: a pure function of the run's seed and the customer number. They are computed for
-//! display and never stored (docs/mechanics/market/social/texts.md#names-of-enterprises). A name therefore
-//! reveals nothing about its enterprise.
+//! Names of enterprises, computed for display from the run's seed and the customer number
+//! (docs/mechanics/market/social/texts.md#names-of-enterprises). Names are never stored, and a name reveals nothing
+//! about its enterprise.
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::address::enterprise_word;
 use novamind_world::params::EmailParts;
 
-/// The words of names, from `assets/voice/companies.toml`.
+/// Words of enterprise names, from `assets/voice/companies.toml`.
 #[derive(Debug, Deserialize)]
 struct NameWords {
     heads: Vec<String>,
@@ -25,10 +25,10 @@ impl NameWords {
     }
 }
 
-/// Suffixes of company words in addresses.
+/// Legal forms that can follow the company word in an address.
 const LEGAL_FORMS: [&str; 4] = ["group", "works", "hq", "co"];
 
-/// The names of the enterprises of a run.
+/// A generator for the names of a run's enterprises.
 #[derive(Clone)]
 pub struct EnterpriseNames {
     seed: u64,
@@ -37,17 +37,17 @@ pub struct EnterpriseNames {
 
 impl fmt::Debug for EnterpriseNames {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "CompanyNames({})", self.seed)
+        write!(out, "EnterpriseNames({})", self.seed)
     }
 }
 
 impl EnterpriseNames {
-    /// Creates the names of a run from its seed and its address words.
+    /// Creates the generator of a run from the run's seed and address words.
     pub fn new(seed: u64, email: &EmailParts) -> EnterpriseNames {
         EnterpriseNames { seed, email: Arc::new(email.clone()) }
     }
 
-    /// Returns the name of an enterprise. It starts with the word of its address, or combines it with another word.
+    /// Returns the name of an enterprise, which consists of the company word of its address and sometimes another word.
     pub fn name(&self, customer: u32) -> String {
         let first = name_from_address_word(enterprise_word(customer, &self.email));
         let mut draw =
@@ -61,12 +61,12 @@ impl EnterpriseNames {
         }
     }
 
-    /// Returns the name with the customer number that tool calls and SQL use: `Northgate Ashwick #16064`.
+    /// Returns the name of an enterprise with the customer number that tool calls and SQL use: `Northgate Ashwick #16064`.
     pub fn name_with_number(&self, customer: u32) -> String {
         format!("{} #{customer}", self.name(customer))
     }
 
-    /// Replaces `customer 16064` by the name and the number in a recorded text.
+    /// Replaces `customer 16064` in a recorded text by the name and the number of the enterprise.
     pub fn insert_names(&self, text: &str) -> String {
         const WORD: &str = "ustomer ";
         let mut output = String::with_capacity(text.len() + 16);
@@ -91,7 +91,7 @@ impl EnterpriseNames {
     }
 }
 
-/// Returns the company word of an address in title case, without a suffix.
+/// Returns the company word of an address in title case, without a legal form.
 fn name_from_address_word(word: &str) -> String {
     let short = LEGAL_FORMS.iter().find_map(|form| word.strip_suffix(form).filter(|rest| rest.len() > 3));
     let mut letters = short.unwrap_or(word).chars();
@@ -141,7 +141,7 @@ mod tests {
         let same = of_seed(42).iter().zip(of_seed(7)).filter(|(one, other)| **one == *other).count();
         assert!(same < 5, "{same} of 199 have the same name in two runs");
         assert_eq!(names(42).name_with_number(16_064), format!("{} #16064", names(42).name(16_064)));
-        // Users know enterprises by these names, so a change of the words renames all of them.
+        // Users recognize enterprises by their names, and a change of the word lists would rename all enterprises.
         assert_eq!(names(42).name(1), "Westhaven Wolgrove");
     }
 

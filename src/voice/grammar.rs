@@ -1,16 +1,16 @@
-//! A grammar for sentences: rules with alternatives that are expanded with a context
+//! A grammar for sentences: rules with alternatives, which are expanded with the values and tags of a context
 //! (docs/mechanics/market/social/texts.md#grammar).
 //!
 //! A grammar is a TOML file. `given` lists the values that every context has, `maybe` optional values, and `tags`
 //! possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
 //!
-//! | writing | means |
+//! | notation | meaning |
 //! |---|---|
-//! | `(new, !company) text` | only while the tag `new` holds and `company` does not |
-//! | `{praise}` | the rule or the value of that name |
-//! | `{work:group}` | the rule `work.S1` if the value `group` is `S1` and there is such a rule, else `work` |
-//! | `[one\|two\|]` | one of these, here possibly nothing; `[one]` is short for `[one\|]` |
-//! | `a/an` | the article that fits the next word |
+//! | `(new, !company) text` | only if the tag `new` is set and the tag `company` is not set |
+//! | `{praise}` | the rule or the value with this name |
+//! | `{work:group}` | the rule `work.S1` if the value `group` is `S1` and the rule exists, otherwise the rule `work` |
+//! | `[one\|two\|]` | one of the alternatives, here possibly nothing; `[one]` is short for `[one\|]` |
+//! | `a/an` | the correct article for the next word |
 //! An alternative with a missing value is skipped. Parsing checks that every symbol is known, that no rule
 //! contains itself, and that every rule can be expanded without optional values.
 
@@ -24,7 +24,7 @@ use std::fmt;
 
 pub use polish::polish;
 
-/// The values and conditions of a text.
+/// The values and tags with which a text is expanded.
 #[derive(Debug, Clone, Default)]
 pub struct Context {
     values: BTreeMap<&'static str, String>,
@@ -32,13 +32,13 @@ pub struct Context {
 }
 
 impl Context {
-    /// Adds a value.
+    /// Adds a named value.
     pub fn with(mut self, name: &'static str, value: impl Into<String>) -> Context {
         self.values.insert(name, value.into());
         self
     }
 
-    /// Adds a value if there is one.
+    /// Adds a named value if `value` is `Some`.
     pub fn with_optional(self, name: &'static str, value: Option<impl Into<String>>) -> Context {
         match value {
             Some(value) => self.with(name, value),
@@ -54,7 +54,7 @@ impl Context {
         self
     }
 
-    /// Returns the value with this name.
+    /// Returns the value with this name, or `None` if the context has no such value.
     pub fn value(&self, name: &str) -> Option<&str> {
         self.values.get(name).map(String::as_str)
     }
@@ -71,11 +71,11 @@ impl Context {
     }
 }
 
-/// Parsed and validated rules.
+/// A parsed and validated grammar.
 #[derive(Debug, Clone)]
 pub struct Grammar {
     rules: BTreeMap<String, Vec<Alternative>>,
-    /// Declared names, to check the context.
+    /// Declared names. Tests compare them with the names of a context.
     #[cfg(test)]
     known: BTreeSet<String>,
 }
@@ -94,7 +94,7 @@ impl std::error::Error for GrammarError {}
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Alternative {
-    /// Tags and whether they have to be set or not set.
+    /// Tags, each with `true` if the tag must be set and `false` if it must not be set.
     required_tags: Vec<(String, bool)>,
     parts: Vec<Part>,
 }
@@ -102,11 +102,11 @@ struct Alternative {
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Part {
     Text(String),
-    /// A rule.
+    /// Name of a rule.
     Rule(String),
-    /// A value of the context.
+    /// Name of a value of the context.
     Value(String),
-    /// A rule whose last name is a value of the context.
+    /// A rule whose name ends in a value of the context.
     ByValue {
         rule: String,
         by: String,
@@ -114,28 +114,27 @@ enum Part {
     Choice(Vec<Vec<Part>>),
 }
 
-/// Chooses an alternative: receives their number, at least 1, and returns a smaller index.
+/// A function that chooses an alternative. It receives the number of alternatives, at least 1, and returns a smaller index.
 pub type Chooser<'a> = &'a mut dyn FnMut(usize) -> usize;
 
 impl Grammar {
     /// Parses a grammar.
     ///
     /// # Errors
-    /// If the text is not TOML of this form, a symbol is unknown, or a rule contains itself or cannot always
-    /// be expanded.
+    /// If the text is not a TOML grammar, a symbol is unknown, or a rule contains itself or cannot always be expanded.
     pub fn parse(source: &str) -> Result<Grammar, GrammarError> {
         parse::parse(&[source])
     }
 
-    /// Parses a grammar from several files, which share their names and rules.
+    /// Parses a grammar from several files that share names and rules.
     ///
     /// # Errors
-    /// As [`Grammar::parse`], or if two files define the same rule.
+    /// The errors of [`Grammar::parse`], or if two files define the same rule.
     pub fn parse_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
         parse::parse(sources)
     }
 
-    /// Returns whether a rule exists.
+    /// Returns whether the grammar has a rule with this name.
     pub fn has_rule(&self, rule: &str) -> bool {
         self.rules.contains_key(rule)
     }
@@ -152,8 +151,8 @@ impl Grammar {
         count::count_phrasings(self, rule, context)
     }
 
-    /// Expands a rule. Within one text, an alternative is repeated only after all others were used. An
-    /// unknown rule results in an empty text; parsing ensures that no rule refers to one.
+    /// Expands a rule. Within one text, an alternative is repeated only after all other alternatives of its rule. An
+    /// unknown rule expands to an empty text.
     pub fn expand(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
         let mut writer =
             Expansion { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };
@@ -182,7 +181,7 @@ impl Alternative {
     }
 }
 
-/// Returns whether all values outside of choices are present.
+/// Returns whether the context has all values that are used outside of choices.
 fn has_required_values(parts: &[Part], context: &Context) -> bool {
     parts.iter().all(|part| match part {
         Part::Value(name) => context.value(name).is_some(),

@@ -1,5 +1,5 @@
-//! Text for facts: posts, notices, readings of the economy, messages of enterprises, addresses; and the judge
-//! of the player's posts. This crate converts facts to text and text to scores; it never changes the world.
+//! Writes the texts of the simulated world: posts, notices, PMI readings, messages and addresses of enterprises. Also
+//! judges the player's posts. This crate never changes the world.
 
 pub mod address;
 mod enterprise_names;

@@ -1,10 +1,10 @@
-//! Messages of enterprises and the system's record of a deal
+//! Messages of enterprises, and the system message that confirms a deal
 //! (docs/mechanics/market/social/texts.md#messages-of-enterprises).
 //!
-//! A message consists of an opening, a core with the facts, and an ending in the decision style of the
-//! enterprise. Opening and core are selected by the running number of the message with a stride that is
-//! coprime to the number of pairs. Messages of a situation therefore repeat only after all pairs, more than
-//! sixty each, have been used. A message reveals only what the offers and the profile show anyway.
+//! A message consists of an opening, a core with the facts, and an ending that fits the decision style of the
+//! enterprise. The number of the message selects the pair of opening and core. The stride between consecutive messages
+//! is coprime to the number of pairs, so a pair repeats only after all other pairs. Every situation has more than
+//! sixty pairs. A message reveals nothing that the offers and the profile do not show.
 
 mod phrases;
 
@@ -15,17 +15,17 @@ use novamind_world::events::{ThreadTurn, TurnContent};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Personas;
 
-/// Step from one message to the next through the pairs of opening and core.
+/// Step from the pair of opening and core of one message to the pair of the next message.
 const STRIDE: u32 = 31;
 
-/// A counter-offer is near if it is below the offered price by less than the first share, and far if by more
-/// than the second.
+/// Gaps between offered and asked price, as shares of the offered price. A gap below the first value is near; a gap
+/// above the second value is far.
 const PRICE_GAPS: (f64, f64) = (0.10, 0.35);
 
-/// Turn from which an enterprise may mention that the negotiation is long.
+/// First turn in which an enterprise can mention that the negotiation is long.
 const LONG_NEGOTIATION_TURN: u32 = 6;
 
-/// Returns the text of a turn; empty if it has no text.
+/// Returns the text of a turn, or an empty string for a turn without text.
 pub fn message(turn: &ThreadTurn, personas: &Personas) -> String {
     match &turn.content {
         TurnContent::Opening | TurnContent::Offer(_) | TurnContent::Rejection => String::new(),
@@ -57,7 +57,7 @@ fn format_price(price: f64) -> String {
     format!("${}", grouped_number(price, 2))
 }
 
-/// Returns the phrases for the distance between the two prices.
+/// Returns the phrases for the gap between the asked and the offered price.
 fn phrases_for_gap(asked: f64, offered: f64) -> &'static Phrases {
     let gap = if offered > 0.0 { (offered - asked) / offered } else { 0.0 };
     match gap {
@@ -83,7 +83,7 @@ fn fill_phrases(
     format!("{} {text} {}", phrases.openings[opening], closing_sentence(turn, personas))
 }
 
-/// Returns the closing sentence: the decision style, the primary concern, or the length of the negotiation.
+/// Returns a closing sentence about the decision style, the primary concern, or the length of the negotiation.
 fn closing_sentence(turn: &ThreadTurn, personas: &Personas) -> String {
     let profile = EnterpriseProfile::from_turn(turn, personas);
     let settled = matches!(turn.content, TurnContent::Acceptance(_));
@@ -137,7 +137,7 @@ enum DecisionStyle {
 }
 
 impl DecisionStyle {
-    /// Returns the decision style described by a profile.
+    /// Returns the decision style for the words of a profile.
     fn from_words(decision: &str) -> DecisionStyle {
         let has = |words: &[&str]| words.iter().any(|word| decision.contains(word));
         if has(&["committee-light", "fast", "quick", "pragmatic", "field-tested"]) {
@@ -196,7 +196,7 @@ mod tests {
     fn no_two_of_sixty_messages_are_equal() {
         let personas = Params::bundled().personas;
         for content in situations() {
-            // All messages have the same situation, which is the hardest case.
+            // All messages have the same situation, so repetition is most likely.
             let mut recent: VecDeque<String> = VecDeque::new();
             let mut all = BTreeSet::new();
             for number in 0..500 {

@@ -1,18 +1,18 @@
-//! Texts of inbox notices, one line each.
+//! One-line texts of inbox notices.
 
 use novamind_base::formatting::grouped_number;
 use novamind_world::events::{Notice, Reaction};
 use novamind_world::identifiers::Group;
 use novamind_world::params::CeoPosts;
 
-/// The enterprise that a notice is about.
+/// The enterprise that a notice concerns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoticeCustomer {
-    /// Customer number.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// Group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// Whole seats.
+    /// Number of whole seats of the enterprise.
     pub seats: u32,
 }
 
@@ -28,7 +28,7 @@ impl NoticeCustomer {
     }
 }
 
-/// Returns the text of a notice, which names its enterprise if it is known.
+/// Returns the text of a notice. The text names the enterprise if `party` is `Some`.
 pub fn notice_text(notice: &Notice, party: Option<NoticeCustomer>) -> String {
     let who = party.map_or("A company".to_owned(), |party| party.describe());
     match notice {
@@ -36,7 +36,7 @@ pub fn notice_text(notice: &Notice, party: Option<NoticeCustomer>) -> String {
         Notice::LeadLostByTimeout { days } => {
             format!("{who} got no answer for {days} days. The lead is lost.")
         }
-        // Worded by the database, because it is one fact for several days.
+        // The database writes this text, because one notice covers several days.
         Notice::LeadLossRepeated { .. } => String::new(),
         Notice::LeadSilent => format!("{who} declines and answers no more. The lead is lost."),
         Notice::CounterOffer { customer } => format!("Customer {customer} answers with a price of its own."),
@@ -71,14 +71,14 @@ pub fn notice_text(notice: &Notice, party: Option<NoticeCustomer>) -> String {
                 "Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})"
             )
         }
-        // Callers that know the text of the post use `reaction_text` instead.
+        // Callers that have the text of the post call `reaction_text` instead.
         Notice::OwnPostSeen(reaction) => {
             format!("Your post was seen {} {}", reaction.views, times_noun(reaction.views))
         }
     }
 }
 
-/// Returns the notice about a post of the player: views, start of the text, tone, strongest reactions.
+/// Returns the text of the notice about a post of the player: views, start of the post, tone and strongest reactions.
 pub fn reaction_text(content: &str, reaction: &Reaction, posts: &CeoPosts) -> String {
     let shown = posts.notification_preview_chars as usize;
     let mut preview: String = content.chars().take(shown).collect();
@@ -95,7 +95,7 @@ pub fn reaction_text(content: &str, reaction: &Reaction, posts: &CeoPosts) -> St
         .iter()
         .flatten()
         .map(|(group, effect)| {
-            // A reaction that rounds to zero has no sign.
+            // An effect that rounds to zero has no sign.
             let effect = if effect.abs() < 0.05 { 0.0 } else { *effect };
             format!("{group} {effect:+.1}")
         })

@@ -1,8 +1,8 @@
-//! Descriptions of published readings of the economy, three or four sentences each.
+//! Descriptions of published PMI readings, in three or four sentences.
 
 use novamind_world::events::{Reading, Trend};
 
-/// Returns the description of a reading.
+/// Returns the description of a PMI reading.
 pub fn reading_text(reading: &Reading) -> String {
     let change = reading.change;
     let movement = match change {

@@ -1,4 +1,4 @@
-//! Background work that always produces an answer.
+//! Background work that reports a result even after a panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
@@ -7,8 +7,8 @@ use std::sync::{Mutex, MutexGuard};
 use crate::message::{Message, Response};
 use novamind_tools::Rejection;
 
-/// Runs `work` on its own thread and reports its result. A panic is reported as a rejection, so that no pane waits
-/// forever. Reports nothing if `work` returns `None` because the user has cancelled it.
+/// Runs `work` on a new thread and reports its result. Reports a panic as a rejection, so that no pane waits forever.
+/// Reports nothing if `work` returns `None` because the user has cancelled the work.
 pub fn answer_on_thread<T>(
     news: Sender<Message>,
     work: impl FnOnce() -> Result<Option<T>, Rejection> + Send + 'static,
@@ -22,10 +22,10 @@ pub fn answer_on_thread<T>(
     });
 }
 
-/// Runs `work`, and returns a rejection if it panics.
+/// Runs `work`, and returns a rejection if `work` panics.
 ///
 /// # Errors
-/// `internal_error`: `work` has panicked. Values that it used may be inconsistent.
+/// `internal_error`: `work` has panicked. Values that `work` used may be inconsistent.
 pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Rejection> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let reason = panic_message(&*panic);
@@ -40,7 +40,7 @@ pub(super) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("an unknown reason").to_owned()
 }
 
-/// Locks a cache. Resets it if a panic may have left it inconsistent.
+/// Locks a cache. Resets the cache if a panic may have left it inconsistent.
 pub(super) fn lock_cache<T: Default>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
     kept.lock().unwrap_or_else(|poisoned| {
         let mut guard = poisoned.into_inner();
@@ -66,7 +66,7 @@ mod tests {
         let answered = |work: fn() -> Result<Option<u32>, Rejection>| {
             let (sender, news) = channel();
             answer_on_thread(sender, work, report);
-            // The channel closes once the thread has ended.
+            // The channel closes after the thread has ended.
             news.into_iter()
                 .map(|message| match message {
                     Message::Response(Response::FilesWritten(written)) => written,

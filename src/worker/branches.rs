@@ -1,4 +1,4 @@
-//! What-if analysis on its own thread, while the run continues.
+//! What-if analysis on a background thread, while the run continues.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -17,34 +17,35 @@ use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Access, Session};
 use novamind_tools::Rejection;
 
-/// A question about the recorded decisions of the run.
+/// A question about changed decisions of the open run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchesQuestion {
     /// List the decisions that can be changed.
     Decisions,
-    /// Compare alternatives from a week on; with futures, also for new random draws.
+    /// Compare alternatives that differ from the recorded decisions from a week on. With futures, also simulate new
+    /// random draws.
     Compare {
-        /// The first week that the alternatives change.
+        /// First week in which the alternatives differ from the recorded decisions.
         week: u32,
-        /// The edits of each alternative.
+        /// The decision edits of each alternative.
         alternatives: Vec<Vec<DecisionEdit>>,
-        /// Number of futures per branch.
+        /// Number of futures per branch; `None` for no futures.
         futures: Option<u32>,
     },
 }
 
-/// The answer.
+/// The answer to a [`BranchesQuestion`].
 #[derive(Debug, Clone)]
 pub enum BranchesAnswer {
-    /// The decisions of the run, and its days per week.
+    /// The recorded decisions of the run, and the number of days per week.
     Decisions(Vec<RecordedDecision>, u32),
-    /// The compared branches, and the futures.
+    /// The compared branches, and the futures if they were requested.
     Compared(Box<BranchComparison>, Option<Box<Futures>>),
 }
 
 impl Question for BranchesQuestion {
     type Answer = BranchesAnswer;
-    /// Simulated days, and all days to simulate.
+    /// Number of simulated days, and number of all days to simulate.
     type Progress = (usize, usize);
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
@@ -68,14 +69,14 @@ impl Question for BranchesQuestion {
 }
 
 impl SessionThread {
-    /// Creates a branch that keeps the recorded decisions with some edits, and opens it.
+    /// Creates a branch that keeps the recorded decisions except for some edits, and opens the branch.
     pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
         let Some(open) = &mut self.active_run else { return };
         let mode = open.session().manifest().mode.branch_mode();
         let mut on = |_| ControlFlow::Continue(());
         let adopted = match open {
             ActiveRun::Live(session) => create_branch_with_decisions(session, week, edits, mode, &mut on),
-            // A playback has not read the record to its end.
+            // The session of a playback ends at the current position, so open the complete run.
             ActiveRun::Playback(_) => recorded_folder(open).and_then(|folder| {
                 let whole = Session::open(&folder, Access::Read, false);
                 let whole = whole.map_err(|error| Rejection::new("not_readable", error.to_string()))?;
@@ -108,7 +109,7 @@ fn answer_question(
 ) -> Result<Option<BranchesAnswer>, Rejection> {
     let instant = Mutex::new(Instant::now());
     let progress = |done, all| {
-        // Every thread reports every day, which is more often than the screen needs.
+        // Every thread reports every day, which is more often than necessary.
         if let Ok(mut last_report) = instant.try_lock()
             && last_report.elapsed() >= DAY_REPORT_INTERVAL
         {

@@ -1,4 +1,4 @@
-//! Causes of changes of figures, computed on their own thread while the run continues.
+//! Causes of changes of figures, computed on a background thread while the run continues.
 
 use std::path::{Path, PathBuf};
 
@@ -11,12 +11,12 @@ use novamind_insight::{
 };
 use novamind_tools::Rejection;
 
-/// Asks for the causes of a figure's change in a week.
+/// A question for the causes of a figure's change in a week.
 #[derive(Debug, Clone)]
 pub struct CausesQuestion {
-    /// The figure.
+    /// The figure that changed.
     pub quantity: WeekQuantity,
-    /// The week.
+    /// The week in which the figure changed.
     pub week: u32,
 }
 
@@ -29,7 +29,7 @@ impl Question for CausesQuestion {
         let question = WeekQuestion { quantity: self.quantity, week: Some(self.week) };
         let mut folder = recorded_folder(open);
         if question.quantity.is_hidden() {
-            // The inspection is recorded before anything is shown.
+            // Record the inspection before hidden state is shown.
             let looked = thread
                 .inspection_session(false)
                 .and_then(|session| record_figure_inspection(session, &question));
@@ -49,7 +49,7 @@ impl Question for CausesQuestion {
 pub(super) fn recorded_folder(open: &ActiveRun) -> Result<PathBuf, Rejection> {
     match open {
         ActiveRun::Live(session) => cause_analysis_folder(session),
-        // Permissions depend on the whole record: the run may have ended after this position.
+        // Permissions depend on the whole record, because the run may have ended after this position.
         ActiveRun::Playback(playback) => playback.session().folder().map(Path::to_owned).ok_or_else(|| {
             Rejection::new("not_possible", "not possible: this trajectory file has no run folder")
         }),

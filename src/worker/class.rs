@@ -11,7 +11,7 @@ use novamind_report::class::{ClassDisplayOptions, ClassView};
 use novamind_session::{Access, Session};
 
 impl SessionThread {
-    /// Reads a class. Reports an error if it lacks data for the requested display.
+    /// Reads a collected class. Reports an error if data for the requested display is missing.
     pub(super) fn read_class(&self, folder: &Path, display_options: ClassDisplayOptions) {
         let read = CollectedClass::read(&expand_home(folder)).map_err(|error| error.to_string());
         let checked = read.and_then(|class| {
@@ -21,7 +21,7 @@ impl SessionThread {
         self.send_response(Response::ClassRead(Box::new(checked)));
     }
 
-    /// Starts or resumes the lesson of a handout. The runs folder becomes that of its student.
+    /// Starts or resumes the lesson of a handout. The student's runs folder becomes the current runs folder.
     pub(super) fn open_handout(&mut self, path: &Path) {
         let placed = Handout::read(&expand_home(path)).and_then(|handout| {
             let (base, whose) = common_runs_folder(&self.initial_runs_folder);

@@ -1,4 +1,4 @@
-//! The company as displayed by the screens. The session thread creates it after every change.
+//! The company as displayed by the screens. The session thread creates a new value after every change.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -28,84 +28,84 @@ use novamind_tools::{
     ParameterNumbers, PriceList, ResearchProjects, ToolId,
 };
 
-/// The company as a player may know it.
+/// The data that the screens display about the company. Hidden values are included only after an inspection.
 #[derive(Debug, Clone)]
 pub struct DisplayedCompany {
-    /// Key figures.
+    /// Summary of the company.
     pub observation: Observation,
-    /// Run folder.
+    /// Folder of the run; `None` for a run in memory.
     pub folder: Option<PathBuf>,
-    /// First day after the next week, or the last day.
+    /// Next decision day, or the last day of the run.
     pub next_decision_day: u32,
-    /// Cash at the end of each day, day 0 first.
+    /// Cash at the end of each day, starting with day 0.
     pub cash_by_day: Vec<f64>,
-    /// Figures of every week.
+    /// Figures of every simulated week.
     pub weeks: Vec<WeekFigures>,
-    /// Report of the last week.
+    /// Report on the last week.
     pub last_week: Option<WeekReport>,
-    /// Negotiation funnel, by known group.
+    /// Negotiation funnel of every known group.
     pub funnels: Vec<Funnel>,
-    /// Fit of the plans with every known group.
+    /// Fit of the plans for every known group.
     pub fits: Vec<Fit>,
     /// Costs per lead, by channel and group.
     pub lead_costs: Vec<LeadCost>,
-    /// Figures by group for every week.
+    /// Figures of all groups for every simulated week.
     pub group_weeks: Arc<[ByGroup<GroupWeek>]>,
-    /// Action items, the most urgent first.
+    /// Action items, most urgent first.
     pub action_items: Vec<ActionItem>,
-    /// Notices of the last week: day and text.
+    /// Notices of the last week, each with its day and text.
     pub notices: Vec<(u32, String)>,
     /// Delivered quality of every known group.
     pub quality: Vec<DeliveredQuality>,
-    /// Base quality before development, and the quality that general development has added.
+    /// Base quality, and the general bonus from development.
     pub quality_base: (f64, f64),
     /// Naive forecasts of cash.
     pub naive_forecasts: Forecasts,
-    /// Scores of past forecasts.
+    /// Scores of past forecasts, by horizon.
     pub forecast_scores: Vec<ForecastScore>,
-    /// Journal of past actions.
+    /// Journal of all confirmed actions.
     pub journal: Vec<JournalEntry>,
-    /// Past queries, the newest last.
+    /// SQL statements of past queries, newest last.
     pub past_queries: Vec<String>,
-    /// Last day on which each screen was viewed in an earlier session.
+    /// Day on which the user last left each screen in an earlier session.
     pub last_viewed_days: BTreeMap<String, u32>,
-    /// Notes of the run.
+    /// The player's notes.
     pub notes: String,
-    /// Current arguments of every tool.
+    /// Arguments of every tool that would set the current values.
     pub settings: BTreeMap<ToolId, Map<String, Value>>,
-    /// Prices of models and capacity.
+    /// Prices of model tiers and capacity tiers.
     pub price_list: PriceList,
     /// Available and started R&D projects.
     pub projects: ResearchProjects,
-    /// Mean duration and gain of each R&D tier, the first tier first.
+    /// Mean duration and gain of each R&D tier, lowest tier first.
     pub research_means: Vec<ResearchMeans>,
-    /// Posts of others, as returned by `get_social_posts`.
+    /// Posts of other authors, as returned by `get_social_posts`.
     pub posts: Posts,
-    /// The known groups and the economy.
+    /// Overview of the known groups and the economy.
     pub market: MarketOverview,
     /// Names of enterprises.
     pub company_names: EnterpriseNames,
-    /// Insights of every known group.
+    /// Insights about every known group.
     pub insights: BTreeMap<Group, GroupInsights>,
     /// Limits of tool arguments.
     pub tool_limits: ToolLimits,
-    /// Parameters that texts mention.
+    /// Parameter values that texts of the tools quote.
     pub numbers: Arc<ParameterNumbers>,
     /// Running market studies.
     pub running_studies: Vec<RunningStudy>,
-    /// Remarks on the opening of the run.
+    /// Messages about problems found when the run was opened.
     pub remarks: Vec<String>,
-    /// Whether it is a position of a playback, which is read-only.
+    /// Whether the company is shown at a position of a playback, which is read-only.
     pub is_playback: bool,
     /// Whether hidden state may be shown.
     pub can_inspect: bool,
-    /// True values of the day, while the screens show them.
+    /// True values of the day; present only while the screens show true values.
     pub hidden_values: Option<Arc<HiddenValues>>,
     /// Session rules of the run.
     pub rules: SessionRules,
-    /// Study that the run belongs to.
+    /// Study to which the run belongs.
     pub study: Option<StudyStamp>,
-    /// State of the lesson that the run belongs to.
+    /// State of the lesson to which the run belongs.
     pub lesson: Option<LessonStatus>,
 }
 
@@ -115,7 +115,7 @@ impl DisplayedCompany {
         DisplayedCompany::update_from_session(session, None)
     }
 
-    /// Returns the current company of a session. Data that is unchanged since `before` is shared.
+    /// Returns the current company of a session. Unchanged data is shared with `before`.
     pub fn update_from_session(session: &Session, before: Option<&DisplayedCompany>) -> DisplayedCompany {
         let settings = ToolId::all().map(|tool| (tool, tool.tool().current_arguments(session.settings())));
         DisplayedCompany {
@@ -169,7 +169,7 @@ impl DisplayedCompany {
         DisplayedCompany { lesson, ..DisplayedCompany::update_from_session(session, before) }
     }
 
-    /// Returns the lesson while it restricts the user.
+    /// Returns the lesson if it currently restricts the user.
     pub fn running_lesson(&self) -> Option<&LessonStatus> {
         self.lesson.as_ref().filter(|_| self.is_running() && !self.is_playback)
     }
@@ -182,7 +182,7 @@ impl DisplayedCompany {
             || tools.is_none_or(|tools| tools.contains(&tool))
     }
 
-    /// Returns whether the run has not ended.
+    /// Returns whether the run is unfinished.
     pub fn is_running(&self) -> bool {
         self.observation.ended.is_none()
     }
@@ -192,27 +192,27 @@ impl DisplayedCompany {
         self.observation.mode == Mode::Baseline
     }
 
-    /// Returns whether causes of changes may be shown: not in an unfinished baseline run.
+    /// Returns whether causes of changes may be shown. In an unfinished baseline run, causes are hidden.
     pub fn can_explain_causes(&self) -> bool {
         !self.is_baseline() || self.can_inspect
     }
 
-    /// Returns whether forecast scores may be shown. Some rules permit them only after the end.
+    /// Returns whether forecast scores may be shown. Some session rules permit scores only after the end of the run.
     pub fn shows_calibration(&self) -> bool {
         self.rules.calibration || !self.is_running()
     }
 
-    /// Returns the fit of a known group.
+    /// Returns the fit of the plans for a known group.
     pub fn fit(&self, group: Group) -> Option<&Fit> {
         self.fits.iter().find(|fit| fit.group == group)
     }
 
-    /// Returns a current argument of a tool as a number, or 0 if it has none.
+    /// Returns the current value of a tool's argument as a number, or 0 if the argument has no number.
     pub fn setting(&self, tool: ToolId, argument: &str) -> f64 {
         self.settings.get(&tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
     }
 
-    /// Returns the latest forecasts with their decision day.
+    /// Returns the last submitted forecasts with their decision day.
     pub fn last_forecasts(&self) -> Option<(u32, &[novamind_tools::Forecast])> {
         self.journal.iter().rev().find_map(|entry| match entry {
             JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts.as_slice())),
@@ -220,7 +220,7 @@ impl DisplayedCompany {
         })
     }
 
-    /// Returns a figure of the last `count` weeks, oldest first.
+    /// Returns the values of a figure in the last `count` weeks, oldest first.
     pub fn trend(&self, count: usize, figure: impl Fn(&WeekFigures) -> f64) -> Vec<f64> {
         let from = self.weeks.len().saturating_sub(count);
         self.weeks[from..].iter().map(figure).collect()
@@ -233,7 +233,7 @@ impl DisplayedCompany {
     }
 }
 
-/// These calls are free and not recorded.
+/// Returns the insights about every known group. The tool calls are free and not recorded.
 fn group_insights(session: &Session) -> BTreeMap<Group, GroupInsights> {
     let known = session.company().observe().known_groups;
     let read_insights = |group: Group| Some((group, session.company().read_tool(&GetGroupInsights, group)?));

@@ -1,5 +1,5 @@
-//! Inspections of hidden state for the X-ray screen, described as in plain mode. The session thread simulates days
-//! again for them.
+//! Inspections of hidden state for the x-ray screen, with the same descriptions as in plain mode. The session thread
+//! simulates days again for an inspection.
 
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
@@ -19,67 +19,68 @@ use novamind_session::identifiers::Group;
 use novamind_session::{Access, INSPECTION_REJECTED, Session};
 use novamind_tools::Rejection;
 
-/// An inspection of hidden state. Days are completed days.
+/// A question about hidden state. Days are the days whose end is inspected.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InspectionQuestion {
-    /// The lead equation of a group on a day, with factors fixed at values.
+    /// The lead equation of a group on a day, with some factors fixed at given values.
     Leads(Group, u32, Vec<(LeadFactor, f64)>),
     /// The delivered quality of a group on a day.
     Quality(Group, u32),
     /// The change of a group's satisfaction on a day.
     Satisfaction(Group, u32),
-    /// The change of the reputation in a group on a day.
+    /// The change of reputation in a group on a day.
     Reputation(Group, u32),
     /// The spillover of reputation changes on a day.
     Spillover(u32),
-    /// The information and actions of competitors on a day.
+    /// The state and the actions of competitors on a day.
     Rivals(u32),
-    /// The drift of expectations and budgets up to a day.
+    /// The drift of required quality and budgets up to a day.
     Drift(u32),
-    /// The random draws of a part on the day after a day.
+    /// The random draws of a part of the model on the day after a day.
     Draws(RandomPart, u32),
-    /// A customer (number) on a day.
+    /// The state of a customer, identified by number, on a day.
     Customer(u32, u32),
-    /// A breakpoint command.
+    /// The result of a breakpoint command.
     Breakpoints(BreakpointCommand),
-    /// A plain-mode command: its text, and parsed.
+    /// The result of a plain-mode command, given as text and as parsed command.
     Command(String, InspectionCommand),
 }
 
-/// A command on breakpoints, other than running to them.
+/// A command that lists or changes breakpoints.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BreakpointCommand {
-    /// Lists the breakpoints.
+    /// Lists all breakpoints.
     List,
     /// Sets a breakpoint.
     Set(Condition),
     /// Removes a breakpoint by number.
     Remove(u32),
-    /// Returns since when each condition has been true or false.
+    /// Shows since when each condition has been true or false.
     History,
 }
 
 /// The result of an inspection.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct InspectionAnswer {
-    /// Lines of text.
+    /// Description of the hidden state, as lines of text.
     pub lines: Vec<String>,
     /// Daily figures for some of the lines.
     pub curves: Vec<InspectionCurve>,
-    /// Spillover map, shown in place of the lines.
+    /// Spillover map, shown instead of the lines.
     pub map: Option<SpilloverMap>,
-    /// The displayed day if it differs from the requested one: for a customer who has left, its last day.
+    /// The displayed day, if it differs from the requested day. For a cancelled customer, this is the last day of the
+    /// subscription.
     pub day: Option<u32>,
-    /// The breakpoints, after a breakpoint command.
+    /// All breakpoints after a breakpoint command.
     pub breakpoints: Vec<Breakpoint>,
 }
 
-/// A daily figure up to the displayed day.
+/// The curve of a daily figure up to the displayed day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectionCurve {
-    /// Index of the line that it belongs to.
+    /// Index of the line to which the curve belongs.
     pub line_index: usize,
-    /// Daily values; NaN if there is no value.
+    /// Values by day; NaN for days without a value.
     pub values_by_day: Vec<f64>,
 }
 
@@ -87,7 +88,7 @@ impl Question for InspectionQuestion {
     type Answer = InspectionAnswer;
     type Progress = ();
 
-    /// If the inspection changed the run, the changed company is sent before the answer.
+    /// Answers the question. If the inspection changed the run, sends the changed company before the answer.
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
         let changes_run = matches!(&self, InspectionQuestion::Command(_, inspection_command) if inspection_command.changes_run());
         let found = match thread.read_only_rejection().filter(|_| changes_run) {
@@ -103,7 +104,7 @@ impl Question for InspectionQuestion {
 }
 
 impl SessionThread {
-    /// Queries the database and the hidden tables. In a playback, the table of one day shows the current day.
+    /// Queries the database with the hidden tables. In a playback, the tables that show one day show the current day.
     pub(super) fn query_hidden_tables(&mut self, sql: &str) -> Result<(QueryResult, Duration), Rejection> {
         let started = Instant::now();
         let stop = self.interrupt.clone();
@@ -114,7 +115,7 @@ impl SessionThread {
         };
         let rows = self.inspection_session(true).and_then(|session| {
             let interrupt = session.inspect().hidden_query_interrupt()?;
-            // A stop now affects this query.
+            // From here on, the user can stop this query.
             let ticket = interrupt.ticket();
             hold(Some(interrupt));
             session.inspect().query_hidden_tables_with_ticket(ticket, sql, day)
@@ -134,8 +135,8 @@ impl SessionThread {
         }
     }
 
-    /// Returns the open session, or a writable session of the same run if the open one is read-only, because each
-    /// inspection is recorded. With `with_rows`, it has a database.
+    /// Returns a writable session of the open run, because each inspection is recorded. If the open session is
+    /// read-only, returns a second session. With `with_rows`, the session has a database.
     pub(super) fn inspection_session(&mut self, with_rows: bool) -> Result<&mut Session, Rejection> {
         let (is_allowed, folder) = match &self.active_run {
             None => return Err(Rejection::new("not_possible", "no run is open")),
@@ -246,7 +247,7 @@ fn inspect_leads(
     Ok(InspectionAnswer { lines, curves, ..InspectionAnswer::default() })
 }
 
-/// Attaches daily values to the line with this prefix, if there is one.
+/// Returns an answer with a curve of daily values for the line with this prefix, if the line exists.
 fn result_with_curve(lines: Vec<String>, begins: &str, days: Vec<f64>) -> InspectionAnswer {
     let line = lines.iter().position(|line| line.starts_with(begins));
     let curves =

@@ -28,7 +28,10 @@ impl SessionThread {
                 &format!("retrying step {}; the previous run is unchanged", step + 1),
             ),
             LessonRequest::StartPart(part) => {
-                self.switch_run(|session| start_part(session, part), &format!("part {} starts", part + 1));
+                self.switch_run(
+                    |session| start_part(session, part),
+                    &format!("now playing part {}", part + 1),
+                );
             }
             LessonRequest::Debrief => self.compute_debrief(),
         }
@@ -45,7 +48,7 @@ impl SessionThread {
         }
     }
 
-    /// Computes the debrief on its own thread, because it simulates the reference play.
+    /// Computes the debrief on a background thread, because this simulates the reference play.
     fn compute_debrief(&mut self) {
         let Some(open) = &mut self.active_run else { return };
         let (played, news) = (PlayedPart::from_session(open.session()), self.messages.clone());

@@ -1,9 +1,9 @@
 //! The worker threads of the console: one owns the session, two query the database.
 //!
-//! The console sends jobs and never blocks. A result returns through the channel that also carries the input: as the
-//! answer to the page that asked ([`question`]), or as a response if it concerns more than one page. A query waits for
-//! the session thread, so that it sees all confirmed actions. While a week runs it does not wait, and sees the state
-//! before the week.
+//! The console sends jobs and never blocks. Results are sent through the same channel as input. A result is the answer
+//! to the page that asked ([`question`]), or a response if it affects more than one page. A query waits for the
+//! session thread, so that all confirmed actions are visible. While a week is simulated, a query does not wait and
+//! reads the state before the week.
 
 mod background;
 pub mod branches;
@@ -56,15 +56,15 @@ pub use background::answer_on_thread;
 
 /// A job for the session thread.
 pub enum Job {
-    /// Execute a request of the user.
+    /// Execute a user's request.
     Execute(Request),
-    /// Seek in the playback; the flag stops it.
+    /// Seek in the playback; setting the flag stops the seek.
     Seek(SeekTarget, Arc<AtomicBool>),
-    /// Play the next week of the playback after a pause.
+    /// Show the next week of the playback after a pause.
     ScheduleNextWeek(Duration),
-    /// Cancel the scheduled next week.
+    /// Cancel showing the next week of the playback.
     CancelNextWeek,
-    /// Answer a question of a page.
+    /// Answer a question that a page asked.
     AnswerQuestion(Box<dyn FnOnce(&mut SessionThread) + Send>),
     /// Reconnect the query threads after a panic has ended a connection.
     Reconnect,
@@ -72,11 +72,11 @@ pub enum Job {
     RecordQuery(String, Result<QueryResult, Rejection>, Duration, QuerySource),
     /// Record that the user has opened the run.
     Attach(Interface),
-    /// Record user activity; nothing is reported.
+    /// Record user activity without sending a response.
     RecordActivity(Box<dyn FnOnce(&mut Session) + Send>),
-    /// Record that the clock was started.
+    /// Record that the user started the clock.
     StartClock,
-    /// Signal that all earlier jobs are done.
+    /// Confirm that all earlier jobs are done.
     Acknowledge(Sender<()>),
     /// Save preferences for the next start.
     SavePreferences(Preferences),
@@ -86,18 +86,18 @@ pub enum Job {
     ShutDown,
 }
 
-/// The worker threads.
+/// Handle to the worker threads.
 pub struct Workers {
     jobs: Sender<Job>,
     queries: QueryThreads,
     messages: Sender<Message>,
-    /// Stops the running script or query of hidden tables.
+    /// Handle that stops the running script or query of hidden tables.
     interrupt: Arc<Mutex<Option<Interrupt>>>,
     session: Option<JoinHandle<()>>,
 }
 
 impl Workers {
-    /// Starts the threads, which send their messages to `news`.
+    /// Starts the worker threads, which send their messages to `news`.
     pub fn start(
         news: Sender<Message>,
         configuration: Configuration,
@@ -136,7 +136,7 @@ impl Workers {
         Workers { jobs, queries, messages: for_answers, interrupt: running_stop, session: Some(session) }
     }
 
-    /// Sends a job.
+    /// Sends a job to the session thread.
     pub fn send(&self, job: Job) {
         let _ = self.jobs.send(job);
     }
@@ -179,29 +179,29 @@ impl ActiveRun {
     }
 }
 
-/// The thread that owns the session.
+/// The state of the thread that owns the session.
 pub struct SessionThread {
     active_run: Option<ActiveRun>,
-    /// The runs folder; after opening a handout, that of its student.
+    /// Current runs folder. After a handout was opened, the runs folder of its student.
     runs_folder: PathBuf,
     initial_runs_folder: PathBuf,
     last_company: Option<Arc<DisplayedCompany>>,
-    /// When the next week of the playback is due.
+    /// When the playback shows the next week.
     next_week_at: Option<Instant>,
-    /// When new lines of a followed run were last polled.
+    /// When a followed run was last polled for new lines.
     last_poll: Instant,
     repair_at: Option<Instant>,
     study: Option<ActiveStudy>,
     lists_all_participants: bool,
-    /// When time limits are checked next; `None` if there are none.
+    /// When time limits are checked next; `None` if the run has no time limits.
     next_limit_check: Option<Instant>,
     minutes_left: Vec<i64>,
     causes_cache: Arc<Mutex<AnalysisCache<CauseAnalysis>>>,
     what_if_cache: Arc<Mutex<AnalysisCache<WhatIf>>>,
-    /// The session for inspections, if the open one is read-only and cannot record them.
+    /// Second session for inspections, if the open session is read-only and cannot record inspections.
     inspection_run: Option<Box<Session>>,
     inspection_run_has_database: bool,
-    /// Stops the running script or query of hidden tables.
+    /// Handle that stops the running script or query of hidden tables.
     interrupt: Arc<Mutex<Option<Interrupt>>>,
     messages: Sender<Message>,
     queries: QueryThreads,
@@ -253,7 +253,7 @@ impl SessionThread {
                 }
             }
             Job::Close(cause) => self.close_run(cause),
-            // A run that is still open was not left regularly: the terminal has failed.
+            // A run that is still open was not closed by the user: the terminal was closed.
             Job::ShutDown => self.close_run(LeavingCause::Hangup),
             Job::AnswerQuestion(answer) => answer(self),
             Job::Reconnect => drop(self.with_run(|run| run.queries.connect(run.session))),
@@ -264,7 +264,7 @@ impl SessionThread {
             Job::RecordActivity(note) => self.with_session(note),
             Job::StartClock => {
                 self.with_session(|session| drop(session.activity().start_clock()));
-                // Questions may be due after a pause.
+                // Study questions may be due after a pause.
                 self.report_due_questions();
             }
             Job::Acknowledge(done) => drop(done.send(())),
@@ -292,7 +292,7 @@ impl SessionThread {
         self.report_due_questions();
     }
 
-    /// Records that the user leaves the run, and syncs it to disk.
+    /// Records that the program detaches from the run, and saves the run.
     fn detach(&mut self, cause: LeavingCause) -> Result<(), RunError> {
         match &mut self.active_run {
             Some(ActiveRun::Live(session)) => {
@@ -340,7 +340,7 @@ impl SessionThread {
         }
     }
 
-    /// Works on the open run, if there is one.
+    /// Calls `work` with the open run, if a run is open.
     fn with_run<T>(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> T) -> Option<T> {
         let SessionThread {
             active_run: Some(open),
@@ -363,7 +363,7 @@ impl SessionThread {
         let loss =
             self.active_run.as_mut().and_then(|open| open.session().log().loss_reason().map(str::to_owned));
         if let Some(words) = loss {
-            // Sent before the response to the work, because nothing else can follow.
+            // Send this before the response to the work, because no further responses can follow.
             self.send_response(Response::RecordLost(words));
         }
         self.report_due_questions();

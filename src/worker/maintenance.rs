@@ -1,4 +1,4 @@
-//! Periodic tasks of the session thread: checking time limits, and repairing a database that could not be written.
+//! Periodic tasks of the session thread: checking time limits, and repairing the database after a failed write.
 
 use std::time::{Duration, Instant};
 
@@ -8,7 +8,7 @@ use novamind_session::TimeLeft;
 
 const LIMIT_CHECK_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Time between two attempts: each may simulate weeks again.
+/// Time between two attempts to repair the database, because each attempt may simulate weeks again.
 const REPAIR_INTERVAL: Duration = Duration::from_secs(3);
 
 impl SessionThread {
@@ -29,10 +29,10 @@ impl SessionThread {
         reached.into_iter().for_each(|limit| self.send_response(Response::Limit(limit)));
     }
 
-    /// Reports once that the database has fallen behind.
+    /// Reports once that the database could not be written.
     pub(super) fn check_database(&mut self) {
         let Some(ActiveRun::Live(session)) = &self.active_run else { return };
-        // Does not wait for the writer, which would delay the user: the last known failure is enough.
+        // Use the last known failure: waiting for the writer would delay the user.
         if self.repair_at.is_none()
             && let Some(problem) = session.database().failure()
         {

@@ -17,36 +17,36 @@ use novamind_tools::{Answer, Rejection, ToolId};
 
 /// A message to the console.
 pub enum Message {
-    /// Input: a key, a click, pasted text or a window size.
+    /// Input of the user: a key, a click, pasted text or a new window size.
     Input(Event),
     /// A response of a worker thread.
     Response(Response),
-    /// An answer to a question of a page, or its progress.
+    /// An answer to a question of a page, or progress of the answer.
     Arrived(Delivery),
-    /// A signal to end, suspend or resume the program.
+    /// A signal that ends, suspends or resumes the program.
     Signal(i32),
-    /// The requested time has passed.
+    /// The time after which the console wants to redraw has passed.
     TimePassed,
 }
 
-/// A position of the playback that was reached.
+/// A new position of the playback, or a problem.
 pub struct PlaybackUpdate {
-    /// The company at the position; `None` if it is unchanged.
+    /// Company at the position; `None` if the company is unchanged.
     pub company: Option<Arc<DisplayedCompany>>,
-    /// The position.
+    /// Position of the playback.
     pub position: PlaybackPosition,
-    /// A problem to report to the user.
+    /// Problem to report to the user, if any.
     pub problem: Option<String>,
 }
 
-/// An alternative for a run that does not open.
+/// An alternative that is offered if a run cannot be opened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum OpenFallback {
-    /// It is open elsewhere: it can be followed, by id.
+    /// The run with this id is open in another program and can be watched.
     Watch(String),
-    /// It is damaged: its undamaged prefix can be recovered as a branch, by id.
+    /// The run with this id is damaged; its undamaged prefix can be recovered as a branch.
     Recover(String),
-    /// The user must first consent to a text.
+    /// The participant must first agree to the consent text.
     AskConsent(Box<novamind_session::NewRun>),
 }
 
@@ -59,15 +59,15 @@ pub struct SimulatedDay {
     pub subscribers: u32,
 }
 
-/// An answer or progress on its way to the page that asked.
+/// An answer or progress that is sent to the page that asked.
 pub struct Delivery {
     pub(super) store: Box<dyn FnOnce() + Send>,
-    /// Whether it is the answer.
+    /// Whether the delivery is the answer (true) or progress (false).
     pub is_answer: bool,
 }
 
 impl Delivery {
-    /// Delivers it to the page, if the page still waits.
+    /// Delivers the answer or progress to the page, if the page still waits.
     pub fn deliver(self) {
         (self.store)();
     }
@@ -84,11 +84,11 @@ pub struct DebugRunResult {
 
 /// A response of a worker thread.
 pub enum Response {
-    /// The runs of the folder, after ending or deleting one with the outcome in words.
+    /// The runs of the folder. If a run was ended or deleted before, also the outcome in words.
     Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
     /// A class was read for display.
     ClassRead(Box<Result<(CollectedClass, ClassDisplayOptions), String>>),
-    /// A handout was opened: the runs are now those of the student with this label.
+    /// A handout was opened. The runs folder is now the folder of the student with this label.
     HandoutOpened(String),
     /// A run was opened.
     Opened(Arc<DisplayedCompany>),
@@ -96,9 +96,9 @@ pub enum Response {
     PlaybackOpened(Arc<DisplayedCompany>, Box<PlaybackPosition>),
     /// An inspection has changed the run.
     RunChanged(Arc<DisplayedCompany>),
-    /// Seeking has ended.
+    /// A seek of the user has ended.
     SeekResult(Box<PlaybackUpdate>),
-    /// The playback has advanced: it is playing, or the followed run has grown.
+    /// The playback has advanced, because it is playing or because the followed run has new lines.
     PlaybackAdvanced(Box<PlaybackUpdate>),
     /// The minutes left to time limits have changed.
     TimeLeft(Vec<TimeLeft>),
@@ -106,64 +106,64 @@ pub enum Response {
     Limit(Limit),
     /// The run was opened with a clock that a time limit had stopped.
     ClockStopped,
-    /// Drafts from before the program stopped, of the opened run.
+    /// Drafts of the opened run that were saved before the program stopped.
     Drafts(Box<DraftTexts>),
-    /// A run could not be opened or created; with an alternative.
+    /// A run could not be opened or created, with the message and an alternative.
     NotOpened(String, Option<OpenFallback>),
-    /// A tool was called.
+    /// A tool call was executed or rejected.
     ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),
-    /// A setting was undone or redone.
+    /// A setting change was undone or redone, or the request was rejected.
     SettingRestored(&'static str, Result<Vec<SettingChange>, Rejection>, Arc<DisplayedCompany>),
-    /// A day was simulated; with its figures, unless it was simulated again.
+    /// A day was simulated. Contains its figures if the day was simulated for the first time.
     DaySimulated(u32, Option<SimulatedDay>),
-    /// A week has passed or was rejected.
+    /// A week was simulated or rejected.
     WeekAdvanced(Result<Box<WeekResult>, Rejection>, Arc<DisplayedCompany>),
-    /// The database cannot be written and is older than the company. Writing is retried.
+    /// The database cannot be written, so the newest rows are missing. Writing is retried.
     DatabaseBehind(String),
     /// The database is up to date again.
     DatabaseCurrent,
     /// Days of a debug run were simulated.
     DebugDaysSimulated(Result<DebugRunResult, Rejection>, Arc<DisplayedCompany>),
-    /// A guess was recorded or a hint was shown in a lesson, or it was rejected.
+    /// A guess was recorded or a hint was requested in a lesson, or the request was rejected.
     LessonUpdated(Option<Rejection>, Arc<DisplayedCompany>),
-    /// The debrief of a part of a lesson.
+    /// The debrief of a lesson part was computed.
     DebriefReady(Arc<Result<Debrief, Rejection>>),
-    /// The notes were saved.
+    /// The notes were saved, or saving failed.
     NotesSaved(Result<(), Rejection>, Arc<DisplayedCompany>),
-    /// A query was saved: a text and the new library.
+    /// A query was saved, with a message and the new library, or saving failed.
     QuerySaved(Result<(String, QueryLibrary), String>),
-    /// The run report.
+    /// The run report was built.
     RunReportReady(Arc<RunReport>),
-    /// The files of the run report: names and contents.
+    /// The files of the run report were rendered, with their names and contents.
     ReportFilesReady(Vec<(&'static str, String)>),
-    /// Files were written: a text.
+    /// Files were written, with a message, or writing failed.
     FilesWritten(Result<String, String>),
     /// The run was closed, with the error if saving failed.
     Closed(Option<String>),
-    /// A response in a study.
+    /// A response to a request in a study.
     Study(StudyResponse),
     /// A worker thread has panicked.
     Crashed(String),
-    /// The record can no longer be written: the reason, and what to do.
+    /// The record can no longer be written. Contains the reason and the next step.
     RecordLost(String),
 }
 
-/// A response in a study.
+/// A response to a request in a study.
 pub enum StudyResponse {
     /// The study is ready for participants.
     Ready,
-    /// The label was rejected, with the reason.
+    /// The participant's label was rejected, with the reason.
     LabelRejected(String),
-    /// The next step of the participant.
+    /// The participant continues with this step.
     Next(NextStep),
-    /// The participant declined.
+    /// The participant declined the consent text.
     ConsentDeclined,
-    /// The due questions have changed. Sent before the response to the cause.
+    /// The due questions have changed. Sent before the response to the request that caused the change.
     QuestionsDue(Vec<DueQuestion>),
-    /// Answers were recorded; with the questions that are due now.
+    /// Answers were recorded. Contains the questions that are due now.
     AnswersRecorded(Vec<DueQuestion>),
-    /// Whether the experimenter's code was right; `None` if the study has no code.
+    /// Whether the entered experimenter code is correct; `None` if the study has no code.
     CodeChecked(Option<bool>),
-    /// Reading or writing failed; the text says what is safe.
+    /// Reading or writing failed. The message names the data that is safe.
     Failed(String),
 }

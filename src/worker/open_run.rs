@@ -18,7 +18,7 @@ use novamind_report::{RunReport, report_to_html, report_to_markdown};
 use novamind_session::{DayReport, Forecasts, RunDatabase, Session};
 use novamind_tools::ToolId;
 
-/// The open run, with where its messages are sent.
+/// The open run, with the channels and handles that its operations use.
 pub(super) struct OpenRun<'a> {
     pub(super) session: &'a mut Session,
     pub(super) last_company: &'a mut Option<Arc<DisplayedCompany>>,
@@ -94,7 +94,7 @@ impl OpenRun<'_> {
     }
 }
 
-/// Returns a function that reports simulated days, with a minimum interval.
+/// Returns a function that reports simulated days. Reports have a minimum interval.
 pub(super) fn day_reporter(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
     let (news, mut instant) = (news.clone(), Instant::now());
     move |report| {

@@ -1,4 +1,4 @@
-//! Questions of pages that the session thread answers directly or passes to a background thread.
+//! Questions of pages that the session thread answers itself or passes to a background thread.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,12 +13,12 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Rejection, ToolId};
 
-/// Asks for the preview of a tool call.
+/// A question for the preview of a tool call.
 #[derive(Debug, Clone)]
 pub struct CallCheck {
-    /// Tool.
+    /// Tool to call.
     pub tool: ToolId,
-    /// Arguments.
+    /// Arguments of the call.
     pub arguments: Value,
 }
 
@@ -33,7 +33,8 @@ impl Question for CallCheck {
     }
 }
 
-/// Asks for the participation curve of a group, estimated or true as permitted.
+/// A question for the participation curve of a group. The curve is the true curve if inspections are permitted,
+/// otherwise the estimated curve.
 #[derive(Debug, Clone)]
 pub struct CurveQuestion(pub Group);
 
@@ -48,10 +49,10 @@ impl Question for CurveQuestion {
     }
 }
 
-/// Asks for the true values of a day.
+/// A question for the true values of a day.
 #[derive(Debug, Clone)]
 pub struct HiddenValuesQuestion {
-    /// The day.
+    /// Day whose true values are requested.
     pub day: u32,
 }
 
@@ -67,7 +68,8 @@ impl Question for HiddenValuesQuestion {
     }
 }
 
-/// Asks for the runs related to the open one. Empty in sessions of a study and for records outside the runs folder.
+/// A question for the runs that are related to the open run. The answer is empty in studies and for runs outside the
+/// runs folder.
 #[derive(Debug, Clone)]
 pub struct RelatedRunsQuestion;
 
@@ -87,7 +89,8 @@ impl Question for RelatedRunsQuestion {
     }
 }
 
-/// Asks for the results of the strong policies, which the function simulates with the scenario and seed of the open run.
+/// A question for the results of strong policies. The function simulates the policies with the scenario and seed of
+/// the open run.
 #[derive(Debug, Clone)]
 pub struct OpponentsQuestion(pub PlayOpponentsFn);
 
@@ -107,7 +110,8 @@ impl Question for OpponentsQuestion {
 }
 
 impl SessionThread {
-    /// Uses the displayed day. Inspecting true values is recorded in the run, not in its playback.
+    /// Returns the participation curve of a group on the displayed day. The inspection of true values is recorded in
+    /// the run, not in the session of a playback.
     fn curve_of(&mut self, group: Group) -> Result<CurveExplorer, Rejection> {
         let none_open = || Rejection::new("not_possible", "no run is open");
         let (is_allowed, day) = match self.active_run.as_ref().ok_or_else(none_open)? {

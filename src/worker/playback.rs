@@ -1,4 +1,4 @@
-//! Playback on the session thread: opening a recorded run, seeking, and playing.
+//! Playback on the session thread: opening a recorded run, seeking and playing.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -26,7 +26,7 @@ impl SessionThread {
         }
     }
 
-    /// Returns the time until the next scheduled task, or `None` if none is scheduled.
+    /// Returns the time until the next scheduled task, or `None` if no task is scheduled.
     pub(super) fn time_until_next_task(&mut self) -> Option<Duration> {
         let follows = self.playback().is_some_and(|playback| playback.is_following());
         let look = follows.then(|| self.last_poll + FOLLOW_INTERVAL);
@@ -35,7 +35,8 @@ impl SessionThread {
         next.map(|moment| moment.saturating_duration_since(Instant::now()))
     }
 
-    /// Runs due tasks: the next week of the playback, polling of a followed run, repair of the database.
+    /// Runs due tasks: showing the next week of the playback, polling a followed run, checking time limits and
+    /// repairing the database.
     pub(super) fn run_due_tasks(&mut self) {
         self.retry_database_repair();
         self.check_time_limits();
@@ -59,10 +60,10 @@ impl SessionThread {
         let arrival = match playback.poll_new_lines() {
             Ok(false) => return,
             Ok(true) if at_end => self.seek_to(SeekTarget::Last, &AtomicBool::new(false)),
-            // The position stays, and the record grows.
+            // The position does not change, but the record has new lines.
             Ok(true) => Some(PlaybackUpdate { company: None, position: playback.position(), problem: None }),
             Err(problem) => {
-                let problem = Some(format!("{problem}. No longer following the run"));
+                let problem = Some(format!("{problem}. The playback no longer follows the run"));
                 Some(PlaybackUpdate { company: None, position: playback.position(), problem })
             }
         };
@@ -71,7 +72,7 @@ impl SessionThread {
         }
     }
 
-    /// Opens a recorded run and closes the current one, which stays open if that fails.
+    /// Opens a recorded run and closes the current run. If opening fails, the current run stays open.
     pub(super) fn replay_run(&mut self, recorded: RecordSource, goal: SeekTarget, follow: bool) {
         let id = match &recorded {
             RecordSource::Run(id) => id.clone(),
@@ -91,7 +92,7 @@ impl SessionThread {
                 return self.send_response(Response::NotOpened(problem.to_string(), instead));
             }
         };
-        // All confirmed actions are on disk; only derived rows can be missing.
+        // Ignore errors: all confirmed actions are on the disk; only database rows can be missing.
         let _ = self.detach(LeavingCause::Quit);
         self.queries.connect(playback.session());
         let company = Arc::new(playback_company(&playback, None));
@@ -111,7 +112,7 @@ impl SessionThread {
         Ok(playback)
     }
 
-    /// Reports a day, with a minimum interval.
+    /// Reports a replayed day, with a minimum interval between reports.
     fn report_day(&self, instant: &mut Instant, day: u32) -> ControlFlow<()> {
         if instant.elapsed() >= DAY_REPORT_INTERVAL {
             *instant = Instant::now();
@@ -134,7 +135,7 @@ impl SessionThread {
             true => ControlFlow::Break(()),
             false => self.report_day(&mut instant, day),
         });
-        // Errors during seeking have created a new session, too.
+        // A seek that failed has also created a new session.
         let anew = !matches!(went, Ok(SeekResult::Reached | SeekResult::Stopped));
         if anew {
             self.queries.connect(playback.session());

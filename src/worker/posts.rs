@@ -1,4 +1,4 @@
-//! Posts of the social feed. Only new posts are read from the run.
+//! Posts of the social feed for the screens. After the first reading, only new posts are read.
 
 use std::sync::Arc;
 
@@ -6,24 +6,24 @@ use novamind_session::Session;
 use novamind_session::identifiers::Group;
 use novamind_tools::{GetSocialPosts, PostLimit, SocialPost};
 
-/// The kind of author.
+/// The kind of a post's author.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PostKind {
-    /// Customers, unprompted.
+    /// Customers who post without being asked.
     Customers,
-    /// News of competitors and the economy.
+    /// Press that writes about competitors and the economy.
     Press,
-    /// Comments on our posts.
+    /// Authors of comments on the player's posts.
     Comments,
-    /// The company.
+    /// The player's company.
     Own,
 }
 
 impl PostKind {
-    /// All kinds, in display order.
+    /// All kinds of authors, in display order.
     pub const ALL: [PostKind; 4] = [PostKind::Customers, PostKind::Press, PostKind::Comments, PostKind::Own];
 
-    /// Returns the name.
+    /// Returns the name of the kind on screens.
     pub fn name(self) -> &'static str {
         match self {
             PostKind::Customers => "customers",
@@ -34,40 +34,40 @@ impl PostKind {
     }
 }
 
-/// A post.
+/// A post of the social feed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
-    /// Kind of author.
+    /// Kind of the author.
     pub kind: PostKind,
-    /// Number, among the posts of others or among ours.
+    /// Number of the post, counted separately for the player's posts and for other posts.
     pub number: u32,
-    /// Day.
+    /// Day on which the post was published.
     pub day: u32,
     /// Name and group of the author.
     pub author: String,
-    /// Text.
+    /// Text of the post.
     pub text: String,
-    /// Our post that a comment replies to, or the post that ours replies to.
+    /// Number of the post to which this post replies, if any.
     pub answered_post: Option<u32>,
-    /// Views of our post; 0 until it was viewed.
+    /// Number of views of the player's post; 0 for other posts.
     pub views: u32,
-    /// Number of comments on our post.
+    /// Number of comments on the player's post.
     pub comments: u32,
 }
 
 impl Post {
-    /// Returns the week of its day.
+    /// Returns the week in which the post was published.
     pub fn week(&self) -> u32 {
         self.day.div_ceil(7).max(1)
     }
 
-    /// Describes the reactions to our post.
+    /// Describes the views and comments of the player's post.
     pub fn reactions(&self) -> String {
         let noun = |count: u32, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
         format!("{}, {}", noun(self.views, "view"), noun(self.comments, "comment"))
     }
 
-    /// Returns the line above its text.
+    /// Returns the heading above the text of the post.
     pub fn heading(&self) -> String {
         match (self.kind, self.answered_post) {
             (PostKind::Own, Some(post)) => {
@@ -82,13 +82,13 @@ impl Post {
     }
 }
 
-/// Posts of others, the newest first. Successive readings share unchanged posts.
+/// Posts of other authors, newest first. Successive readings share unchanged posts.
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
-/// Initial limit for new posts: usually more than a week brings.
+/// Initial limit for reading new posts, which is usually higher than the number of posts in a week.
 const INITIAL_POSTS: usize = 64;
 
-/// Reads the posts of others; if some are known, only newer ones are requested.
+/// Reads the posts of other authors. If some posts are known, requests only newer posts.
 pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
     let mut limit = if last.is_some() { PostLimit::Newest(INITIAL_POSTS) } else { PostLimit::All };
@@ -98,7 +98,7 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
         let fresh: Vec<Arc<Post>> =
             social_posts.iter().map(to_post).take_while(is_new).map(Arc::new).collect();
-        // If all of them are new, there may be more new ones before them.
+        // If all returned posts are new, there may be more new posts before them.
         if let PostLimit::Newest(most) = limit
             && !social_posts.is_empty()
             && fresh.len() == social_posts.len()
@@ -116,7 +116,8 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
 
 fn to_post(social_post: &SocialPost) -> Post {
     let group = social_post.group_id.map_or("–", Group::id);
-    // Press posts carry the first group and no persona; customers of discovered groups have no persona either.
+    // Press posts have the first group as author group and no persona. Posts of customers in discovered groups have no
+    // persona either.
     let is_press = social_post.group_id.is_some() && social_post.group_id == Group::at(0);
     let (kind, author) = match (social_post.reply_to_agent_post_id, social_post.persona_name.as_deref()) {
         (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),

@@ -1,4 +1,4 @@
-//! Appearance chosen by key, saved as `console.toml` in the configuration folder.
+//! Appearance preferences that the user chose by key, saved as `console.toml` in the configuration folder.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,26 +8,26 @@ use novamind_tui::glyphs::Glyphs;
 
 const FILE: &str = "console.toml";
 
-/// The saved preferences.
+/// Preferences for the appearance of the console.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// Name of the theme.
+    /// Name of the chosen theme.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub theme: Option<String>,
-    /// Characters that charts are drawn with.
+    /// Characters with which charts are drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker: Option<Glyphs>,
 }
 
 impl Preferences {
-    /// Loads the saved preferences. An unreadable file is ignored, and replaced when preferences are saved.
+    /// Loads the saved preferences. Ignores an unreadable file, which is replaced when preferences are saved.
     pub fn load(configuration: &Configuration) -> Preferences {
         let file = configuration.read_file(FILE).ok().flatten();
         file.and_then(|source| toml::from_str(&source.text).ok()).unwrap_or_default()
     }
 
-    /// Saves the preferences that are set, and keeps the others.
+    /// Saves the preferences that are set, and keeps the saved values of all others.
     ///
     /// # Errors
     /// The folder cannot be written.

@@ -1,4 +1,4 @@
-//! The threads that query the database, each with its own connection.
+//! The threads that query the database, each with a separate connection.
 
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,26 +14,26 @@ use novamind_record::trajectory::record::QuerySource;
 use novamind_session::{Session, query_rejection};
 use novamind_tools::Rejection;
 
-/// A query of the user.
+/// An SQL query that the user entered or selected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Query {
-    /// The SQL statement.
+    /// SQL statement of the query.
     pub sql: String,
-    /// The tables that it can read.
+    /// The tables that the statement can read.
     pub tables: QueriedTables,
 }
 
 /// The tables that a query of the user can read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QueriedTables {
-    /// The public tables; with the source of the query.
+    /// The public tables. Contains the source of the query.
     Visible(QuerySource),
-    /// The public and the hidden tables.
+    /// The public tables and the hidden tables.
     Hidden,
 }
 
 impl Question for Query {
-    /// The rows, and the duration of the query.
+    /// Rows of the result, and the duration of the query.
     type Answer = (QueryResult, Duration);
     type Progress = ();
 
@@ -68,10 +68,10 @@ impl Question for Reading {
 }
 
 impl SessionThread {
-    /// Forwards a question once the database contains all confirmed actions.
+    /// Forwards a question to a query thread after the database contains all confirmed actions.
     fn ask_database(&mut self, question: DatabaseQuestion) {
         self.with_run(|run| {
-            // A failed database answers with what it has; the screen warns about it.
+            // After a failed write, the query returns the existing rows, and the screen shows a warning.
             let _ = run.session.wait_for_database();
             run.queries.ask(question);
         });
@@ -99,7 +99,7 @@ impl DatabaseQuestion {
     }
 }
 
-/// Senders to the query threads. The user's queries and the readings of screens do not wait for each other.
+/// Senders to the two query threads, so that the user's queries and the readings of screens do not wait for each other.
 #[derive(Clone)]
 pub(super) struct QueryThreads {
     user: Sender<QueryJob>,
@@ -118,13 +118,13 @@ enum QueryJob {
 }
 
 impl QueryThreads {
-    /// Starts the threads. Queries to record are sent as jobs.
+    /// Starts the query threads. Each query that must be recorded is sent to `jobs`.
     pub(super) fn start(jobs: &Sender<Job>) -> QueryThreads {
         let start = || start_thread(jobs.clone(), ask);
         QueryThreads { user: start(), screens: start(), interrupt: Arc::default() }
     }
 
-    /// Gives each thread a connection to the database of a run.
+    /// Opens a connection to the database of a run for each thread.
     pub(super) fn connect(&self, session: &Session) {
         let limits = session.company().query_limits();
         let database = session.database();
@@ -165,7 +165,7 @@ impl QueryThreads {
             DatabaseQuestion::Query(..) => &self.user,
             DatabaseQuestion::Reading(..) => &self.screens,
         };
-        // The threads are gone when the program ends.
+        // Ignore the error: the threads have ended when the program ends.
         let _ = thread.send(QueryJob::Ask(question));
     }
 }
@@ -196,7 +196,7 @@ fn answer(
         None => Err(Rejection::new("sql_error", "no run is open")),
         Some(Ok(rows)) => rows,
         Some(Err(defect)) => {
-            // The guard of the connection may be inconsistent, so the connection is dropped.
+            // The guard of the connection may be inconsistent, so drop the connection.
             *connection = None;
             let _ = jobs.send(Job::Reconnect);
             Err(defect)
@@ -227,7 +227,7 @@ mod tests {
     use crate::question::Pending;
     use crate::test_kit::played_session;
 
-    /// Panics for one statement.
+    /// Answers a question like `ask`, but panics for one statement.
     fn ask_or_panic(connection: &Connection, question: &DatabaseQuestion) -> Result<QueryResult, Rejection> {
         assert_ne!(question.sql(), "SELECT 'defect'", "a defect");
         ask(connection, question)
@@ -257,7 +257,7 @@ mod tests {
         assert!(answer("SELECT 1").is_ok());
         let refused = answer("SELECT 'defect'").expect_err("a panic");
         assert_eq!(refused.code, "internal_error");
-        // The connection is dropped after the panic.
+        // The connection was dropped after the panic.
         assert_eq!(answer("SELECT 1").expect_err("no connection").code, "sql_error");
         let noted = |job| matches!(job, Job::RecordQuery(..));
         assert!(noted(receiver.recv().expect("a job")));

@@ -1,7 +1,7 @@
-//! Questions of pages and their answers. A page keeps a [`Pending`], the worker the matching [`Reply`]: an answer
-//! reaches only the page that asked, and only for its latest question.
+//! Questions of pages and their answers. The page keeps a [`Pending`] and the worker keeps the matching [`Reply`]. An
+//! answer is delivered only to the page that asked, and only for its latest question.
 //!
-//! An answer arrives as a [`Message`], in order with all other messages.
+//! Answers are sent as a [`Message`], in order with all other messages.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -17,22 +17,22 @@ use novamind_tools::Rejection;
 
 /// A question that a page sends to the worker.
 pub trait Question: Clone + Debug + Send + Sync + 'static {
-    /// The answer.
+    /// Type of the answer.
     type Answer: Send + 'static;
-    /// Progress of the work; `()` if it is not reported.
+    /// Type of progress reports; `()` if progress is not reported.
     type Progress: Copy + Send + 'static;
 
-    /// Answers on the session thread, or passes the reply to another thread.
+    /// Answers the question on the session thread, or passes the reply to another thread.
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>);
 
-    /// Answers without the session thread, which is busy with a week, if possible.
+    /// Answers the question while the session thread is simulating a week. By default, waits for the session thread.
     fn answer_while_busy(self, reply: Reply<Self>, workers: &Workers) {
         workers.ask_session_thread(self, reply);
     }
 }
 
-/// The page's side of a question. If it is dropped or asks again, the answer is dropped and the work is cancelled if
-/// possible.
+/// The page's side of a question. If the page drops this value or asks again, the answer is discarded and the work is
+/// cancelled if possible.
 pub struct Pending<Q: Question>(Option<(Q, Arc<Slot<Q>>)>);
 
 type Slot<Q> = Mutex<ReplyState<Q>>;
@@ -48,7 +48,7 @@ impl<Q: Question> Default for ReplyState<Q> {
     }
 }
 
-/// Ignores poisoning: no code panics between dependent changes.
+/// Locks a slot. Ignores poisoning, because no code panics between dependent changes.
 fn lock<Q: Question>(slot: &Slot<Q>) -> MutexGuard<'_, ReplyState<Q>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -60,14 +60,14 @@ impl<Q: Question> Default for Pending<Q> {
 }
 
 impl<Q: Question> Pending<Q> {
-    /// Returns the pending question, and the question to send.
+    /// Returns a pending question, and the outgoing question to send to the worker.
     pub fn with_question(question: Q) -> (Pending<Q>, OutgoingQuestion) {
         let mut pending = Pending::default();
         let ask = pending.ask(question);
         (pending, ask)
     }
 
-    /// Asks a question, and cancels the previous one.
+    /// Asks a question and cancels the previous question. The caller must send the returned question to the worker.
     pub fn ask(&mut self, question: Q) -> OutgoingQuestion {
         let slot = Arc::default();
         let typed_question = TypedQuestion { question: question.clone(), slot: Arc::downgrade(&slot) };
@@ -75,7 +75,7 @@ impl<Q: Question> Pending<Q> {
         OutgoingQuestion(Arc::new(typed_question))
     }
 
-    /// Returns the unanswered question.
+    /// Returns the unanswered question, if any.
     pub fn question(&self) -> Option<&Q> {
         self.0.as_ref().map(|(question, _)| question)
     }
@@ -85,19 +85,19 @@ impl<Q: Question> Pending<Q> {
         self.0.is_some()
     }
 
-    /// Returns the last reported progress.
+    /// Returns the last reported progress of the unanswered question.
     pub fn progress(&self) -> Option<Q::Progress> {
         lock(&self.0.as_ref()?.1).progress
     }
 
-    /// Takes the question and its answer if it has arrived.
+    /// Takes the question and its answer, if the answer has been received.
     pub fn try_take(&mut self) -> Option<(Q, Result<Q::Answer, Rejection>)> {
         let answer = lock(&self.0.as_ref()?.1).answer.take()?;
         let (question, _) = self.0.take()?;
         Some((question, answer))
     }
 
-    /// Cancels the question.
+    /// Cancels the unanswered question.
     pub fn cancel(&mut self) {
         self.0 = None;
     }
@@ -120,7 +120,7 @@ trait ErasedQuestion: Any + Debug + Send + Sync {
 impl<Q: Question> ErasedQuestion for TypedQuestion<Q> {
     fn send_to(&self, workers: &Workers, is_busy: bool) {
         let news = workers.messages.clone();
-        // The ticket is taken now, because a stop may arrive before the query starts.
+        // Take the ticket now, because the user may stop the query before it starts.
         let ticket = workers.queries.ticket();
         let reply = Reply { slot: self.slot.clone(), messages: news, ticket, is_answered: false };
         let question = self.question.clone();
@@ -132,29 +132,29 @@ impl<Q: Question> ErasedQuestion for TypedQuestion<Q> {
 }
 
 impl Workers {
-    /// Sends a question. With `is_busy`, the session thread is busy with a week.
+    /// Sends a question to the worker. `is_busy` is true while the session thread is simulating a week.
     pub fn ask(&self, ask: &OutgoingQuestion, is_busy: bool) {
         ask.0.send_to(self, is_busy);
     }
 
-    /// Asks the session thread, after all earlier jobs.
+    /// Sends a question to the session thread, which answers after all earlier jobs.
     pub(super) fn ask_session_thread<Q: Question>(&self, question: Q, reply: Reply<Q>) {
         self.send(Job::AnswerQuestion(Box::new(move |thread| question.answer(thread, reply))));
     }
 }
 
-/// The worker's side of a question. If it is dropped without an answer, because the work panicked or was impossible,
-/// the page receives an error.
+/// The worker's side of a question. If the reply is dropped without an answer, because the work panicked or was
+/// impossible, the page receives an error.
 pub struct Reply<Q: Question> {
     slot: Weak<Slot<Q>>,
     messages: Sender<Message>,
-    /// Stops a query of the user.
+    /// Ticket with which the user can stop the query.
     pub(super) ticket: Option<QueryTicket>,
     is_answered: bool,
 }
 
 impl<Q: Question> Reply<Q> {
-    /// Sends the answer.
+    /// Sends the answer to the page.
     pub fn answer(mut self, answer: Result<Q::Answer, Rejection>) {
         self.send_answer(answer);
     }
@@ -164,7 +164,7 @@ impl<Q: Question> Reply<Q> {
         self.deliver(true, |arrived| arrived.answer = Some(answer));
     }
 
-    /// Reports the progress of the work.
+    /// Reports the progress of the work to the page.
     pub fn report_progress(&self, progress: Q::Progress) {
         self.deliver(false, move |arrived| arrived.progress = Some(progress));
     }
@@ -177,8 +177,8 @@ impl<Q: Question> Reply<Q> {
         }
     }
 
-    /// Runs `work` on its own thread and answers with its result. A panic is answered with a rejection. `work`
-    /// returns `None` if the page no longer waits.
+    /// Runs `work` on a new thread and answers with its result, or with a rejection if `work` panics. `work` returns
+    /// `None` if the page no longer waits.
     pub fn answer_on_thread(
         self,
         work: impl FnOnce(&Reply<Q>) -> Result<Option<Q::Answer>, Rejection> + Send + 'static,
@@ -198,7 +198,7 @@ impl<Q: Question> Reply<Q> {
                 put(&mut lock(&slot));
             }
         });
-        // The receiver is gone when the program ends.
+        // Ignore the error: the receiver has been dropped when the program ends.
         let _ = self.messages.send(Message::Arrived(Delivery { store: put, is_answer }));
     }
 }
@@ -206,13 +206,13 @@ impl<Q: Question> Reply<Q> {
 impl<Q: Question> Drop for Reply<Q> {
     fn drop(&mut self) {
         if !self.is_answered {
-            let message = "not answered because of an internal error; nothing was changed, try again";
+            let message = "no answer because of an internal error; nothing was changed, try again";
             self.send_answer(Err(Rejection::new("internal_error", message)));
         }
     }
 }
 
-/// Replaces the worker in tests of pages.
+/// Functions that replace the worker in tests of pages.
 #[cfg(any(test, feature = "test-kit"))]
 mod test_support {
     use super::*;
@@ -235,12 +235,12 @@ mod test_support {
     }
 
     impl OutgoingQuestion {
-        /// Returns the question if it has this type.
+        /// Returns the question if its type is `Q`.
         pub fn question<Q: Question>(&self) -> Option<&Q> {
             self.as_typed().map(|typed_question| &typed_question.question)
         }
 
-        /// Returns a reply to the page if the question has this type.
+        /// Returns a reply to the page if the type of the question is `Q`.
         pub fn reply<Q: Question>(&self, news: Sender<Message>) -> Option<Reply<Q>> {
             let slot = self.as_typed::<Q>()?.slot.clone();
             Some(Reply { slot, messages: news, ticket: None, is_answered: false })
@@ -262,7 +262,7 @@ mod tests {
     use crate::message::Response;
     use novamind_record::folder::configuration::Configuration;
 
-    /// Answers with its number, or fails.
+    /// A test question that is answered with its number, or fails.
     #[derive(Debug, Clone, PartialEq)]
     enum TestQuestion {
         Number(u32),
@@ -295,7 +295,7 @@ mod tests {
         (Workers::start(sender, Configuration::bundled(), "nowhere".into(), false), messages)
     }
 
-    /// Delivers messages up to the next answer.
+    /// Delivers all messages up to and including the next answer.
     fn deliver_until_answer(messages: &Receiver<Message>) {
         loop {
             if let Message::Arrived(delivery) = messages.recv_timeout(RESPONSE_TIMEOUT).expect("a message") {
@@ -332,7 +332,7 @@ mod tests {
         assert!(pending.try_take().is_none() && pending.progress().is_none(), "the first answer");
         deliver_until_answer(&messages);
         assert_eq!(pending.try_take().and_then(|(_, answer)| answer.ok()), Some(2));
-        // The same if the later question is asked while the earlier answer is in transit.
+        // An earlier answer is also dropped if the later question is asked after the answer was sent.
         workers.ask(&pending.ask(TestQuestion::Number(3)), false);
         let first = messages.iter().find_map(|message| match message {
             Message::Arrived(delivery) if delivery.is_answer => Some(delivery),
@@ -359,10 +359,9 @@ mod tests {
 
     #[test]
     fn failed_questions_are_answered_with_an_error() {
-        for (question, words) in [
-            (TestQuestion::CrashOnThread, "internal error (a defect)"),
-            (TestQuestion::Forget, "not answered"),
-        ] {
+        for (question, words) in
+            [(TestQuestion::CrashOnThread, "internal error (a defect)"), (TestQuestion::Forget, "no answer")]
+        {
             let (workers, messages) = start_workers();
             let mut pending = Pending::default();
             workers.ask(&pending.ask(question), false);
@@ -372,7 +371,7 @@ mod tests {
             assert!(refusal.code == "internal_error" && refusal.message.contains(words), "{refusal}");
             workers.shut_down();
         }
-        // A panic on the session thread ends the program; later questions are answered too.
+        // A panic on the session thread ends the program, but later questions are answered with an error.
         let (workers, messages) = start_workers();
         let mut pages = [Pending::default(), Pending::default()];
         for (page, question) in pages.iter_mut().zip([TestQuestion::Crash, TestQuestion::Number(1)]) {

@@ -1,17 +1,18 @@
-//! Queries of the screens. Each reading is a guarded query over the public tables, as a user could run it. The SQL is
-//! in `assets/readings`, or in `assets/queries` if the query library has it too.
+//! Queries with which the screens read data. Each reading is a guarded query over the public tables, which a user
+//! could also run. The SQL is in `assets/readings`, or in `assets/queries` if the query library also contains the
+//! query.
 
 macro_rules! readings {
     ($($variant:ident $file:literal $doc:literal)*) => {
-        /// A query of a screen.
+        /// A query with which a screen reads data.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Reading { $(#[doc = $doc] $variant,)* }
 
         impl Reading {
-            /// All readings.
+            /// All readings of the screens.
             pub const ALL: &'static [Reading] = &[$(Reading::$variant,)*];
 
-            /// Returns the SQL statement.
+            /// Returns the SQL statement of the reading.
             pub fn sql(self) -> &'static str {
                 match self { $(Reading::$variant => include_str!(concat!("../../assets/", $file, ".sql")),)* }
             }
@@ -20,24 +21,31 @@ macro_rules! readings {
 }
 
 readings! {
-    Subscribers "readings/subscribers" "Active subscriptions: group, plan, customers, seats, dollars per month, active for 30 days."
+    Subscribers "readings/subscribers" "Active subscriptions: group, plan, customers, seats, dollars per month, \
+         customers active for 30 days."
     Usage "readings/usage" "Usage of the last day: group, plan, users, seats, units."
-    Arrivals "readings/arrivals" "Leads of the last weeks: week, group, source, leads, conversions."
-    Departures "readings/departures" "Cancellations of the last weeks: week, group, cancelled, cancelled of those active 30 days ago."
-    LeadsByChannel "readings/leads_by_channel" "Leads of the last four weeks: channel, group, leads, spend."
-    Service "readings/service" "The service by day: day, usage, capacity, tier, latency, errors, minutes of outage."
+    Arrivals "readings/arrivals" "Leads in recent weeks: week, group, source, leads, conversions."
+    Departures "readings/departures" "Cancellations in recent weeks: week, group, cancellations, cancellations of \
+         customers active 30 days before."
+    LeadsByChannel "readings/leads_by_channel" "Leads in the last four weeks: channel, group, leads, spending."
+    Service "readings/service" "Service by day: day, usage, capacity, tier, latency, error rate, outage minutes."
     OpenIssues "readings/open_issues" "Open issues: group, and counts for four age ranges."
-    EnterpriseTurns "readings/enterprise_turns" "Turns of negotiations, the newest first: thread, enterprise, kind, turn, sender, text, offer, day, seats, end."
-    LastLetters "readings/last_letters" "The newest message of each enterprise that named a price or a plan in the last eight days: thread, text, and its current plan if it named no price."
-    Companies "readings/companies" "The enterprises of these negotiations: profile and subscription."
-    Research "readings/research" "R&D projects: id, tier, status, started, expected, boost; the newest first."
-    OwnPosts "readings/own_posts" "Our posts, the newest first: number, day, text, post it replies to, views, numbers of comments."
-    Knowledge "readings/knowledge" "Knowledge of all groups: group, study level, day discovered, day studied."
-    Attempts "readings/attempts" "Market research attempts, the newest first: day, cost, success, group."
-    WeekNotices "readings/week_notices" "Notices of the last week, the newest first: day, type, message."
-    Cohorts "readings/cohorts" "Subscribers by group, signup week and cancellation week (0 if none): group, week, week, customers."
-    Economy "readings/economy" "The published index: day measured, value, trend, change, phase, description."
-    FirstOffers "queries/first-offers" "Outcome by first offer and week, also a query of the library: group, plan, price range, week, threads and their outcomes."
+    EnterpriseTurns "readings/enterprise_turns" "Turns of negotiations, newest first: thread, enterprise, kind, turn, \
+         sender, text, offer, day, seats, end."
+    LastLetters "readings/last_letters" "Newest message of each enterprise that named a price or a plan in the last \
+         eight days: thread, text, current plan if the message names no price."
+    Companies "readings/companies" "Enterprises in negotiations: profile and subscription."
+    Research "readings/research" "R&D projects, newest first: id, tier, status, start day, expected day, quality gain."
+    OwnPosts "readings/own_posts" "The player's posts, newest first: number, day, text, replied-to post, views, \
+         numbers of comments."
+    Knowledge "readings/knowledge" "Study state of all groups: group, study level, day of discovery, day of the last study."
+    Attempts "readings/attempts" "Market research attempts, newest first: day, cost, success, group."
+    WeekNotices "readings/week_notices" "Notices of the last week, newest first: day, type, message."
+    Cohorts "readings/cohorts" "Subscribers by group, sign-up week and cancellation week: group, sign-up week, \
+         cancellation week (0 if active), customers."
+    Economy "readings/economy" "Published PMI: measurement day, value, trend, change, phase, description."
+    FirstOffers "queries/first-offers" "Outcomes by first offer and week, also in the query library: group, plan, \
+         price range, week, threads, outcomes of the threads."
 }
 
 #[cfg(test)]

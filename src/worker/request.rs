@@ -12,107 +12,107 @@ use novamind_session::{Access, Forecasts, NewRun, SeekTarget};
 use novamind_study::{DueQuestion, Study};
 use novamind_tools::ToolId;
 
-/// A request of the user.
+/// A request of the user to the session thread.
 #[derive(Debug, Clone)]
 pub enum Request {
-    /// List the runs of the folder.
+    /// List the runs in the runs folder.
     ListRuns,
-    /// End a run of the folder.
+    /// End the run with this id.
     EndRun(String),
-    /// Delete a run of the folder.
+    /// Delete the run with this id.
     DeleteRun(String),
     /// Read a collected class from its folder for display.
     ReadClass(PathBuf, ClassDisplayOptions),
     /// Start or resume the lesson of a handout.
     OpenHandout(PathBuf),
-    /// Create a run in the folder.
+    /// Create a run in the runs folder and open it.
     Create(Box<NewRun>),
-    /// Open a run of the folder by its id, for play or read-only.
+    /// Open the run with this id, for play or read-only.
     Open(String, Access),
     /// Recover the undamaged prefix of a damaged run as a branch and open it.
     Recover(String),
-    /// Replay a recorded run.
+    /// Open a playback of a recorded run.
     Replay {
-        /// The record.
+        /// Record to play back.
         recorded: RecordSource,
-        /// The initial position.
+        /// Initial position of the playback.
         goal: SeekTarget,
         /// Whether to follow new lines that another program writes.
         follow: bool,
     },
-    /// Create a branch from the current position of the playback and continue in it.
+    /// Create a branch from the current position of the playback and play the branch.
     TakeOver(Mode),
-    /// Create a branch that keeps the decisions of the run with some edits, and continue in it.
+    /// Create a branch that keeps the decisions of the run except for some edits, and play the branch.
     AdoptBranch {
-        /// The first week that the branch changes.
+        /// First week in which the branch differs from the run.
         week: u32,
-        /// The edited decisions.
+        /// Changes of the recorded decisions.
         edits: Vec<DecisionEdit>,
     },
-    /// Call a tool.
+    /// Execute a tool call.
     Call {
-        /// Tool.
+        /// Tool to call.
         tool: ToolId,
-        /// Arguments.
+        /// Arguments of the call.
         arguments: Value,
     },
-    /// Undo the last setting.
+    /// Undo the last setting change.
     Undo,
-    /// Redo the last undone setting.
+    /// Redo the last undone setting change.
     Redo,
-    /// Run the week.
+    /// Submit the week and simulate it.
     Advance {
-        /// The rationale.
+        /// Rationale of the week.
         rationale: String,
-        /// Forecasts of cash.
+        /// Forecasts of cash for all horizons.
         forecasts: Forecasts,
     },
-    /// Simulate a number of days of a debug run, up to a breakpoint.
+    /// Simulate at most this number of days of a debug run, up to the next breakpoint.
     RunDays(u32),
-    /// Save the notes.
+    /// Save this text as the player's notes.
     SetNotes(String),
     /// Build the run report for the final page.
     BuildRunReport,
     /// Render the files of the run report.
     RenderReportFiles,
-    /// A request to the lesson of the run.
+    /// Handle a request in the lesson of the run.
     Lesson(LessonRequest),
-    /// A request in a study.
+    /// Handle a request in a study.
     Study(StudyRequest),
 }
 
-/// A request to a lesson. Steps and parts are counted from 0.
+/// A request of a student in a lesson. Steps and parts are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LessonRequest {
     /// Answer the question of the step.
     Guess(f64),
     /// Show the next hint.
     Hint,
-    /// Retry a step from its start.
+    /// Retry the step with this index from its start.
     RetryStep(usize),
-    /// Start another part.
+    /// Start the part with this index.
     StartPart(usize),
     /// Compute the debrief of a finished part.
     Debrief,
 }
 
-/// A request in a study.
+/// A request of a participant or an experimenter in a study.
 #[derive(Debug, Clone)]
 pub enum StudyRequest {
-    /// Start receiving participants of this study.
+    /// Start this study, so that participants can enter their labels.
     StartStudy(Box<Study>),
-    /// The participant entered a label.
+    /// The participant has entered a label.
     IdentifyParticipant {
-        /// The label.
+        /// Label that the participant entered.
         label: String,
-        /// Number of labels rejected before.
+        /// Number of labels that were rejected before.
         rejected_labels: u32,
     },
-    /// The participant consents.
+    /// The participant agrees to the consent text.
     Agree(ConsentGiven),
-    /// The participant declines.
+    /// The participant declines the consent text.
     Decline,
-    /// The participant skips the practice.
+    /// The participant skips the practice run.
     SkipPractice,
     /// The participant opens the next run.
     Play,
@@ -120,58 +120,59 @@ pub enum StudyRequest {
     ShowNextStep,
     /// A question was shown to the participant.
     RecordShownQuestion(Box<DueQuestion>),
-    /// The participant submits the answers of a page.
+    /// The participant submits the answers on a page.
     SubmitAnswers(Vec<GivenAnswer>),
-    /// The participant withdraws, after confirmation.
+    /// The participant has confirmed to withdraw from the study.
     Withdraw,
-    /// Check the experimenter's code.
+    /// Check the experimenter code that was entered.
     CheckCode(String),
 }
 
-/// The answer to a question, with how it was entered.
+/// The participant's answer to a question, with details of how it was entered.
 #[derive(Debug, Clone)]
 pub struct GivenAnswer {
-    /// The question.
+    /// Question that is answered.
     pub due: DueQuestion,
-    /// The answer; null if it was skipped.
+    /// Value of the answer; null if the question was skipped.
     pub value: Value,
-    /// Milliseconds on the screen.
+    /// Milliseconds for which the question was on the screen.
     pub shown_ms: u64,
-    /// Number of changes before it was submitted.
+    /// Number of times the answer was changed before it was submitted.
     pub changes: u32,
 }
 
-/// A recorded run.
+/// The source of a recorded run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RecordSource {
-    /// A run of the folder, by its id.
+    /// The run with this id in the runs folder.
     Run(String),
     /// Any run folder or trajectory file.
     File(PathBuf),
 }
 
-/// Label while a script runs.
+/// Status text while a script runs.
 pub const SCRIPT_STATUS: &str = "running the script";
 
 impl Request {
-    /// Returns whether it changes the run.
+    /// Returns whether the request changes the run.
     pub fn changes_run(&self) -> bool {
         self.is_rejected_during_week() || self.simulates_days() || matches!(self, Request::SetNotes(_))
     }
 
-    /// Returns whether it simulates days.
+    /// Returns whether the request simulates days.
     pub fn simulates_days(&self) -> bool {
         matches!(self, Request::Advance { .. } | Request::RunDays(_))
     }
 
-    /// Returns whether it is rejected while a week runs, because it was meant for the state before the week.
+    /// Returns whether the request is rejected while a week is simulated, because it was intended for the state before
+    /// the week.
     pub fn is_rejected_during_week(&self) -> bool {
         let of_lesson =
             matches!(self, Request::Lesson(lesson_request) if *lesson_request != LessonRequest::Debrief);
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
-    /// Returns whether participants of a study must not send it, because it reaches beyond their own run.
+    /// Returns whether the request is forbidden for participants of a study, because it affects more than their current run.
     pub fn is_forbidden_for_participants(&self) -> bool {
         match self {
             Request::ListRuns
@@ -198,20 +199,20 @@ impl Request {
         }
     }
 
-    /// Returns the label shown until it is answered, or `None` if the user can continue meanwhile.
+    /// Returns the status text that is shown until the response, or `None` if the user can continue before the response.
     pub fn busy_label(&self) -> Option<&'static str> {
         Some(match self {
             Request::Create(_) => "starting the run",
             Request::ReadClass(..) => "reading the class",
             Request::OpenHandout(_) => "opening the handout",
             Request::Open(..) => "opening the run",
-            Request::Recover(_) => "opening the intact part of the run",
+            Request::Recover(_) => "recovering the run",
             Request::Replay { .. } => "opening the record",
-            Request::TakeOver(_) => "starting a run from here",
+            Request::TakeOver(_) => "creating the branch",
             Request::AdoptBranch { .. } => "simulating the branch",
             Request::Lesson(LessonRequest::RetryStep(_)) => "returning to the start of the step",
             Request::Lesson(LessonRequest::StartPart(_)) => "starting the next part",
-            Request::Advance { .. } => "running the week",
+            Request::Advance { .. } => "simulating the week",
             Request::RunDays(_) => "simulating",
             Request::Call { tool, .. } if tool.executes_code() => SCRIPT_STATUS,
             Request::Study(StudyRequest::Play) => "opening the run",

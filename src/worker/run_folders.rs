@@ -18,7 +18,7 @@ use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Access, NewRun, SealKey, Session, Storage, abandon_run, recover};
 use novamind_tools::Rejection;
 
-/// Asks for a preview of a run.
+/// A question for the preview of a run.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
     /// Id of the run.
@@ -45,7 +45,7 @@ impl SessionThread {
         self.send_response(Response::Runs(done, self.listed_runs().map_err(|error| error.to_string())));
     }
 
-    /// Lists the runs of the folder; for experimenters, those of all participants.
+    /// Lists the runs in the runs folder. For experimenters, lists the runs of all participants.
     fn listed_runs(&self) -> Result<Vec<RunSummary>, RunError> {
         if !self.lists_all_participants {
             return list_runs(&self.runs_folder);
@@ -73,7 +73,7 @@ impl SessionThread {
         self.list_runs(Some(done.map(|()| words).map_err(|error| error.to_string())));
     }
 
-    /// Creates a run in the folder. Its calls are synced to disk before they are confirmed.
+    /// Creates a run in the runs folder and opens it. Each call in the run is synced before it is confirmed.
     pub(super) fn create_run(&mut self, new: NewRun) {
         let storage = Storage::Runs(self.runs_folder.clone());
         let new = NewRun { storage, projection: true, sync_calls: true, ..new };
@@ -97,7 +97,7 @@ impl SessionThread {
             Access::Write => find_run(&self.runs_folder, id),
             Access::Read => find_run_to_read(&self.runs_folder, id),
         };
-        // The run that is inspected may be the one to open; its lock is released here.
+        // The session for inspections may have locked the run to open, so close this session first.
         self.inspection_run = None;
         let opened = found.and_then(|folder| {
             self.reject_study_session(&folder, access)?;
@@ -107,18 +107,18 @@ impl SessionThread {
             }
         });
         if opened.is_ok() {
-            // All confirmed actions are on disk; only derived rows can be missing.
+            // Ignore errors: all confirmed actions are on the disk; only database rows can be missing.
             let _ = self.detach(LeavingCause::Quit);
         }
         self.show_opened_run(opened, id, None);
     }
 
-    /// Only its participant may continue a session of a study, under its protocol.
+    /// Rejects playing a run of a participant: only the participant may continue it, with the protocol of the study.
     fn reject_study_session(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs_folder.as_path());
         if self.lists_all_participants && access == Access::Write && is_elsewhere {
             return Err(RunError::InvalidRequest(
-                "only its participant can continue this run; replay it instead".to_owned(),
+                "only the participant can continue this run; replay the run instead".to_owned(),
             ));
         }
         Ok(())

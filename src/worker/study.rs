@@ -10,9 +10,9 @@ use novamind_study::{DueQuestion, NextStep, ParticipantSession, Study, record_re
 pub(super) struct ActiveStudy {
     pub(super) study: Study,
     pub(super) participant: Option<ParticipantSession>,
-    /// The participant's consent, until a run records it.
+    /// The participant's consent that is not recorded in a run yet.
     pub(super) consent: Option<ConsentAgreement>,
-    /// The due questions as last reported.
+    /// Due questions that were last reported to the console.
     pub(super) due_questions: Vec<DueQuestion>,
 }
 
@@ -21,7 +21,7 @@ impl ActiveStudy {
         ActiveStudy { study, participant: None, consent: None, due_questions: Vec::new() }
     }
 
-    /// Returns the next step of the participant, or `None` before one has come.
+    /// Returns the next step of the participant, or `None` if no participant has started.
     pub(super) fn next_step(&self) -> Result<Option<NextStep>, RunError> {
         let Some(visit) = &self.participant else { return Ok(None) };
         let step = match visit.next_step()? {
@@ -124,7 +124,9 @@ impl SessionThread {
                 | NextStep::Session(Some(folder))
                 | NextStep::Questions(folder),
             ) => visit.open_run(&folder),
-            _ => Err(RunError::InvalidRequest("there is nothing to play".to_owned())),
+            _ => {
+                Err(RunError::InvalidRequest("there is no run to play in this step of the study".to_owned()))
+            }
         });
         self.show_opened_run(opened, "", None);
     }
@@ -153,7 +155,7 @@ impl SessionThread {
         }
     }
 
-    /// Erases the participant's data; none of their runs is open.
+    /// Erases the data of the participant. The caller must have closed the participant's run.
     fn erase_participant(&mut self) {
         self.queries.disconnect();
         let erased = self

@@ -6,13 +6,13 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
-/// Returns a new run in memory.
+/// Returns the session of a new run in memory.
 pub fn new_session() -> Session {
     let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
     Session::create(new, &Configuration::bundled()).expect("a run in memory")
 }
 
-/// Returns a run in memory that was played for some weeks with sensible settings.
+/// Returns the session of a run in memory that was played for some weeks with typical settings.
 pub fn played_session(weeks: usize) -> Session {
     let new = NewRun { seed: Some(7), days: Some(200), storage: Storage::Memory, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
@@ -42,7 +42,7 @@ fn apply_initial_settings(session: &mut Session) {
     }
 }
 
-/// Returns a run in memory in which enterprises wait for offers.
+/// Returns the session of a run in memory in which enterprises wait for offers.
 pub fn session_with_negotiations() -> Session {
     let new =
         NewRun { seed: Some(11), cash: Some(20_000_000.0), storage: Storage::Memory, ..NewRun::default() };

@@ -1,7 +1,7 @@
-//! The canonical byte representation of the state, used for state hashes and snapshots.
+//! The canonical byte representation of the simulator state, which state hashes and snapshots use.
 //!
-//! Integers are little-endian, floats are stored as their bits, fields follow declaration order and lists are
-//! preceded by their length (`docs/formats/snapshot.md`). Two worlds with equal bytes evolve identically, and
+//! Integers are little-endian, floats are stored as their bits, fields are in declaration order, and lists start with
+//! their length (`docs/formats/snapshot.md`). Two worlds with equal bytes evolve identically, and
 //! a world can be restored from its bytes ([`Restore`]).
 
 mod restore;
@@ -16,17 +16,17 @@ pub use segments::{HashSegment, hash_segments};
 
 use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
-/// Collects canonical bytes and hashes them in large chunks.
+/// A hasher that collects canonical bytes and hashes them in large chunks.
 pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
-    /// Pending bytes are hashed as soon as there are this many.
+    /// Number of pending bytes at which they are hashed.
     chunk_bytes: usize,
 }
 
-/// Bytes hashed at once: a power of two, so that each chunk is a complete subtree of the hash.
+/// Number of bytes that are hashed at once. A power of two, so that each chunk is a complete subtree of the hash.
 const CHUNK_BYTES: usize = 1 << 16;
-/// Values of a column that are converted before their bytes are appended.
+/// Number of column values that are converted before their bytes are appended.
 const VALUES_PER_BATCH: usize = 128;
 
 impl Default for CanonicalHasher {
@@ -40,7 +40,7 @@ impl Default for CanonicalHasher {
 }
 
 impl CanonicalHasher {
-    /// Appends bytes.
+    /// Appends bytes to the hashed sequence.
     #[inline]
     pub fn bytes(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
@@ -49,18 +49,18 @@ impl CanonicalHasher {
         }
     }
 
-    /// Returns a hasher that only collects bytes, with capacity for `room` of them.
+    /// Creates a hasher that only collects bytes, with capacity for `room` bytes.
     pub fn collector(room: usize) -> CanonicalHasher {
         let hasher = blake3::Hasher::new();
         CanonicalHasher { hasher, pending: Vec::with_capacity(room), chunk_bytes: usize::MAX }
     }
 
-    /// Returns the bytes of a collector.
+    /// Returns the bytes that a collector has collected.
     pub fn into_bytes(self) -> Vec<u8> {
         self.pending
     }
 
-    /// Appends the bytes of many values in batches, because columns are most of the state.
+    /// Appends the bytes of a column in batches, which is fast. Columns make up most of the state.
     fn update_column<T: Copy, const WIDTH: usize>(
         &mut self,
         values: &[T],
@@ -74,7 +74,7 @@ impl CanonicalHasher {
         }
     }
 
-    /// Hashes complete chunks and keeps the remainder: BLAKE3 is several times as fast on aligned input.
+    /// Hashes complete chunks and keeps the remaining bytes, because BLAKE3 is several times faster on aligned input.
     #[cold]
     fn hash_complete_chunks(&mut self) {
         let whole = self.pending.len() / self.chunk_bytes * self.chunk_bytes;
@@ -82,19 +82,19 @@ impl CanonicalHasher {
         self.pending.drain(..whole);
     }
 
-    /// Returns the hash of all bytes fed so far.
+    /// Returns the hash of all appended bytes.
     pub fn finish(mut self) -> blake3::Hash {
         self.hasher.update(&self.pending);
         self.hasher.finalize()
     }
 }
 
-/// A part of the state with a canonical byte representation.
+/// A value that has a canonical byte representation.
 pub trait Canonical {
     /// Feeds the bytes of this value to `hasher`.
     fn feed(&self, hasher: &mut CanonicalHasher);
 
-    /// Feeds the bytes of `values` in order.
+    /// Feeds the bytes of all `values` in order to `hasher`.
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher)
     where
         Self: Sized,
@@ -103,14 +103,14 @@ pub trait Canonical {
     }
 }
 
-/// Returns the hash of one value.
+/// Returns the hash of a value's canonical bytes.
 pub fn hash_of(value: &impl Canonical) -> blake3::Hash {
     let mut hasher = CanonicalHasher::default();
     value.feed(&mut hasher);
     hasher.finish()
 }
 
-/// Returns the canonical bytes of one value.
+/// Returns the canonical bytes of a value.
 pub fn bytes_of(value: &impl Canonical) -> Vec<u8> {
     let mut collector = CanonicalHasher::collector(0);
     value.feed(&mut collector);

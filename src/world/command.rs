@@ -1,5 +1,5 @@
-//! Commands that change the world. A tool call becomes a command, its random draws are resolved, and applying
-//! it cannot fail.
+//! Commands that change the world. A tool call is converted to a command, then its random draws are resolved, then it
+//! is applied. Applying a command cannot fail.
 //!
 //! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
 //! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
@@ -16,11 +16,11 @@ use super::random::Streams;
 use super::settings::SettingsChange;
 use super::state::World;
 
-/// A validated change.
+/// A validated change of the world that a tool call requests.
 #[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
-    /// No change: the tool only reads.
+    /// No change, because the tool is read-only.
     None,
     /// Replaces a family of settings.
     Set(SettingsChange),
@@ -28,60 +28,60 @@ pub enum Command {
     StartResearch(u8),
     /// Pays for an attempt to discover a group.
     ResearchMarket,
-    /// Pays for and orders a study of a group up to this level.
+    /// Pays for a study of a group up to this level and starts it.
     ResearchGroup(Group, u8),
-    /// No change, but the errors of the group's estimates are drawn.
+    /// No change of the world, but draws the errors of a group's estimates.
     ReadInsights(Group),
     /// Sends offers to enterprises.
     SendDeals(Vec<OfferDraft>),
-    /// Ends threads with enterprises, by number.
+    /// Ends the threads with these numbers.
     RejectDeals(Vec<u32>),
     /// Publishes a post of the player.
     Post(PostDraft),
 }
 
-/// A post to be published.
+/// A post of the player that is to be published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PostDraft {
-    /// Its text.
+    /// Text of the post.
     pub content: String,
-    /// Number of the post that it replies to.
+    /// Number of the post to which the player replies.
     pub reply_to: Option<u32>,
 }
 
-/// A validated change with its random draws.
+/// A validated change whose random draws are resolved.
 #[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum ResolvedCommand {
-    /// No change.
+    /// No change of the world.
     None,
-    /// A family of settings.
+    /// New values for a family of settings.
     Set(SettingsChange),
-    /// An R&D project and its price in dollars.
+    /// An R&D project that is started, and its price in dollars.
     StartResearch(Project, f64),
-    /// An attempt to discover a group.
+    /// An attempt to discover a group, with its outcome.
     ResearchMarket(Attempt),
-    /// A study of a group and its price in dollars.
+    /// A market study that is started, and its price in dollars.
     ResearchGroup(Study, f64),
-    /// No change; the estimates of a group, or `None` if the group is unknown.
+    /// The estimates of a group, or `None` if the group is unknown. Changes nothing.
     ReadInsights(Option<Box<Insights>>),
-    /// Messages to enterprises.
+    /// Messages with offers to enterprises.
     SendDeals(Vec<OfferMessage>),
     /// Numbers of the threads that end.
     RejectDeals(Vec<u32>),
-    /// A post of the player.
+    /// A post of the player with its effects.
     Post(OwnPostMade),
 }
 
 impl ResolvedCommand {
-    /// Returns whether the command changes nothing.
+    /// Returns whether the command leaves the world unchanged.
     pub fn is_read_only(&self) -> bool {
         matches!(self, ResolvedCommand::None | ResolvedCommand::ReadInsights(_))
     }
 }
 
 impl World {
-    /// Makes the random draws of `effect` without changing the world.
+    /// Resolves the random draws of `effect` without changing the world.
     pub fn resolve(&self, effect: Command, params: &Params, streams: &Streams) -> ResolvedCommand {
         match effect {
             Command::None => ResolvedCommand::None,
@@ -115,7 +115,7 @@ impl World {
         }
     }
 
-    /// Applies a resolved command to the current day and records it in `facts`.
+    /// Applies a resolved command on the current day and records its effects in `facts`.
     pub fn apply(&mut self, resolved: ResolvedCommand, params: &Params, facts: &mut Facts) {
         facts.start_day(self.day);
         match resolved {

@@ -1,4 +1,4 @@
-//! Values of a day that all customer mechanisms share, created after the service has been observed.
+//! Values of a day that all customer mechanisms share. They are computed after the day's service is known.
 
 use super::events::ServiceDay;
 use super::morning::Morning;
@@ -11,26 +11,26 @@ use crate::quality::TenureTable;
 /// The context in which customers use, evaluate, negotiate and pay on one day.
 #[derive(Clone, Copy)]
 pub struct DayContext<'a> {
-    /// Values fixed at the start of the day.
+    /// Values that were fixed at the start of the day.
     pub morning: &'a Morning,
-    /// Settings of today.
+    /// Settings that are in force today.
     pub settings: &'a Settings,
-    /// Service of today.
+    /// Service health of today.
     pub service: &'a ServiceDay,
-    /// Quality lost to today's service, if the fidelity setting applies it to decisions.
+    /// Quality loss from today's service, or 0 if the fidelity parameter does not apply it to decisions.
     pub service_penalty: f64,
-    /// In-app ads.
+    /// Strength of in-app advertising for each group.
     pub ads: &'a AdLoad<'a>,
-    /// Tenure bonuses by days.
+    /// Tenure bonuses by days as a subscriber.
     pub tenure: &'a TenureTable,
-    /// Parameters.
+    /// Parameters of the run.
     pub params: &'a Params,
-    /// Random streams.
+    /// Random streams of the run.
     pub streams: &'a Streams,
 }
 
 impl DayContext<'_> {
-    /// The day.
+    /// Returns the number of the simulated day.
     pub fn day(&self) -> u32 {
         self.morning.day
     }
@@ -40,7 +40,7 @@ impl DayContext<'_> {
 pub(crate) mod tests {
     use super::*;
 
-    /// Runs `check` with the context of a given day. Tenure is at most 600 days.
+    /// Runs `check` with a day context that has tenure bonuses for up to 600 days.
     pub(crate) fn with_day_context<R>(
         morning: &Morning,
         settings: &Settings,

@@ -1,4 +1,4 @@
-//! The simulation of one day: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
+//! The simulation of one day. [`step_day_observed`] lists the steps of a day in order (`docs/mechanics/day.md`).
 
 pub mod limits;
 pub mod observer;
@@ -35,16 +35,16 @@ use crate::quality::{TenureTable, service_penalty};
 use crate::reputation;
 use crate::reputation::{ReputationContribution, ReputationWrite};
 
-/// Hidden values of a day for inspections and for comparison with reference figures.
+/// Hidden values of a day. Inspections show them, and tests compare them with reference figures.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DayTrace {
-    /// Factors of today's leads.
+    /// Factors from which the leads of each group were computed.
     pub leads: ByGroup<LeadFactors>,
 }
 
 canonical! { DayTrace { leads } }
 
-/// Simulates one day and stores what happened in `facts`.
+/// Simulates one day and records its events in `facts`.
 pub fn step_day(
     world: &mut World,
     params: &Params,
@@ -54,7 +54,7 @@ pub fn step_day(
     step_day_observed(world, params, streams, &FixedInputs::default(), facts, &NoObserver)
 }
 
-/// Simulates one day like [`step_day`], with fixed inputs, and notifies an observer of each step.
+/// Simulates one day like [`step_day`], with fixed inputs and an observer that is notified of each step.
 pub fn step_day_observed(
     world: &mut World,
     params: &Params,
@@ -67,7 +67,7 @@ pub fn step_day_observed(
     let (day, total_days) = (world.day, world.total_days);
     facts.start_day(day);
 
-    // Values that stay constant during the day.
+    // Compute values that stay constant during the day.
     surges::draw_week_surges(day, total_days, &mut world.market.surges, params, streams);
     let morning = compute_morning(world, params);
     watch.on_morning(world, &morning, params);
@@ -76,7 +76,7 @@ pub fn step_day_observed(
         refresh_requirements(customers, &morning, params);
     }
 
-    // Usage, and the service under that load.
+    // Measure usage, then compute the service health at this usage.
     let metered = usage::meter(customers, &morning, params, facts);
     let service = service::observe_service(
         metered.total,
@@ -89,7 +89,7 @@ pub fn step_day_observed(
     research::complete_due_projects(day, product, facts);
     studies::complete_due_studies(day, market, params, facts);
 
-    // The market changes.
+    // Update the market.
     let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));
     if !fixed_inputs.fixes_drift(day) && drift::apply_drift(day, &mut market.drift, customers, &seats, params)
     {
@@ -144,14 +144,14 @@ pub fn step_day_observed(
     reputation::apply_contributions(&mut market.reputation, &moods, is_known, params, &mut on_write);
     watch.on_reputation_settled(&moods, market, params);
 
-    // Customers and the press write posts.
+    // Publish posts of customers and the press.
     if let Some(mut crowd) = crowd {
         crowd.add_departed(&renewals.cancelled_individuals, &negotiated.lost, params);
         crowd.publish(&mut market.social, params, streams, facts);
     }
     press::write_economy_posts(day, &market.economy, &mut market.social, params, streams, facts);
 
-    // New customers arrive.
+    // Process new leads.
     let coming = arrivals::ArrivalContext { day: &today, market };
     let subscribers = customers.active_by_group();
     let mut factors = arrivals::expected_leads(&coming, &subscribers);
@@ -160,7 +160,7 @@ pub fn step_day_observed(
     let leads = arrivals::process_arrivals(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
-    // Payments and costs.
+    // Collect payments and pay costs.
     let received = billing::collect_payments(customers, decided.billed, &today, &negotiated.suspended, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
@@ -193,15 +193,15 @@ pub fn step_day_observed(
     (figures, DayTrace { leads: factors })
 }
 
-/// Results of the first sweep over subscribers, by block.
+/// Results of the first sweep over subscribers, one element per block.
 struct SatisfactionRound {
     calls: Vec<IssueBatch>,
     moods: Vec<(Group, ReputationContribution)>,
-    /// `None` unless customers post today.
+    /// Post weights by block; `None` unless customers post today.
     post_weights: Option<Vec<BlockWeights>>,
 }
 
-/// Finds new issues, updates satisfaction, and weighs potential authors on posting days.
+/// Finds new issues, updates satisfaction and, on posting days, computes the weights of potential authors.
 fn update_satisfaction(
     customers: &mut Customers,
     day: &DayContext<'_>,
@@ -225,14 +225,14 @@ fn update_satisfaction(
     }
 }
 
-/// Results of the second sweep, by block.
+/// Results of the second sweep over subscribers, one element per block.
 struct DecisionRound {
     settled: Vec<SettledIssues>,
     decisions: Vec<BlockDecisions>,
     billed: Vec<BlockBills>,
 }
 
-/// Settles issues, then lets customers who are due decide; those who stay are billed.
+/// Settles issues, computes the decisions of due customers, and bills the customers who stay.
 fn settle_and_decide(
     customers: &mut Customers,
     calls: Vec<IssueBatch>,
@@ -250,7 +250,7 @@ fn settle_and_decide(
     DecisionRound { settled, decisions, billed }
 }
 
-/// Returns the values at the start of the world's current day.
+/// Computes the values that are fixed at the start of the current day.
 pub fn compute_morning(world: &World, params: &Params) -> Morning {
     let core = world.settings.core;
     Morning {
@@ -267,7 +267,7 @@ pub fn compute_morning(world: &World, params: &Params) -> Morning {
     }
 }
 
-/// Recomputes the required quality of all subscribers after a change of their curves or their group's budget drift.
+/// Recomputes the required quality of all subscribers after their curves or the budget drift of their group changed.
 fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &Params) {
     customers.sweep(|group, _, block| refresh_block(group, block, morning, params));
 }

@@ -1,18 +1,18 @@
 //! Seeded faults: deliberate errors of mechanisms for debugging exercises with the x-ray
 //! (`docs/debugging-walkthrough.md`).
 //!
-//! Faults are checked once per day, group or event and never per customer, so worlds without a fault run at
-//! full speed. A fault is not a parameter: no file and no setting can change it.
+//! The simulation checks faults once per day, group or event and never per customer, so a fault costs no speed. A
+//! fault is not a parameter: no file and no setting can change it.
 
 use serde::{Deserialize, Serialize};
 
 use super::params::Params;
 
-/// A deliberate error of one mechanism for a whole run.
+/// A deliberate error of one mechanism that lasts for a whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u32", into = "u32")]
 pub enum Fault {
-    /// The economy changes leads with the opposite sign of a group's sensitivity.
+    /// The effect of the economy on leads has the wrong sign.
     EconomyReversed,
     /// Satisfaction uses demand / quota instead of quota / demand.
     QuotaInverted,
@@ -20,22 +20,22 @@ pub enum Fault {
     SmallerRivalMove,
     /// Spillover has the wrong sign.
     SpillOverReversed,
-    /// Tenure is counted in days instead of months.
+    /// Tenure bonuses count days as months.
     TenureInDays,
-    /// Group totals of drift change twice.
+    /// The drift of each group is applied twice.
     DriftTwice,
-    /// Word of mouth uses the rate from the target to the source.
+    /// Word of mouth uses the rate in the opposite direction, from the target group to the source group.
     ReferralsSwapped,
-    /// Compute for all plans is paid at the unit cost of plan A.
+    /// Compute for all plans costs as much per unit as for plan A.
     ComputeOfOnePlan,
     /// Reputation can fall below its minimum.
     ReputationWithoutFloor,
-    /// Targeted development has the gain of general development.
+    /// Targeted development uses the gain of general development.
     TargetedGainAsGeneral,
 }
 
 impl Fault {
-    /// All faults; the number of each is its position, from 1.
+    /// All faults. The number of a fault is its position in this list, from 1.
     pub const ALL: [Fault; 10] = [
         Fault::EconomyReversed,
         Fault::QuotaInverted,
@@ -77,7 +77,7 @@ impl TryFrom<u32> for Fault {
 }
 
 impl Params {
-    /// Returns whether a world with these parameters has this fault.
+    /// Returns whether a run with these parameters has the given fault.
     #[inline]
     pub fn has_fault(&self, fault: Fault) -> bool {
         self.fault == Some(fault)

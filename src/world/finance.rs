@@ -1,4 +1,4 @@
-//! Money: the costs of a day, the ledger, and bankruptcy (`docs/mechanics/money.md`).
+//! Costs of a day, the ledger, and bankruptcy (`docs/mechanics/money.md`).
 
 use super::canonical::canonical;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote};
@@ -12,14 +12,14 @@ use super::settings::Settings;
 /// Cash of the company, in dollars: the sum of the ledger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finance {
-    /// Cash now; it may be negative within a day.
+    /// Current cash in dollars, which can be negative within a day.
     pub cash: f64,
 }
 
 canonical! { Finance { cash } }
 
 impl Finance {
-    /// Adds an entry to the ledger and to cash.
+    /// Adds an entry to the ledger and its amount to cash.
     pub fn book(&mut self, entry: LedgerEntry, facts: &mut Facts) {
         self.cash += entry.amount;
         facts.ledger.push(entry);
@@ -31,7 +31,7 @@ impl Finance {
     }
 }
 
-/// Returns the cost of compute in dollars: units used on each plan times the unit cost of its model today.
+/// Returns today's cost of compute in dollars: the units used on each plan times the unit cost of the plan's model.
 pub fn compute_cost(metered: &MeteredUsage, morning: &Morning, params: &Params) -> f64 {
     let tiers = match params.has_fault(Fault::ComputeOfOnePlan) {
         true => ByPlan([morning.core.tiers[Plan::A]; Plan::ALL.len()]),
@@ -41,8 +41,8 @@ pub fn compute_cost(metered: &MeteredUsage, morning: &Morning, params: &Params) 
     Plan::ALL.into_iter().map(cost).sum()
 }
 
-/// Books the running costs of a day and returns their sum, in dollars. General costs are booked even if they
-/// are zero, targeted ones only if they are not.
+/// Books the running costs of a day and returns their sum, in dollars. General costs are booked even if they are zero,
+/// targeted costs only if they are not zero.
 pub fn pay_running_costs(
     finance: &mut Finance,
     metered: &MeteredUsage,

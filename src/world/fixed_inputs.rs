@@ -1,43 +1,43 @@
-//! Inputs outside the player's control that are fixed at the values of a week before when days are simulated
-//! again with one change. Normal days fix none.
+//! Inputs outside the player's control that a re-simulation can fix at the values of an earlier week. The normal
+//! simulation fixes no inputs.
 
 use super::identifiers::ByGroup;
 use super::market::leads::LeadFactors;
 use super::product::service::FixedService;
 
-/// The inputs that are fixed from a day on, with their values. Other inputs develop normally.
+/// Inputs that are fixed from a day on, with their values. Other inputs change as usual.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FixedInputs {
-    /// The first fixed day; lists start with it.
+    /// First day with fixed inputs, to which the first value of each list belongs.
     pub from: u32,
-    /// Competitors make no moves.
+    /// Whether competitors make no moves.
     pub competitors: bool,
-    /// Expectations and budgets do not drift.
+    /// Whether expectations and budgets do not drift.
     pub drift: bool,
-    /// Channel yields stay constant.
+    /// Whether channel yields stay constant.
     pub yields: bool,
-    /// The economic index stays constant.
+    /// Whether the PMI stays constant.
     pub economy: bool,
-    /// Factor of demand surges by day; empty if surges develop normally.
+    /// Lead factor of demand surges for each day; empty if surges are not fixed.
     pub surges: Vec<f64>,
-    /// Factor of the day of the month by day; empty if the calendar applies.
+    /// Day-of-month factor for each day; empty if the calendar is not fixed.
     pub month_days: Vec<f64>,
-    /// Load and random draws of the service by day; empty if the service develops normally.
+    /// Usage and random draws of the service for each day; empty if the service is not fixed.
     pub service: Vec<FixedService>,
 }
 
 impl FixedInputs {
-    /// Returns whether the drift of a day is suppressed.
+    /// Returns whether drift is suppressed on a day.
     pub fn fixes_drift(&self, day: u32) -> bool {
         self.drift && day >= self.from
     }
 
-    /// Returns the fixed service inputs of a day, if any.
+    /// Returns the fixed service inputs of a day, or `None` if the service is not fixed on that day.
     pub fn fixed_service_on(&self, day: u32) -> Option<FixedService> {
         self.value_on_day(day, &self.service)
     }
 
-    /// Replaces lead factors of a day with fixed ones.
+    /// Replaces the lead factors of a day that are fixed.
     pub fn apply_to_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
         let month_day = self.value_on_day(day, &self.month_days);
         for lead_factors in
@@ -71,7 +71,7 @@ mod tests {
 
     const LOAD: f64 = 1000.0;
 
-    /// A company at the end of day `eve`, with its parameters and streams.
+    /// Returns the world of a company at the end of day `eve`, with its parameters and streams.
     fn company(eve: u32) -> (World, Params, Streams) {
         let (params, streams) = (Params::bundled(), Streams::new(9));
         let mut facts = Facts::default();
@@ -135,7 +135,7 @@ mod tests {
         let free = leads(FixedInputs::default());
         assert!(leads(FixedInputs { surges: vec![1.0], ..FixedInputs::default() }) * 2 < free);
         assert!(leads(FixedInputs { month_days: vec![0.25], ..FixedInputs::default() }) * 2 < free);
-        // A list that has ended fixes nothing.
+        // A list without a value for the day fixes nothing.
         assert_eq!(leads(FixedInputs { surges: Vec::new(), ..FixedInputs::default() }), free);
     }
 
@@ -154,11 +154,11 @@ mod tests {
         assert_eq!(service(1.0, 60), free);
         assert!(service(LOAD, 60).overload > 0.0 && free.overload == 0.0);
         assert_ne!(service(1.0, 59).p95_ms, free.p95_ms);
-        // Usage itself does not change.
+        // The fixed service inputs do not change usage.
         assert_eq!(service(LOAD, 60).total_usage, free.total_usage);
     }
 
-    /// A lead that arrives with and without overload makes the same decision, because the service does not affect it.
+    /// The service does not affect a lead's decision, so a lead decides the same with and without overload.
     #[test]
     fn service_does_not_affect_lead_decisions() {
         let (world, params, streams) = company(59);

@@ -1,14 +1,14 @@
 //! Identifiers that all crates share: groups, plans and channels.
 //!
-//! They contain no simulator behavior, so the console, policies and tools can use them without depending on
-//! the simulator (`docs/architecture.md`).
+//! Identifiers contain no simulator behavior, so the console, policies and tools can use them without depending on the
+//! simulator (`docs/architecture.md`).
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
 
-/// One of the 26 customer groups, as its position in the fixed group order.
+/// One of the 26 customer groups, stored as its position in the fixed group order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Group(u8);
 
@@ -19,7 +19,7 @@ const GROUP_IDS: [&str; Group::COUNT] = [
 ];
 
 impl Group {
-    /// Number of groups.
+    /// Number of customer groups.
     pub const COUNT: usize = 26;
 
     /// Returns all groups in their fixed order: S1 S2 S3 E1 E2 E3 D_S01..D_S10 D_E01..D_E10.
@@ -27,22 +27,22 @@ impl Group {
         (0..Self::COUNT as u8).map(Group)
     }
 
-    /// Returns the group at a position of the fixed order, if there is one.
+    /// Returns the group at a position of the fixed order, or `None` if the position is out of range.
     pub fn at(position: usize) -> Option<Group> {
         (position < Self::COUNT).then_some(Group(position as u8))
     }
 
-    /// Returns the group with this identifier; case-sensitive.
+    /// Returns the group with this identifier, which is case-sensitive.
     pub fn parse(id: &str) -> Option<Group> {
         GROUP_IDS.iter().position(|known| *known == id).and_then(Group::at)
     }
 
-    /// Identifier as used in tools and tables.
+    /// Returns the identifier of the group in tools and tables.
     pub fn id(self) -> &'static str {
         GROUP_IDS[self.index()]
     }
 
-    /// Position in the fixed order, 0..26.
+    /// Returns the position in the fixed group order, 0..26.
     #[inline]
     pub fn index(self) -> usize {
         usize::from(self.0)
@@ -54,7 +54,7 @@ impl Group {
         matches!(self.0, 3..=5 | 16..=25)
     }
 
-    /// Returns whether the group is known from day 0. The six initial groups are; the others have to be discovered.
+    /// Returns whether the group is one of the six groups that are known from day 0. Other groups have to be discovered.
     pub fn is_initially_known(self) -> bool {
         self.0 < 6
     }
@@ -70,11 +70,11 @@ impl fmt::Display for Group {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum Plan {
-    /// The first plan in every comparison.
+    /// Plan A, the first plan in every comparison.
     A,
-    /// The second plan.
+    /// Plan B, the second plan.
     B,
-    /// The third plan.
+    /// Plan C, the third plan.
     C,
 }
 
@@ -82,17 +82,17 @@ impl Plan {
     /// All plans in evaluation order.
     pub const ALL: [Plan; 3] = [Plan::A, Plan::B, Plan::C];
 
-    /// Returns the plan with this letter; case-sensitive.
+    /// Returns the plan with this letter, which is case-sensitive.
     pub fn parse(id: &str) -> Option<Plan> {
         Plan::ALL.into_iter().find(|plan| plan.id() == id)
     }
 
-    /// Returns the letter of the plan.
+    /// Returns the letter of the plan, which is its identifier.
     pub fn id(self) -> &'static str {
         ["A", "B", "C"][self.index()]
     }
 
-    /// Position in evaluation order, 0..3.
+    /// Returns the position in evaluation order, 0..3.
     #[inline]
     pub fn index(self) -> usize {
         self as usize
@@ -120,9 +120,9 @@ pub enum Channel {
     SearchAds,
     /// Ads on the business network.
     Linkedin,
-    /// Articles and guides.
+    /// Articles and guides by the company.
     ContentMarketing,
-    /// Rewards for recommending customers.
+    /// Rewards for customers who recommend the company.
     ReferralProgram,
 }
 
@@ -136,17 +136,17 @@ impl Channel {
         Channel::ReferralProgram,
     ];
 
-    /// Returns the channel with this identifier; case-sensitive.
+    /// Returns the channel with this identifier, which is case-sensitive.
     pub fn parse(id: &str) -> Option<Channel> {
         Channel::ALL.into_iter().find(|channel| channel.id() == id)
     }
 
-    /// Identifier as used in tools and tables.
+    /// Returns the identifier of the channel in tools and tables.
     pub fn id(self) -> &'static str {
         ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"][self.index()]
     }
 
-    /// Position in channel order, 0..5.
+    /// Returns the position in channel order, 0..5.
     #[inline]
     pub fn index(self) -> usize {
         self as usize
@@ -188,17 +188,17 @@ macro_rules! table_by {
         pub struct $name<T>(pub [T; $count]);
 
         impl<T> $name<T> {
-            /// Creates a table with one computed value per key.
+            /// Computes one value for each key.
             pub fn from_fn(mut value: impl FnMut($key) -> T) -> Self {
                 $name(std::array::from_fn(|position| value($key::at(position).expect("position is in range"))))
             }
 
-            /// Iterates over the values in order.
+            /// Iterates over the values in key order.
             pub fn iter(&self) -> std::slice::Iter<'_, T> {
                 self.0.iter()
             }
 
-            /// Iterates over keys and values in order.
+            /// Iterates over keys and values in key order.
             pub fn pairs(&self) -> impl Iterator<Item = ($key, &T)> {
                 self.0.iter().enumerate().map(|(at, value)| ($key::at(at).expect("position is in range"), value))
             }

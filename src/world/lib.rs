@@ -1,12 +1,12 @@
 //! The simulator: pure and deterministic, without I/O, clock, SQL or text output.
 //!
-//! Start with [`day::step_day`], which lists the steps of a day. Each mechanism is a function over the parts
-//! of the state it changes, and each formula is a small pure function whose tests contain check values
+//! [`day::step_day_observed`] lists the steps of a day and is the place to start reading. Each mechanism is a function
+//! of the state that it changes. Each formula is a small pure function whose tests contain check values
 //! (`docs/mechanics/README.md`).
 //!
 //! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`, `quota`, `series`;
-//! `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`; `enterprise`; `market`; `held`,
-//! `state`; `command`, `day`.
+//! `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`; `enterprise`; `market`;
+//! `fixed_inputs`, `state`; `command`, `day`.
 
 pub mod canonical;
 pub mod command;
@@ -34,6 +34,6 @@ pub mod state;
 #[cfg(any(test, feature = "test-kit"))]
 pub mod test_kit;
 
-/// Version of the mechanics. It increases with every change after which the same decisions can lead to a
-/// different state, so that runs of earlier builds are rejected with a reason instead of diverging.
+/// Version of the mechanics. Every change after which the same decisions can lead to a different state increases the
+/// version. Runs of earlier versions are rejected with a reason.
 pub const MECHANICS: u32 = 1;

@@ -1,38 +1,38 @@
-//! Values fixed at the start of a day.
+//! Values that are fixed at the start of a day.
 
 use super::identifiers::{ByGroup, ByPlan, Group, Plan};
 use super::settings::CoreSettings;
 use crate::customers::drift::Expectation;
 use crate::quality::delivered_quality;
 
-/// Values fixed at the start of a day. Today's improvements, completed research, drift and competitor moves
-/// affect individuals from tomorrow.
+/// Values that are fixed at the start of a day. For individuals, today's development, completed research, drift and
+/// competitor moves take effect tomorrow.
 #[derive(Debug, Clone)]
 pub struct Morning {
-    /// Day.
+    /// Number of the day.
     pub day: u32,
-    /// Settings in force.
+    /// Core settings of the day.
     pub core: CoreSettings,
-    /// Factor of the weekday.
+    /// Weekday factor of the calendar.
     pub weekday: f64,
-    /// Factor of the day of the month.
+    /// Day-of-month factor of the calendar.
     pub month_day: f64,
-    /// Quotas in units.
+    /// Quota of each plan, units per day.
     pub quotas: ByPlan<f64>,
     /// Quality multiplier of each plan's model.
     pub multipliers: ByPlan<f64>,
-    /// Product quality by group before the multiplier.
+    /// Product quality of each group, before the model's multiplier.
     pub product: ByGroup<f64>,
-    /// Product quality before the multiplier and without targeted development.
+    /// Product quality without targeted development, before the model's multiplier.
     pub shared_quality: f64,
-    /// The market's change of curves.
+    /// Market drift of each group's curves.
     pub expectations: ByGroup<Expectation>,
-    /// Active subscriptions.
+    /// Active subscriptions of each group.
     pub subscribers: ByGroup<u32>,
 }
 
 impl Morning {
-    /// Returns the quality delivered to a group on a plan, without today's service penalty.
+    /// Returns the delivered quality of a plan for a group, without today's service penalty.
     pub fn delivered(&self, group: Group, plan: Plan) -> f64 {
         delivered_quality(self.product[group], 0.0, 0.0, self.multipliers[plan])
     }
@@ -44,7 +44,7 @@ pub(crate) mod tests {
     use crate::params::Params;
     use crate::settings::Settings;
 
-    /// A morning with simple values; tests change what they need.
+    /// Returns a morning with simple values for tests, which can change each value.
     pub(crate) fn morning(day: u32) -> Morning {
         let params = Params::bundled();
         Morning {

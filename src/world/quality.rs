@@ -5,27 +5,27 @@ use serde::Serialize;
 use crate::fault::Fault;
 use crate::params::{Ads, Params, PerceivedQuality, Quality, UsageQuota};
 
-/// Returns the quality delivered to a group on a plan: (base + shared + group bonus) times the model's multiplier.
+/// Returns the delivered quality of a plan for a group: (base + shared + group bonus) times the model's multiplier.
 #[inline]
 pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multiplier: f64) -> f64 {
     (base + shared_bonus + group_bonus) * multiplier
 }
 
-/// Returns the share of a demand that a quota covers, 0..=1; 1 if there is no demand.
+/// Returns the share of a demand that a quota covers, 0..=1, or 1 without demand.
 #[inline]
 pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
-    // The division is unconditional because code without branches is vectorized.
+    // The division is unconditional, because the compiler can vectorize only code without branches.
     let covered = (quota.max(0.0) / demand).clamp(quality.quota_factor_min, quality.quota_factor_max);
     if demand <= 0.0 { 1.0 } else { covered }
 }
 
-/// Returns the quality lost to overload and outages today: 0.08 o + 0.20 outage (0 or 1).
+/// Returns today's quality loss from overload and outages: 0.08 o + 0.20 outage (0 or 1).
 #[inline]
 pub fn service_penalty(overload: f64, outage: bool, quality: &Quality) -> f64 {
     quality.service_overload_weight * overload + if outage { quality.service_outage_weight } else { 0.0 }
 }
 
-/// Returns the bonus of a good relationship, or the penalty of a bad one, from the stored value.
+/// Returns the quality bonus of a relationship. A relationship below the neutral point has a negative bonus.
 #[inline]
 pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
     quality.relationship_quality_bonus_max
@@ -33,62 +33,64 @@ pub fn relationship_bonus(relationship: f64, quality: &Quality) -> f64 {
         * quality.relationship_scale
 }
 
-/// Returns the relationship as most rules read it: exactly 0 counts as neutral
+/// Returns the relationship that most mechanisms use: exactly 0 counts as neutral
 /// (`docs/mechanics/product/quality.md#relationship-0`).
 #[inline]
 pub fn relationship_as_read(relationship: f64, quality: &Quality) -> f64 {
     if relationship == 0.0 { quality.fallback_relationship } else { relationship }
 }
 
-/// Returns the tenure bonus: 0.05 ln(1 + days / 30), 0 on the first day.
+/// Returns the tenure bonus: 0.05 ln(1 + days / 30), which is 0 on the first day.
 pub fn tenure_bonus(days_subscribed: u32, params: &Params) -> f64 {
     let Quality { stickiness_log_scale, stickiness_days_scale, .. } = params.quality;
     let scale = if params.has_fault(Fault::TenureInDays) { 1.0 } else { stickiness_days_scale };
     stickiness_log_scale * libm::log(1.0 + f64::from(days_subscribed) / scale)
 }
 
-/// Tenure bonuses by days subscribed, computed once because the logarithm dominates a daily sweep.
+/// Precomputed tenure bonuses by days since the start of the subscription. Computing the logarithm for every
+/// subscriber would dominate the time of a day.
 #[derive(Debug, Clone, Default)]
 pub struct TenureTable(Vec<f64>);
 
 impl TenureTable {
-    /// Computes the bonuses of 0..=days.
+    /// Computes the bonuses for 0..=days days.
     pub fn up_to(days: u32, params: &Params) -> TenureTable {
         TenureTable((0..=days).map(|day| tenure_bonus(day, params)).collect())
     }
 
-    /// Returns the bonus after this many days.
+    /// Returns the tenure bonus after `days_subscribed` days.
     #[inline]
     pub fn bonus(&self, days_subscribed: u32) -> f64 {
         self.0[days_subscribed as usize]
     }
 }
 
-/// Returns the effective strength of in-app ads, 0..=1: ln(1 + 9 a) / ln 10, a = the summed levels clamped to 0..=1.
+/// Returns the effective strength of in-app advertising, 0..=1: ln(1 + 9 a) / ln 10, where a is the summed strength
+/// clamped to 0..=1.
 pub fn ads_effect(summed_strength: f64, ads: &Ads) -> f64 {
     let strength = summed_strength.clamp(ads.strength_min, ads.strength_max);
     libm::log(1.0 + ads.log_curve_k * strength) / libm::log(1.0 + ads.log_curve_k)
 }
 
-/// The terms of a customer's perceived quality.
+/// The terms from which a customer's perceived quality is computed.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Experience {
-    /// Delivered quality minus the service penalty if it applies.
+    /// Delivered quality, less the service penalty if it applies.
     pub delivered: f64,
-    /// Relationship bonus.
+    /// Quality bonus from the relationship, negative below the neutral point.
     pub relationship: f64,
-    /// Tenure bonus.
+    /// Quality bonus from tenure.
     pub tenure: f64,
-    /// Quota factor, 0..=1.
+    /// Quota factor, 0..=1, by which quality terms are multiplied.
     pub quota: f64,
-    /// Open issue days times their penalty.
+    /// Quality loss from the open issue: issue age times penalty per day.
     pub issues: f64,
-    /// Sensitivity times effective ad strength.
+    /// Quality loss from ads: sensitivity times effective strength.
     pub ads: f64,
 }
 
-/// Returns the perceived quality: (delivered + relationship + tenure) quota - issues - ads in the release. In
-/// the paper, all terms are multiplied by the quota factor.
+/// Returns the perceived quality. The released simulator computes (delivered + relationship + tenure) quota - issues -
+/// ads. In the paper, all terms are multiplied by the quota factor.
 #[inline]
 pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 {
     let Experience { delivered, relationship, tenure, quota, issues, ads } = experience;
@@ -98,7 +100,7 @@ pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 
     }
 }
 
-/// Returns the demand that a quota is compared with: units per day, or per billing period.
+/// Returns the demand that is compared with a quota, in units per day or per billing period.
 #[inline]
 pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -> f64 {
     let of_period = daily_rate * f64::from(params.billing.billing_period_days);

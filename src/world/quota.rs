@@ -2,13 +2,14 @@
 
 use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 
-/// From here on, f64 cannot represent all integers.
+/// Upper limit of a quota. Above about this value, f64 cannot represent all integers.
 const MAX_UNITS_EXCLUSIVE: f64 = 9.0e15;
 
-/// Marks canonical bytes of a fractional quota. No number of whole units is as large, and no quota is negative.
+/// Bit that marks the canonical bytes of a fractional quota. Whole quotas never have this bit, because they are
+/// smaller than 2^63.
 const FRACTION_BIT: u64 = 1 << 63;
 
-/// A quota of at least 0.
+/// A quota in units per day and customer, at least 0.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub struct Quota(f64);
 
@@ -18,7 +19,7 @@ impl Quota {
         (0.0..MAX_UNITS_EXCLUSIVE).contains(&units).then_some(Quota(units.abs()))
     }
 
-    /// Returns the units per day and customer.
+    /// Returns the quota in units per day and customer.
     pub fn units(self) -> f64 {
         self.0
     }
@@ -30,7 +31,7 @@ impl From<u32> for Quota {
     }
 }
 
-/// Whole quotas have the canonical bytes of integers.
+/// The canonical bytes of a whole quota are those of a `u64`.
 impl Canonical for Quota {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         let bytes = match self.0.fract() == 0.0 {

@@ -1,12 +1,12 @@
-//! Named random streams, the source of all random draws of the world.
+//! Named random streams, from which the world makes all random draws.
 //!
-//! A stream is derived from (run seed, part, entity keys) by hashing them into a ChaCha8 key. Streams are
-//! independent: a draw in one never affects another, work can be distributed among threads, and two runs with
-//! the same seed have the same draws regardless of the players' decisions (`docs/mechanics/randomness.md`).
+//! The key of a ChaCha8 stream is a hash of the run seed, the part and the entity keys. Streams are independent: a
+//! draw in one stream never affects another stream, and work can be distributed among threads. Two runs with the same
+//! seed have the same draws regardless of the players' decisions (`docs/mechanics/randomness.md`).
 //!
-//! Each continuous draw uses exactly one 64-bit word, so a customer's traits are at fixed positions. Normal
-//! numbers come from the inverse distribution function (algorithm AS 241 of Wichura), which needs one word,
-//! no rejection, and at most one logarithm.
+//! Each continuous draw uses exactly one 64-bit word, so the draws of a customer's traits have fixed positions. Normal
+//! variates are computed by the inverse distribution function (Wichura's algorithm AS 241), which needs one word, no
+//! rejection, and at most one logarithm.
 
 mod numpy_stream;
 mod quantile;
@@ -21,17 +21,17 @@ pub use quantile::inverse_normal;
 
 macro_rules! parts {
     ($($(#[$doc:meta])* $name:ident = $text:literal,)*) => {
-        /// A part of the world that makes random draws, with the keys of its streams.
+        /// A part of the world that makes random draws. Each variant documents the entity keys of its streams.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(usize)]
         pub enum Part { $($(#[$doc])* $name,)* }
 
         impl Part {
-            /// All of them.
+            /// All parts.
             pub const ALL: &'static [Part] = &[$(Part::$name,)*];
 
 
-            /// Returns its name, from which its streams are derived.
+            /// Returns the name of the part, from which the keys of its streams are derived.
             pub fn name(self) -> &'static str {
                 match self { $(Part::$name => $text,)* }
             }
@@ -48,17 +48,17 @@ parts! {
     Research = "research",
     /// (group, n, day): usage rate of a billing period.
     UsageRate = "usage_rate",
-    /// (day, pool kind, pool, group): resolved support issues.
+    /// (day, pool kind, pool, group): selection of the support issues that are resolved.
     IssueResolution = "issue_resolution",
-    /// (day, group, block): new support issues.
+    /// (day, group, block): selection of the subscribers who open a support issue.
     IssueOpening = "issue_opening",
     /// (group, month): rate of involuntary churn.
     InvoluntaryMu = "involuntary_mu",
-    /// (day, group, block): involuntary cancellations.
+    /// (day, group, block): selection of the subscribers whose payment fails permanently.
     InvoluntaryRoll = "involuntary_roll",
-    /// (day, group, n, thread): size of a reputation damage; thread 0 for individuals.
+    /// (day, group, n, thread): size of a reputation damage. The thread is 0 for individuals.
     ReputationEvent = "reputation_event",
-    /// (group, n): traits and persona of a customer.
+    /// (group, n): traits and profile of a customer.
     Traits = "traits",
     /// (group, n): source of the customer.
     LeadSource = "lead_source",
@@ -68,35 +68,35 @@ parts! {
     LeadCount = "lead_count",
     /// (group, month): monthly change of the channel yields.
     LeadRateDrift = "lead_rate_drift",
-    /// (attempt): whether market research discovers a group, and which.
+    /// (attempt): success of market research, and the discovered group.
     MarketResearch = "market_research",
     /// (group, level, field): error of an estimate.
     Insight = "insight",
-    /// (day): demand surge.
+    /// (day): occurrence, duration and factor of a demand surge.
     Surge = "surge",
-    /// (day): step of the hidden index of the economy.
+    /// (day): daily step of the hidden PMI.
     Macro = "macro",
-    /// (day): test, size, feedback and drains of a competitor event.
+    /// (day): occurrence and gain of a competitor event, and the shares that it copies.
     CompetitorEvent = "competitor_event",
     /// (thread, turn): days until an enterprise replies to an offer.
     ReplyDelay = "reply_delay",
     /// (group, n): error of an enterprise in judging quality in its first negotiation.
     NegotiationNoise = "negotiation_noise",
-    /// (day, group, n): whether an enterprise requests another plan.
+    /// (day, group, n): whether an enterprise requests a different plan.
     PlanChange = "plan_change",
-    /// (day): estimated size, names, points of view and engagement of posts about competitors.
+    /// (day): estimated gain, names, points of view and engagement in posts about competitors.
     CompetitorPosts = "competitor_posts",
-    /// (day): rounds and engagement of posts about the economy; day 0: the first round.
+    /// (day): rounds and engagement of posts about the economy. Day 0 determines the first round.
     MacroPosts = "macro_posts",
-    /// (day): authors, then tone and engagement of each post.
+    /// (day): authors of customers' posts, then tone and engagement of each post.
     CustomerPosts = "customer_posts",
     /// (post, group): views of a post of the player.
     CeoViews = "ceo_views",
     /// (post, group): author of a comment, and its engagement.
     CeoReply = "ceo_reply",
-    /// (post): the wording of a post; never affects a number of the world.
+    /// (post): wording of a post. Never affects the numbers of the world.
     Voice = "voice",
-    /// (group, n): named profile of a customer.
+    /// (group, n): profile name of a customer.
     PersonaTemplate = "persona_template",
 }
 
@@ -105,20 +105,20 @@ parts! {
 pub struct Streams {
     seed: u64,
     keys: PartKeys,
-    /// The last day that uses the run's original keys, and those keys; `None` if no draws were replaced.
+    /// Last day with the original keys of the run, and these keys. `None` if no draws were replaced.
     original: Option<(u32, PartKeys)>,
 }
 
 type PartKeys = Vec<[u8; 32]>;
 
 impl Streams {
-    /// Streams of a run with this seed.
+    /// Creates the streams of a run with this seed.
     pub fn new(seed: u64) -> Self {
         Streams { seed, keys: part_keys("novamind random streams, version 1", &[seed]), original: None }
     }
 
-    /// Returns the streams of the same run with different draws after a day: equal salts give equal draws.
-    /// Draws up to that day that are read again stay the same, see [`Streams::open_for_day`].
+    /// Returns the streams of the same run with different draws after `last_own_day`. Equal salts result in equal
+    /// draws. Draws of earlier days stay the same if they are read with [`Streams::open_for_day`].
     pub fn redrawn_after(&self, salt: u64, last_own_day: u32) -> Self {
         let keys = part_keys("novamind random streams, redrawn, version 1", &[self.seed, salt]);
         let original = self.original.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
@@ -130,13 +130,13 @@ impl Streams {
         self.seed
     }
 
-    /// Opens the stream of a part for up to four entity keys. Equal arguments always give the same stream.
+    /// Opens the stream of a part for up to four entity keys. Equal arguments always return the same stream.
     pub fn open<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> Stream {
         Stream::from_key(self.key(part, entity))
     }
 
-    /// Opens the stream of a value that is drawn on a day and read again later. If draws were replaced after
-    /// that day, it uses the original keys.
+    /// Opens the stream of a value that is drawn on `day` and read again on later days. If draws were replaced only
+    /// after `day`, the stream has the original keys.
     pub fn open_for_day<const KEYS: usize>(&self, day: u32, part: Part, entity: [u64; KEYS]) -> Stream {
         let keys = match &self.original {
             Some((last, bytes)) if day <= *last => bytes,
@@ -149,7 +149,8 @@ impl Streams {
         stream_key(&self.keys[part as usize], entity)
     }
 
-    /// Returns the stream keys of a part for many entities; [`Stream::from_key`] opens each as [`Streams::open`] does.
+    /// Returns the stream keys of a part for many entities. [`Stream::from_key`] opens a key's stream, which equals
+    /// the stream of [`Streams::open`].
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
         map_in_lanes(
             entities,
@@ -161,7 +162,7 @@ impl Streams {
         )
     }
 
-    /// Returns the first word of the stream of each entity, for streams with a single draw.
+    /// Returns the first word of each entity's stream, for streams with a single draw.
     pub fn first_words<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<Word> {
         map_in_lanes(
             entities,
@@ -191,7 +192,7 @@ fn stream_key<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> Stream
     StreamKey(*blake3::keyed_hash(part, &bytes[..8 * KEYS]).as_bytes())
 }
 
-/// Processes entities in batches of eight if the processor supports it, otherwise and for the remainder one by one.
+/// Processes entities in batches of eight if the processor supports batches. The remainder is processed one by one.
 fn map_in_lanes<E: Copy, R>(
     entities: &[E],
     single: impl Fn(E) -> R,
@@ -209,7 +210,7 @@ fn map_in_lanes<E: Copy, R>(
     results
 }
 
-/// The key of a stream.
+/// The ChaCha8 key of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StreamKey([u8; 32]);
 
@@ -248,17 +249,17 @@ impl Word {
     }
 }
 
-/// An open stream. Its position is not stored when it is dropped.
+/// An open random stream. Dropping the stream discards its position.
 #[derive(Debug, Clone)]
 pub struct Stream(ChaCha8Rng);
 
 impl Stream {
-    /// Opens the stream with this key.
+    /// Opens the stream with this key at its start.
     pub fn from_key(key: StreamKey) -> Stream {
         Stream(ChaCha8Rng::from_seed(key.0))
     }
 
-    /// Returns the next 64 bits.
+    /// Returns the next word of 64 random bits.
     pub fn word(&mut self) -> Word {
         Word(self.0.next_u64())
     }
@@ -304,12 +305,12 @@ impl Stream {
         -mean * libm::log1p(-self.uniform())
     }
 
-    /// Draws a log-normal variate: exp of a normal one.
+    /// Draws a log-normal variate: the exponential of a normal variate.
     pub fn log_normal(&mut self, mu: f64, sigma: f64) -> f64 {
         libm::exp(self.normal(mu, sigma))
     }
 
-    /// Draws a Poisson variate; 0 if the mean is not positive.
+    /// Draws a Poisson variate. Returns 0 if the mean is not positive.
     pub fn poisson(&mut self, mean: f64) -> u64 {
         if mean < 10.0 {
             poisson_by_inversion(mean, self.uniform())
@@ -318,7 +319,7 @@ impl Stream {
         }
     }
 
-    /// Fills a slice with raw words, one per position, for blocks in which each customer has a fixed position.
+    /// Fills a slice with 32-bit words of the stream, for blocks in which each customer has a fixed position.
     pub fn fill(&mut self, words: &mut [u32]) {
         const PIECE: usize = 64;
         let mut bytes = [0u8; 4 * PIECE];
@@ -332,7 +333,7 @@ impl Stream {
     }
 }
 
-/// Returns true with probability `p`, decided by a raw word of [`Stream::fill`] (resolution 2^-32).
+/// Returns true with probability `p`, decided by a word of [`Stream::fill`] with a resolution of 2^-32.
 #[inline]
 pub fn word_below(word: u32, p: f64) -> bool {
     f64::from(word) < p * 4_294_967_296.0
@@ -344,7 +345,7 @@ fn poisson_by_inversion(mean: f64, u: f64) -> u64 {
     }
     let (mut count, mut term) = (0u64, libm::exp(-mean));
     let mut below = term;
-    // For means below 10, the probability beyond 200 is below the precision of f64.
+    // For means below 10, the probability of a value above 200 is below the precision of f64.
     while u >= below && count < 200 {
         count += 1;
         term *= mean / count as f64;
@@ -353,7 +354,8 @@ fn poisson_by_inversion(mean: f64, u: f64) -> u64 {
     count
 }
 
-/// Transformed rejection with squeeze (Hörmann 1993, algorithm PTRS), exact for means of 10 and above.
+/// Draws a Poisson variate by transformed rejection with squeeze (Hörmann 1993, algorithm PTRS), which is exact for
+/// means of 10 and above.
 fn poisson_by_rejection(mean: f64, stream: &mut Stream) -> u64 {
     let (root, log_mean) = (mean.sqrt(), libm::log(mean));
     let b = 0.931 + 2.53 * root;
@@ -430,7 +432,7 @@ mod tests {
 
     #[test]
     fn first_bits_are_frozen() {
-        // Frozen, because every recorded run depends on these bits.
+        // These bits must never change, because every recorded run depends on them.
         let mut stream = Streams::new(42).open(Part::Macro, [1]);
         assert_eq!(stream.uniform().to_bits(), FIRST_UNIFORM);
         assert_eq!(stream.standard_normal().to_bits(), SECOND_NORMAL);
@@ -449,7 +451,7 @@ mod tests {
         assert_eq!(since(&one, 30), since(&streams, 30));
         assert_ne!(since(&one, 31), since(&streams, 31));
         assert_eq!(since(&streams, 31), streams.open(Part::InvoluntaryMu, [3, 1]).word());
-        // Replacing draws again keeps the original keys of earlier days.
+        // A second replacement of draws keeps the original keys of earlier days.
         assert_eq!(since(&one.redrawn_after(7, 60), 30), since(&streams, 30));
     }
 

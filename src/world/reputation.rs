@@ -1,4 +1,4 @@
-//! Reputation: daily contributions of subscribers, spillover, and damage by departures
+//! Reputation: daily contributions of subscribers, spillover, and damage from cancellations
 //! (docs/mechanics/market/reputation.md).
 
 use std::ops::AddAssign;
@@ -10,12 +10,12 @@ use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Params, Reputation};
 
-/// Contributions of some subscribers to their group's reputation today.
+/// Today's contributions of several subscribers to the reputation in their group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReputationContribution {
-    /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
+    /// Sum of the subscribers' contributions (`docs/mechanics/market/reputation.md`).
     pub sum: f64,
-    /// Number of contributors.
+    /// Number of contributing subscribers.
     pub count: u32,
 }
 
@@ -26,7 +26,7 @@ impl AddAssign for ReputationContribution {
     }
 }
 
-/// Reputation by group, 0.001..=1 after the first write.
+/// Reputation in each group, 0.001..=1 after the first change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReputationBook {
     values: ByGroup<f64>,
@@ -34,67 +34,67 @@ pub struct ReputationBook {
 
 canonical! { ReputationBook { values } }
 
-/// The cause of a change of reputation.
+/// The cause of a reputation change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ReputationCause {
-    /// Individuals cancelled because no plan was acceptable.
+    /// Cancellations of individuals who found no acceptable plan.
     Cancellations,
-    /// An enterprise was lost.
+    /// Loss of an enterprise.
     LostEnterprise,
     /// Today's contributions of the group's own subscribers.
     Contributions(ReputationContribution),
-    /// Contributions of subscribers of another group.
+    /// Spillover of a reputation change in another group.
     Spillover(Spillover),
 }
 
-/// The share of a group's change that affects another: change × weight × factor.
+/// The effect of one group's reputation change on another group: change × weight × factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spillover {
-    /// The group whose reputation changed.
+    /// The source group, whose reputation changed.
     pub source: Group,
-    /// Change of the source by its own subscribers.
+    /// Change of the source group's reputation by its subscribers.
     pub change: f64,
-    /// Weight of the source on the group.
+    /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// Factor of all spillover.
+    /// Factor that all spillover is multiplied by.
     pub factor: f64,
 }
 
-/// Consecutive changes that one mechanism made to a reputation, and their result.
+/// Consecutive changes of a reputation by one mechanism, and the resulting reputation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReputationWrite<'a> {
-    /// The group.
+    /// Group whose reputation changed.
     pub group: Group,
-    /// The mechanism.
+    /// Mechanism that changed the reputation.
     pub cause: ReputationCause,
-    /// Changes before clamping.
+    /// Changes of the reputation before clamping.
     pub changes: &'a [f64],
-    /// Reputation before the first change.
+    /// Reputation before the first of the changes.
     pub before: f64,
-    /// Reputation after the last change.
+    /// Reputation after the last of the changes.
     pub after: f64,
 }
 
-/// A callback for changes of reputation.
+/// A callback for reputation changes.
 pub type OnReputationWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
 
 impl ReputationBook {
-    /// Returns the reputations of day 0, which are equal for all groups.
+    /// Returns the reputations on day 0, which are equal for all groups.
     pub fn initial(params: &Params) -> ReputationBook {
         ReputationBook { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
     }
 
-    /// Returns the reputation of a group.
+    /// Returns the reputation in a group.
     pub fn get(&self, group: Group) -> f64 {
         self.values[group]
     }
 
-    /// Sets a reputation without clamping; for tests and given states.
+    /// Sets a reputation without clamping, for tests and constructed states.
     pub fn set(&mut self, group: Group, value: f64) {
         self.values[group] = value;
     }
 
-    /// Adds a change, clamps the result to 0..=1 and applies the minimum.
+    /// Adds a change to a reputation, clamps the result to 0..=1 and applies the minimum.
     pub fn add(&mut self, group: Group, change: f64, params: &Params) {
         let reputation = &params.reputation;
         let moved = (self.values[group] + change)
@@ -103,7 +103,7 @@ impl ReputationBook {
         self.values[group] = if has_floor { moved.max(reputation.reputation_floor) } else { moved };
     }
 
-    /// Adds changes in order and reports the result to `on_write`.
+    /// Adds changes to a reputation in order and calls `on_write` with the result.
     pub fn add_all(
         &mut self,
         (group, cause): (Group, ReputationCause),
@@ -117,46 +117,46 @@ impl ReputationBook {
     }
 }
 
-/// Returns the contribution of one subscriber: 0.0005 S, doubled if S is negative.
+/// Returns the daily contribution of one subscriber to reputation: 0.0005 S, doubled if S is negative.
 #[inline]
 pub fn contribution(satisfaction: f64, reputation: &Reputation) -> f64 {
     let weight = if satisfaction < 0.0 { reputation.negative_satisfaction_multiplier } else { 1.0 };
     reputation.base_rep_per_customer * weight * satisfaction
 }
 
-/// Returns the change of a group's reputation from today's contributions, before the threshold: (sum / m)
-/// log2(m), m = max(count, 2).
+/// Returns the change of a group's reputation from today's contributions, before the threshold is applied: (sum / m)
+/// log2(m), where m = max(count, 2).
 pub fn unrounded_daily_change(mood: &ReputationContribution, reputation: &Reputation) -> f64 {
     let size = f64::from(mood.count.max(reputation.min_group_size));
     mood.sum / size * libm::log2(size)
 }
 
-/// Returns the change that is applied, or `None` if it is below the threshold.
+/// Returns the daily change of a group's reputation, or `None` if the change is below the threshold.
 pub fn daily_change(mood: &ReputationContribution, reputation: &Reputation) -> Option<f64> {
     let change = unrounded_daily_change(mood, reputation);
     (change.abs() >= reputation.daily_delta_min_abs).then_some(change)
 }
 
-/// The spillover of a group's change to another known group.
+/// The spillover of a group's reputation change to another known group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SpilloverEffect {
-    /// The group that changed.
+    /// The source group, whose reputation changed.
     pub from: Group,
-    /// The affected group.
+    /// The group to which the change spills over.
     pub to: Group,
-    /// Change of the source group.
+    /// Change of the source group's reputation.
     pub source_change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
-    /// Factor of all spillover.
+    /// Factor that all spillover is multiplied by.
     pub factor: f64,
-    /// Change of the reputation, applied if `counts` is true.
+    /// Change of the affected group's reputation, which is applied if `counts` is true.
     pub change: f64,
-    /// Whether the weight is positive and the change is large enough.
+    /// Whether the spillover is applied: the weight is positive and the change is large enough.
     pub counts: bool,
 }
 
-/// Returns the spillover of a group's change to another group.
+/// Returns the spillover of a group's reputation change to another group.
 pub fn spillover_effect(change: f64, from: Group, to: Group, params: &Params) -> SpilloverEffect {
     let reputation = &params.reputation;
     let weight = params.reputation_weight(from, to);
@@ -167,27 +167,27 @@ pub fn spillover_effect(change: f64, from: Group, to: Group, params: &Params) ->
     SpilloverEffect { from, to, source_change, weight, factor, change, counts }
 }
 
-/// Returns the scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
+/// Returns the factor of a single event's reputation damage: log2(k) / k, where k = max(subscribers, 2).
 pub fn event_scale(subscribers: u32, reputation: &Reputation) -> f64 {
     let size = f64::from(subscribers.max(reputation.event_scale_min_group_size));
     libm::log2(size) / size
 }
 
-/// Returns the damage by an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
+/// Returns the reputation damage of an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
 pub fn cancel_damage(satisfaction: f64, subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
     let bad = satisfaction.min(0.0);
     event_damage(subscribers, u, reputation)
         * (1.0 + reputation.cancel_negative_satisfaction_coef * bad * bad)
 }
 
-/// Returns the damage by a lost enterprise: the same without the satisfaction term.
+/// Returns the reputation damage of a lost enterprise, which has no satisfaction term.
 pub fn event_damage(subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
     reputation.reputation_quality_cancel_damage
         * (reputation.cancel_damage_noise_offset + u)
         * event_scale(subscribers, reputation)
 }
 
-/// Changes reputations by today's contributions; each change spills over to the other known groups by their weights.
+/// Applies today's contributions to all reputations, and the spillover of each change to the other known groups.
 pub fn apply_contributions(
     book: &mut ReputationBook,
     moods: &ByGroup<ReputationContribution>,
@@ -221,7 +221,7 @@ mod tests {
         Group::parse(id).expect("a group")
     }
 
-    /// Reputations after a day with these moods: (group, subscribers, satisfaction).
+    /// Returns the reputations after a day with the given `moods`: group, number of subscribers, satisfaction.
     fn reputation_after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> ReputationBook {
         let params = Params::bundled();
         let mut book = ReputationBook::initial(&params);

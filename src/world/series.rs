@@ -1,5 +1,5 @@
-//! Recorded series of the released simulator that do not depend on the company's actions. A scenario can
-//! replay them instead of drawing (`docs/mechanics/randomness.md#recorded-series`).
+//! Recorded series of the released simulator that do not depend on the company's actions. A scenario can replay these
+//! series instead of drawing values (`docs/mechanics/randomness.md#recorded-series`).
 
 #[cfg(test)]
 mod tests;
@@ -12,7 +12,7 @@ use serde::Deserialize;
 use super::identifiers::{Channel, Group};
 use super::params::{Params, Replayed};
 
-/// One recorded run of the market.
+/// Series that were recorded in one run of the released simulator.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Series {
@@ -27,18 +27,18 @@ pub struct Series {
 /// A recorded competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordedEvent {
-    /// Size before growth over the run.
+    /// Gain in quality before the growth over the run.
     pub size: f64,
-    /// Share of the shared bank that competitors could copy.
+    /// Share of the player's shared quality bank that competitors could copy.
     pub u: f64,
 }
 
 /// A recorded demand surge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordedSurge {
-    /// Length in days.
+    /// Duration in days.
     pub days: u32,
-    /// Factor on leads.
+    /// Factor by which the surge multiplies leads.
     pub multiplier: f64,
 }
 
@@ -48,7 +48,7 @@ static SEED_42: LazyLock<Series> = LazyLock::new(|| {
 });
 
 impl Params {
-    /// Returns the recorded series that this world replays, if any.
+    /// Returns the recorded series that a world with these parameters replays, if any.
     pub fn replayed_series(&self) -> Option<&'static Series> {
         match self.series.replayed {
             Replayed::None => None,
@@ -57,36 +57,37 @@ impl Params {
     }
 }
 
-/// Each method returns `None` beyond the end of the record; the world then draws as usual.
+/// Each method returns `None` after the end of the recorded series. The world then draws as usual.
 impl Series {
-    /// Returns the hidden index of the economy on a day.
+    /// Returns the hidden PMI on a day.
     pub fn pmi(&self, day: u32) -> Option<f64> {
         self.pmi.get(day.checked_sub(1)? as usize).copied()
     }
 
-    /// Returns the competitor event of a day, if there was one.
+    /// Returns the competitor event of a day, or `Some(None)` for a day without an event.
     pub fn competitor_event(&self, day: u32) -> Option<Option<RecordedEvent>> {
         let found = self.competitor_events.iter().find(|(number, _, _)| *number == day);
         self.pmi(day).map(|_| found.map(|&(_, size, u)| RecordedEvent { size, u }))
     }
 
-    /// Returns the demand surge that was drawn for a day, if there was one.
+    /// Returns the demand surge that was drawn for a day, or `Some(None)` for a day without a surge.
     pub fn demand_surge(&self, day: u32) -> Option<Option<RecordedSurge>> {
         let found = self.demand_surges.iter().find(|(number, _, _)| *number == day);
         self.pmi(day).map(|_| found.map(|&(_, days, multiplier)| RecordedSurge { days, multiplier }))
     }
 
-    /// Returns the group that an attempt of market research discovered, if any; attempts count from 0.
+    /// Returns the group that an attempt of market research discovered, or `Some(None)` if the attempt failed.
+    /// `earlier` is the number of earlier attempts.
     pub fn attempt(&self, earlier: u32) -> Option<Option<Group>> {
         self.market_research.get(earlier as usize).map(|id| Group::parse(id))
     }
 
-    /// Returns the rate of failed payments of a group in a month, counted from 0.
+    /// Returns the rate of failed payments in a group in a month. Months are counted from 0.
     pub fn involuntary_rate(&self, group: Group, month: u32) -> Option<f64> {
         self.involuntary_churn.get(&group)?.get(month as usize).copied()
     }
 
-    /// Returns the leads a day per 1,000 dollars a day in a month, counted from 1.
+    /// Returns the channel yield in a month, in leads per 1,000 dollars. Months are counted from 1.
     pub fn channel_yield(&self, channel: Channel, group: Group, month: u32) -> Option<f64> {
         self.channel_yields.get(&channel)?.get(&group)?.get(month.checked_sub(1)? as usize).copied()
     }

@@ -1,7 +1,7 @@
 //! The player's settings (`docs/interfaces/tools.md`).
 //!
-//! A setting made between two days takes effect on the next day and stays until it is changed. The world
-//! stores only current values; their history is in the tables.
+//! A setting that is made on a decision day takes effect on the next day and stays in force until it is changed. The
+//! world stores only current values; tables store the history.
 
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -11,110 +11,110 @@ use super::identifiers::{ByPlan, Channel, Group, Plan};
 use super::params::Params;
 use super::quota::Quota;
 
-/// Dollars (or strengths) per group, in the order in which the player listed them.
+/// Dollars or strength for each group, in the order in which the player listed the groups.
 pub type PerGroup = IndexMap<Group, f64>;
-/// Dollars per plan.
+/// Dollars for each plan.
 pub type PerPlan = IndexMap<Plan, f64>;
-/// Dollars (or strengths) per customer number; unassigned numbers are allowed and have no effect.
+/// Dollars or strength for each customer number. Unassigned numbers are allowed and have no effect.
 pub type PerCustomer = IndexMap<i64, f64>;
 
-/// All settings in force.
+/// All current settings of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Prices, tiers, quotas, daily spend, capacity: one row of `config_history`.
+    /// Prices, tiers, quotas, daily spending and capacity, which are one row of `config_history`.
     pub core: CoreSettings,
-    /// Ongoing discounts.
+    /// Ongoing discounts for subscribers.
     pub promotion: Promotion,
-    /// Discounts for new leads.
+    /// First-bill discounts for new leads.
     pub lead_promotion: LeadPromotion,
-    /// In-app advertising.
+    /// Strength of in-app advertising.
     pub ads_strength: AdsStrength,
-    /// Advertising budget, dollars a day.
+    /// Advertising budgets, dollars per day.
     pub targeted_ads: TargetedAds,
-    /// Additional operations, dollars a day.
+    /// Targeted operations, dollars per day.
     pub targeted_operations: TargetedOperations,
-    /// Development for single groups, dollars a day.
+    /// Targeted development, dollars per day.
     pub targeted_development: TargetedDevelopment,
 }
 
 /// The settings that `config_history` records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoreSettings {
-    /// List prices, dollars a month.
+    /// List prices, dollars per month.
     pub prices: ByPlan<f64>,
-    /// Model tiers, 1..=5.
+    /// Model tier of each plan, 1..=5.
     pub tiers: ByPlan<u8>,
-    /// Quotas, units a day and customer.
+    /// Quotas, units per day and customer.
     pub quotas: ByPlan<Quota>,
-    /// Operations, dollars a day.
+    /// Operations, dollars per day.
     pub operations: f64,
-    /// Development, dollars a day.
+    /// Development, dollars per day.
     pub development: f64,
-    /// Capacity tier, 0..=7.
+    /// Rented capacity tier, 0..=7.
     pub capacity_tier: u8,
 }
 
-/// Ongoing discounts, dollars a month and seat; scopes add up, with a minimum of 0.
+/// Ongoing discounts, dollars per month and seat. The discounts of all scopes are added, with a minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Promotion {
-    /// For all subscribers.
+    /// Discount for all subscribers.
     pub global: f64,
-    /// For subscribers of a group.
+    /// Discounts for the subscribers of each group.
     pub by_group: PerGroup,
-    /// For single customers.
+    /// Discounts for individual customers.
     pub by_customer: PerCustomer,
-    /// For a group's subscribers on a plan.
+    /// Discounts for the subscribers of a group on a plan.
     pub by_group_plan: IndexMap<Group, PerPlan>,
 }
 
-/// Discounts for a lead's choice and first bill, dollars a month; scopes add up, with a minimum of 0.
+/// Discounts for a lead's choice and first bill, dollars per month. The discounts of all scopes are added, with a minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct LeadPromotion {
-    /// For every lead.
+    /// Discount for every lead.
     pub global: f64,
-    /// For leads of a group.
+    /// Discounts for the leads of each group.
     pub by_group: PerGroup,
-    /// For leads of an advertising channel.
+    /// Discounts for the leads of each advertising channel.
     pub by_channel: IndexMap<Channel, f64>,
-    /// For a group's leads of a channel.
+    /// Discounts for the leads of a group through a channel.
     pub by_channel_group: IndexMap<Channel, PerGroup>,
 }
 
-/// In-app advertising, each level 0..=1; levels add up and are clamped.
+/// Strengths of in-app advertising, each 0..=1. The strengths of all scopes are added and clamped.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct AdsStrength {
-    /// For all subscribers.
+    /// Strength for all subscribers.
     pub global: f64,
-    /// For a group.
+    /// Strengths for the subscribers of each group.
     pub by_group: PerGroup,
-    /// For single customers.
+    /// Strengths for individual customers.
     pub by_customer: PerCustomer,
 }
 
-/// Advertising budget by channel and group, dollars a day.
+/// Advertising budgets by channel and group, dollars per day.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct TargetedAds {
-    /// Channel, then group.
+    /// Budget for each channel and group.
     pub targeted_spend: IndexMap<Channel, PerGroup>,
 }
 
-/// Operations targeted at a part of the open issues, dollars a day; each entry is a separate pool.
+/// Operations budgets for parts of the open issues, dollars per day. Each budget is a separate support pool.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct TargetedOperations {
-    /// Issues of a group.
+    /// Budgets for the issues of each group.
     pub by_group: PerGroup,
-    /// Issues on a plan.
+    /// Budgets for the issues of each plan.
     pub by_plan: PerPlan,
-    /// Issues of a group on a plan.
+    /// Budgets for the issues of a group on a plan.
     pub by_group_plan: IndexMap<Group, PerPlan>,
-    /// Issues of one customer.
+    /// Budgets for the issues of individual customers.
     pub by_customer: PerCustomer,
 }
 
-/// Development targeted at groups, dollars a day.
+/// Development targeted at groups, dollars per day.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct TargetedDevelopment {
-    /// By group.
+    /// Development budget for each group.
     pub targeted_spend: PerGroup,
 }
 
@@ -144,7 +144,7 @@ fn initial_quotas(params: &Params) -> ByPlan<Quota> {
 }
 
 impl Settings {
-    /// Returns the settings of day 0.
+    /// Returns the settings on day 0.
     pub fn initial(params: &Params) -> Settings {
         let initial = &params.initial;
         let core = CoreSettings {
@@ -168,7 +168,7 @@ impl Settings {
 }
 
 impl Settings {
-    /// Returns the largest discount of any entry, dollars a month.
+    /// Returns the largest discount of any scope, dollars per month.
     pub fn largest_discount(&self) -> f64 {
         let ongoing = &self.promotion;
         let of_leads = &self.lead_promotion;
@@ -187,7 +187,7 @@ impl Settings {
         .fold(0.0, f64::max)
     }
 
-    /// Replaces a family.
+    /// Replaces a family of settings.
     pub fn apply(&mut self, change: SettingsChange) {
         match change {
             SettingsChange::Core(value) => self.core = value,
@@ -202,7 +202,7 @@ impl Settings {
 }
 
 impl Promotion {
-    /// Returns the sum of the scopes for a customer and a plan: P(i, g, p), before the minimum of 0.
+    /// Returns the sum of all discounts for a customer on a plan, P(i, g, p), before the minimum of 0 is applied.
     pub fn sum(&self, customer: u32, group: Group, plan: Plan) -> f64 {
         self.global
             + value_or_zero(&self.by_group, &group)
@@ -212,7 +212,8 @@ impl Promotion {
 }
 
 impl LeadPromotion {
-    /// Returns the sum of the scopes for a lead: LP(g, ch), before the minimum of 0. Channel scopes need a channel.
+    /// Returns the sum of all discounts for a lead, LP(g, ch), before the minimum of 0 is applied. Without a channel,
+    /// channel discounts do not count.
     pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
         let by_channel = channel.map_or(0.0, |channel| {
             value_or_zero(&self.by_channel, &channel)
@@ -223,36 +224,36 @@ impl LeadPromotion {
 }
 
 impl AdsStrength {
-    /// Returns the level that decisions and negotiations use: global + group, not clamped.
+    /// Returns the strength in decisions and negotiations: global + group, not clamped.
     pub fn for_group(&self, group: Group) -> f64 {
         self.global + value_or_zero(&self.by_group, &group)
     }
 
-    /// Returns the additional level of a customer.
+    /// Returns the additional strength for a customer.
     pub fn for_customer(&self, customer: u32) -> f64 {
         value_or_zero(&self.by_customer, &i64::from(customer))
     }
 
-    /// Returns whether any customer may see ads.
+    /// Returns whether any customer can see ads.
     pub fn is_used(&self) -> bool {
         self.global > 0.0 || !self.by_group.is_empty() || !self.by_customer.is_empty()
     }
 }
 
 impl TargetedAds {
-    /// Returns the budget of a channel and group, dollars a day.
+    /// Returns the advertising budget for a channel and group, dollars per day.
     pub fn spend(&self, channel: Channel, group: Group) -> f64 {
         self.targeted_spend.get(&channel).map_or(0.0, |groups| value_or_zero(groups, &group))
     }
 
-    /// Returns the sum over channels and groups, dollars a day.
+    /// Returns the sum of all advertising budgets, dollars per day.
     pub fn total(&self) -> f64 {
         self.targeted_spend.values().map(total).sum()
     }
 }
 
 impl TargetedOperations {
-    /// Returns the sum of all scopes, dollars a day.
+    /// Returns the sum of all operations budgets, dollars per day.
     pub fn total(&self) -> f64 {
         total(&self.by_group)
             + total(&self.by_plan)
@@ -262,34 +263,34 @@ impl TargetedOperations {
 }
 
 impl TargetedDevelopment {
-    /// Returns the sum over groups, dollars a day.
+    /// Returns the sum of all development budgets, dollars per day.
     pub fn total(&self) -> f64 {
         total(&self.targeted_spend)
     }
 }
 
-/// A family of settings after a tool call.
+/// The new values of a family of settings.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SettingsChange {
-    /// A row of `config_history`.
+    /// Core settings, which are a row of `config_history`.
     Core(CoreSettings),
-    /// Ongoing discounts.
+    /// Ongoing discounts for subscribers.
     Promotion(Promotion),
-    /// Lead discounts.
+    /// First-bill discounts for new leads.
     LeadPromotion(LeadPromotion),
-    /// In-app ads.
+    /// Strength of in-app advertising.
     AdsStrength(AdsStrength),
-    /// Advertising budgets.
+    /// Advertising budgets by channel and group.
     TargetedAds(TargetedAds),
-    /// Targeted operations.
+    /// Budgets for targeted operations.
     TargetedOperations(TargetedOperations),
-    /// Targeted development.
+    /// Budgets for targeted development.
     TargetedDevelopment(TargetedDevelopment),
 }
 
 impl SettingsChange {
-    /// Returns the family as JSON with the field names of `config_overrides.settings_json`, or `None` for the
-    /// core settings, which have their own table.
+    /// Returns the family as JSON with the field names of `config_overrides.settings_json`, or `None` for the core
+    /// settings, which have a separate table.
     pub fn family_json(&self) -> Option<serde_json::Value> {
         let value = match self {
             SettingsChange::Core(_) => return None,

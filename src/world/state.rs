@@ -12,26 +12,26 @@ use super::retention::issues::IssueDesk;
 use super::settings::Settings;
 use super::settings::SettingsChange;
 
-/// The state of a run after its last simulated day.
+/// The hidden state of a run after its last simulated day.
 #[derive(Debug, Clone)]
 pub struct World {
-    /// Last simulated day, 0 before the first.
+    /// Last simulated day, or 0 before the first day.
     pub day: u32,
-    /// Last day of the run; competitors' moves grow towards it.
+    /// Last day of the run, which also determines the growth of competitor events.
     pub total_days: u32,
-    /// The player's settings.
+    /// Current settings of the player.
     pub settings: Settings,
-    /// Cash.
+    /// Cash of the company.
     pub finance: Finance,
     /// The product and its development.
     pub product: Product,
-    /// Customers.
+    /// All customers.
     pub customers: Customers,
-    /// Support issues.
+    /// Counter that numbers support issues.
     pub issue_desk: IssueDesk,
-    /// The market.
+    /// State of the market.
     pub market: Market,
-    /// Negotiations.
+    /// Negotiations with enterprises.
     pub enterprise: Enterprise,
 }
 
@@ -39,17 +39,17 @@ canonical! {
     World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise }
 }
 
-/// The hash of one part of the state, used to locate differences between runs.
+/// The hash of one part of the state, with which differences between runs are located.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartHash {
-    /// Name of the part.
+    /// Name of the part of the state.
     pub part: &'static str,
-    /// Its hash.
+    /// Hash of the part's canonical bytes.
     pub hash: blake3::Hash,
 }
 
 impl World {
-    /// Creates the world of day 0 and records the facts of its setup.
+    /// Creates the world on day 0 and records the initial facts.
     pub fn new(total_days: u32, cash: f64, params: &Params, facts: &mut Facts) -> World {
         facts.start_day(0);
         let settings = Settings::initial(params);
@@ -72,12 +72,12 @@ impl World {
         world
     }
 
-    /// Returns whether the run is over: the last day has passed, or the company is bankrupt.
+    /// Returns whether the run is over, because the last day has been simulated or the company is bankrupt.
     pub fn is_over(&self, params: &Params) -> bool {
         self.day >= self.total_days || self.finance.is_bankrupt(params)
     }
 
-    /// Returns the hashes of the parts of the state in declaration order.
+    /// Returns the hash of each part of the state, in declaration order.
     pub fn part_hashes(&self) -> Vec<PartHash> {
         let World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise } =
             self;
@@ -95,7 +95,7 @@ impl World {
     }
 }
 
-/// Returns the hash of all parts together.
+/// Returns the state hash: one hash of all parts together.
 pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
     let mut hasher = CanonicalHasher::default();
     for part in parts {
@@ -114,7 +114,7 @@ mod tests {
     use crate::random::Streams;
     use crate::settings::PerGroup;
 
-    /// A company with individuals, enterprises, threads, issues, research and a study.
+    /// Returns the world of a company with individuals, enterprises, threads, issues, R&D projects and a market study.
     fn busy_company() -> World {
         let (params, streams) = (Params::bundled(), Streams::new(5));
         let mut facts = Facts::default();
@@ -134,7 +134,7 @@ mod tests {
         world
     }
 
-    /// A change of one field; some changes take a group.
+    /// A change of one field of the world. Some changes use the group.
     type Change = fn(&mut World, Group);
 
     fn changed_parts(world: &World, other: &World) -> Vec<&'static str> {
@@ -183,7 +183,7 @@ mod tests {
         }
     }
 
-    /// All stored state is hashed: changing a byte of the canonical form results in another state or an error.
+    /// Every stored byte is hashed: after changing any canonical byte, restoring either fails or returns a different state.
     #[test]
     fn part_hashes_cover_every_byte_once() {
         let world = busy_company();

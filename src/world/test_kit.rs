@@ -1,4 +1,4 @@
-//! Small companies for tests of this and other crates.
+//! Simple subscribers, enterprises and settings for tests of this and other crates.
 
 use crate::customers::columns::Subscriber;
 use crate::customers::persona::PersonaPicks;
@@ -8,7 +8,7 @@ use crate::identifiers::{ByPlan, Channel, Group, Plan};
 use crate::quota::Quota;
 use crate::state::World;
 
-/// A subscriber with simple values; tests change what they need.
+/// Returns a subscriber with simple values for tests, which can change each value.
 pub fn subscriber(n: u32) -> Subscriber {
     Subscriber {
         n,
@@ -41,7 +41,7 @@ pub fn subscriber(n: u32) -> Subscriber {
     }
 }
 
-/// An enterprise with simple values.
+/// Returns an enterprise with simple values.
 pub fn plain_enterprise(group: Group, n: u32, customer: u32, standing: EnterpriseStatus) -> Company {
     Company {
         customer,
@@ -60,7 +60,7 @@ pub fn plain_enterprise(group: Group, n: u32, customer: u32, standing: Enterpris
     }
 }
 
-/// Applies the settings of a cautious policy.
+/// Applies the settings of policy P, a cautious policy.
 pub fn policy_p(world: &mut World) {
     let s1 = Group::at(0).expect("S1");
     let core = &mut world.settings.core;

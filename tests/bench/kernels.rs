@@ -1,6 +1,6 @@
-//! Benchmarks of the kernels of a day: `cargo bench`. `novamind bench` measures whole days.
+//! Benchmarks of the kernels that simulate a day: `cargo bench`. The command `novamind bench` measures whole days.
 //!
-//! All kernels run on one company that the simulator has grown, so its blocks, issues and bills are those of a real run.
+//! All kernels run on the same simulated company, so its customer blocks, issues and bills are as in a real run.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, LazyLock};
@@ -25,14 +25,14 @@ use novamind::world::retention::issues;
 use novamind::world::retention::satisfaction;
 use novamind::world::state::World;
 
-/// Days for which the company has grown, to about 30,000 subscribers.
+/// Number of simulated days, after which the company has about 30,000 subscribers.
 const DAYS: u32 = 125;
 
 fn main() {
     divan::main();
 }
 
-/// The company and the facts of its last day.
+/// The simulated company and the facts of its last day.
 struct Company {
     params: Arc<Params>,
     streams: Streams,

@@ -38,7 +38,7 @@ fn play(handout: &Path, runs: &Path, price: f64) {
     }
 }
 
-/// Chooses an entry of the first page of the start menu.
+/// Selects an entry on the first page of the start menu.
 fn choose(console: &mut Console, entry: &str) {
     for _ in 0..12 {
         if console.screen().contains(&format!("› {entry}")) {
@@ -81,14 +81,14 @@ fn start_menu_opens_and_resumes_a_handout() {
     choose(&mut console, "Handout");
     enter(&mut console, &path);
     assert_eq!(run_folder(&console), first);
-    // Another student uses the same computer.
+    // A different student uses the same computer.
     console.press("esc ; q");
     choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(run_folder(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
     let left = console.exit.clone().expect("it has left");
-    assert!(left.1.expect("a farewell").contains("Resume it with `novamind --as S02 --run latest`"));
+    assert!(left.1.expect("a farewell").contains("Resume the run with `novamind --as S02 --run latest`"));
 }
 
 #[test]

@@ -8,16 +8,17 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 use novamind::lab::{Collector, Policy, RunSpec, play};
 use novamind::record::folder::configuration::Configuration;
 
-/// Files of a runs folder: relative path and contents.
+/// Relative path and contents of the files in a folder of runs.
 type Files = Vec<(PathBuf, Vec<u8>)>;
 
-/// A policy, a seed and a day.
+/// Policy, seed and last day of a played company.
 type Key = (String, u64, u32);
 
-/// Companies that tests of this process have requested.
+/// Companies that policies have played for the tests of this process.
 static PLAYED_RUNS: LazyLock<Mutex<HashMap<Key, Arc<OnceLock<Files>>>>> = LazyLock::new(Mutex::default);
 
-/// Lets a policy of `tests/data/policies` play a company until a day. Tests that request the same company share it.
+/// Copies a company that a policy of `tests/data/policies` has played until a day. Tests that use the same company
+/// share the played files.
 pub fn copy_played_run(policy: &str, seed: u64, until: u32, runs: &Path) {
     let shared = Arc::clone(
         PLAYED_RUNS.lock().expect("companies").entry((policy.to_owned(), seed, until)).or_default(),

@@ -1,6 +1,6 @@
-//! One definition per figure: everything shown under a name on a screen, in plain mode, in a report or on the
-//! dashboard equals the value in the database. New places that show a figure under one of these names are compared
-//! too.
+//! One definition per figure. A number that a screen, plain mode, a report or the dashboard shows with a figure's name
+//! must equal the value in the database. New texts that show a figure with one of these names are
+//! compared as well.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -10,21 +10,22 @@ use std::process::{Command, Stdio};
 use super::company::copy_played_run;
 use super::harness::Console;
 
-/// A young company, one with enterprise deals, and one in trouble: policy, seed, last days of weeks.
+/// A young company, a company with enterprise deals, and a company with losses: policy, seed, and last days of two weeks.
 const COMPANIES: [(&str, u64, [u32; 2]); 3] =
     [("opening.toml", 7, [7, 28]), ("companies.toml", 11, [35, 84]), ("crisis.toml", 5, [28, 70])];
 
 /// Window sizes in which the screens are read.
 const SIZES: [(u16, u16); 2] = [(80, 24), (200, 57)];
 
-/// Plain-mode commands, run once as text and once as JSON.
+/// Plain-mode commands, which are run once with text output and once with JSON output.
 const PLAIN_COMMANDS: &str = "status\ndashboard\nneeds\ninbox\nchanges\nreport week\nreport run\n";
 
-/// A figure: the names under which it is shown, with `#` for the number if it is not at the end, and its query;
-/// `{from}` and `{to}` are the days of the week. A figure without a query is only compared with itself.
+/// A figure: the names with which it is shown, and its query. `#` in a name stands for the number if it is not at the
+/// end. `{from}` and `{to}` in a query are the days of the week. If the query is empty, only the shown numbers are
+/// compared with each other.
 struct Figure(&'static [&'static str], &'static str);
 
-/// Relative error of sums of the same amounts in a different order.
+/// Relative error between sums of the same amounts in different orders.
 const SUM_TOLERANCE: f64 = 1e-12;
 
 /// Figures whose sign depends on whether they are listed among costs.
@@ -145,13 +146,13 @@ const FIGURES: [Figure; 29] = [
     ),
 ];
 
-/// The name of the change next to cash: an arrow, or a parenthesis.
+/// Internal name of the cash change that is shown next to cash, with an arrow or in parentheses.
 const CASH_CHANGE: &str = "what cash did";
 
-/// Names that tables of the product screen use for something else: its service table has minutes of single days.
+/// Names with a different meaning in a table of the product screen: the service table lists the outage minutes of single days.
 const OTHER_TABLE_FIGURES: [(&str, &str); 1] = [("screen 4", "outage, minutes")];
 
-/// A formatted number, and its rounding error.
+/// A number that was parsed from text, and its rounding error.
 #[derive(Debug, Clone, Copy)]
 struct ShownNumber {
     value: f64,
@@ -186,11 +187,11 @@ fn parse_number(text: &str) -> Option<(ShownNumber, &str)> {
     Some((ShownNumber { value: sign * scale * value, rounding }, after))
 }
 
-/// Returns the number of a name: after it, or at its `#`.
+/// Returns the number that follows a name, or that is at the position of `#` in the name.
 fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
     let (before, after) = name.split_once('#').unwrap_or((name, ""));
     let (before, low) = (before.trim_end(), cell.to_lowercase());
-    // Byte positions must match, so text whose lower case has another length is skipped.
+    // Byte positions must match, so a text whose lowercase form has a different length is skipped.
     if low.len() != cell.len() {
         return None;
     }
@@ -214,7 +215,7 @@ fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
         if let Some((new, after)) = left.strip_prefix(" → ").and_then(parse_number) {
             (written, left) = (new, after);
         }
-        // A value per day is a rate, not the figure; a longer name may use the same number.
+        // A value per day is a rate and not the figure. A number can also belong to a longer name.
         let rate = [" $/day", " units/day"].iter().any(|unit| left.starts_with(unit));
         let change = after.is_empty() && left.starts_with(", of it");
         let ends = left.chars().next().is_none_or(|next| " ,;.|)│".contains(next));
@@ -236,17 +237,17 @@ fn shown_cash_change(cell: &str) -> Option<ShownNumber> {
     Some(if fell.is_some() { ShownNumber { value: -written.value, ..written } } else { written })
 }
 
-/// Splits a line into independent parts. The cash in the header is one of them.
+/// Splits a line into independent parts. Cash in the header is a separate part.
 fn cells(part: &str) -> impl Iterator<Item = &str> {
     let at = part.find("   cash ").unwrap_or(0);
     [&part[..at], &part[at..]].into_iter().flat_map(|part| part.split(" | "))
 }
 
-/// Returns every figure that a text shows: its index, the number and the line.
+/// Returns every figure that a text shows, as the index of the figure, the number and the line.
 fn shown_figures(text: &str) -> Vec<(usize, ShownNumber, String)> {
     let mut found = Vec::new();
     for line in text.lines() {
-        // The changes after the semicolon belong to parts of the figure.
+        // Changes after the semicolon are changes of the figure's components.
         let line = line.split(';').next().unwrap_or_default();
         for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(cells) {
             for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
@@ -277,7 +278,7 @@ fn plain_output(runs: &Path, options: &[&str], lines: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// Returns the shared page of a run as text, one line per table row.
+/// Returns the HTML report of a run as text, with one line per table row.
 fn report_page(runs: &Path) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_novamind"))
         .env("NOVAMIND_RUNS", runs)
@@ -319,7 +320,7 @@ fn database_figures(runs: &Path, day: u32) -> Vec<Option<f64>> {
     FIGURES.iter().map(next).collect()
 }
 
-/// Returns everything that shows figures of a company: the place, and the text.
+/// Returns all texts that show figures of a company, each with the name of its source.
 fn shown_texts(runs: &Path) -> Vec<(String, String)> {
     let mut all = vec![("plain".to_owned(), plain_output(runs, &[], PLAIN_COMMANDS))];
     let json = plain_output(runs, &["--json"], "status\n");

@@ -1,4 +1,4 @@
-//! The focus: how it is displayed, its keys, and what it keeps.
+//! The focused pane: display, keys, and the state that is kept when the focus changes.
 
 use novamind::tui::glyphs::Glyphs;
 use novamind::tui::theme::Theme;
@@ -50,7 +50,7 @@ fn submitting_a_zoomed_form_keeps_the_screen() {
     console.assert_shows("set_prices · pricing");
     console.assert_shows("✓ ");
     assert!(!console.screen().contains("set_model_tiers"), "the list is not shown");
-    // The form still has the keys, and the next value is typed into it.
+    // The form still has the focus, and the next value is typed into the form.
     console.press("up enter '15' ctrl-s");
     console.assert_shows("set_prices · pricing");
     console.press("z esc");
@@ -68,7 +68,7 @@ fn breadcrumbs_are_shown_and_esc_goes_back() {
     console.assert_shows("Customers › Fit of S2");
     console.press("shift-tab down enter");
     console.assert_shows("› S2 › set_targeted_dev_spend");
-    // Typing ends first, and a filter is cleared first.
+    // Esc first ends typing or clears a filter, and only then goes back.
     console.press("enter '5' esc");
     console.assert_shows("› S2 › set_targeted_dev_spend");
     console.press("esc");
@@ -76,12 +76,12 @@ fn breadcrumbs_are_shown_and_esc_goes_back() {
     console.press("esc");
     console.assert_shows("Leads per $1,000");
     assert!(!console.screen().contains("Customers ›"), "the list is reached");
-    // From an action item to the form, which is sent; then esc returns.
+    // An action item opens its form. After the form is sent, esc returns to the action item.
     console.press("1 enter");
     console.assert_shows("Overview › set_prices");
     console.press("enter '14' enter ctrl-s esc");
     console.assert_shows("Action needed");
-    // The source rows of a figure, and their query.
+    // A figure opens its source rows, and the source rows open their query.
     console.advance_week();
     console.press("esc 2 f");
     console.assert_shows("Cash › ");

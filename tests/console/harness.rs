@@ -1,4 +1,4 @@
-//! The console without a terminal, for tests: every failure reports the whole screen.
+//! The console without a terminal, for tests. Every failure reports the whole screen.
 
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
@@ -32,12 +32,12 @@ impl DerefMut for Console {
 }
 
 impl Console {
-    /// Returns a console in its start menu.
+    /// Starts a console in the start menu.
     pub fn start(runs: &Path, size: (u16, u16)) -> Console {
         Console::start_with(Configuration::bundled(), runs, size)
     }
 
-    /// Returns a console in its start menu, with a configuration.
+    /// Starts a console in the start menu with a configuration.
     pub fn start_with(configuration: Configuration, runs: &Path, size: (u16, u16)) -> Console {
         Console::with_settings(Console::settings(configuration, runs), size)
     }
@@ -56,7 +56,7 @@ impl Console {
         }
     }
 
-    /// Returns a console in its start menu, with settings.
+    /// Starts a console in the start menu with settings.
     pub fn with_settings(settings: Settings, size: (u16, u16)) -> Console {
         let mut console = Console { headless: Some(Headless::new(settings, size)) };
         console.wait_until_idle().expect("the menu");
@@ -83,13 +83,13 @@ impl Console {
         pressed.unwrap_or_else(|problem| panic!("{keys}: {problem}"));
     }
 
-    /// Presses one key and waits for its consequences.
+    /// Presses one key and waits until the console has processed it.
     pub fn press_key(&mut self, key: &str) {
         let pressed = self.deref_mut().press_key(key);
         pressed.unwrap_or_else(|problem| panic!("{key}: {problem}"));
     }
 
-    /// Handles an event and waits for its consequences.
+    /// Sends an event and waits until the console has processed it.
     pub fn send(&mut self, event: Event) {
         self.deref_mut().handle_event(event).expect("an answer");
     }

@@ -1,4 +1,4 @@
-//! Lessons: the task, a guess, hints, immediate weeks, retries and the debrief.
+//! Lessons: the task, guesses, hints, weeks without a confirmation, retries and the debrief.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use novamind::session::{Access, Session};
 use super::harness::Console;
 use super::picture_checks;
 
-/// A window with the task next to the screen, and one in which it is a page.
+/// Window sizes: wide with the task next to the screen, small with the task as a page.
 const WIDE: (u16, u16) = (120, 40);
 const SMALL: (u16, u16) = (80, 24);
 
@@ -24,7 +24,7 @@ fn configuration(folder: &Path) -> Configuration {
     Configuration { folder: Some(folder.to_owned()), voice: None }
 }
 
-/// Returns a configuration with a lesson of this definition.
+/// Returns a configuration with a lesson that is defined by `plan`.
 fn configuration_with(folder: &Path, plan: &str) -> Configuration {
     let configuration = configuration(folder);
     std::fs::write(folder.join("lessons/two-weeks.toml"), plan).expect("a plan");
@@ -73,7 +73,7 @@ fn lesson_is_played_to_its_end_with_the_task_pane() {
     let mut console = console_in_lesson(folder.path(), WIDE);
     console.assert_shows("Step 1 of 2: Open the shop");
     console.assert_shows("hints 0/2");
-    // The question comes before the week.
+    // The question must be answered before the week runs.
     console.press("n");
     console.assert_shows("What share of the leads will buy?");
     console.press("enter");
@@ -83,7 +83,7 @@ fn lesson_is_played_to_its_end_with_the_task_pane() {
     console.press("; l h");
     console.assert_shows("Hint 1: Look at the leads.");
     console.press("esc n");
-    // One key ran the week; its outcome is shown next to the screen, with the pitfall and the next task.
+    // One key ran the week. The outcome, the pitfall and the next task are shown next to the screen.
     console.assert_shows("Step 1 is complete: Open the shop");
     console.assert_shows("reached: One subscriber");
     console.assert_shows("! Day 7: Somebody bought.");
@@ -154,7 +154,7 @@ fn locked_features_show_a_reason() {
     console.assert_shows("not in this lesson");
     console.press("enter");
     console.assert_shows("Not in this lesson.");
-    // A closed tool cannot be sent, so its draft does not delay the week.
+    // A locked tool cannot be sent, so its draft does not delay the week.
     console.press("n '0.25' enter enter '900' enter");
     console.assert_shows("0 → 900");
     console.press("esc n");
@@ -182,7 +182,7 @@ fn guesses_and_hints_survive_a_restart() {
     assert!(find_run(&runs, "latest").is_ok());
 }
 
-/// Takes pictures of the screen in windows of all sizes.
+/// Compares the screen with snapshots in windows of all sizes.
 fn assert_lesson_snapshots(console: &mut Console, place: &str) {
     let mut complaints = Vec::new();
     insta::assert_snapshot!(
@@ -213,7 +213,7 @@ fn finished_part_continues_with_the_next() {
     console.press("enter n '0.4' enter n");
     console.assert_shows("This part has ended: p next part");
     console.assert_shows("You guessed 40%.");
-    // Showing the reference play would reveal the next part.
+    // The reference play is hidden, because it would reveal the solution of the next part.
     console.press("d");
     console.assert_shows("Debrief");
     assert!(!console.screen().contains("The reference play:"));
@@ -252,7 +252,7 @@ fn step_without_a_question_confirms_before_its_first_week() {
     let mut console = console_in_lesson_with(configuration, folder.path(), WIDE);
     console.press("n '0.4' enter n n");
     console.assert_shows("Step 2 starts: Go on, 2 weeks. Run its first week?");
-    // The accidental key only cancels, and says so.
+    // A key that was pressed by accident only cancels the week, and a message reports the cancellation.
     console.press("n");
     console.assert_shows("Step 2: cancelled; y confirms");
     let day = |console: &Console| console.app.run().expect("a run").company.observation.day;
@@ -311,7 +311,7 @@ fn sent_rules_are_offered_again_each_week() {
     let record = std::fs::read_to_string(run.join("trajectory.jsonl")).expect("a record");
     let sent = record.lines().filter(|line| line.contains("\"tool\":\"send_enterprise_deal\"")).count();
     assert_eq!(sent, 2, "once by the player, once with the week");
-    // Running the week without answers is the third choice.
+    // The third choice runs the week without answers to enterprises.
     let before = waiting(&console);
     assert!(before > 0, "letters");
     console.press("n w");

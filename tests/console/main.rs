@@ -1,4 +1,4 @@
-//! Tests of the console from the user's view: stories, pictures, sizes, random input.
+//! Tests of the console from the user's view: scenarios, snapshots, window sizes and random input.
 
 mod classes;
 mod company;

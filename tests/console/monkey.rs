@@ -1,5 +1,5 @@
-//! Random keys, clicks, pastes and sizes: nothing panics, the cursor stays inside, drafts stay, and the run replays
-//! to the same state.
+//! Random keys, clicks, pastes and window sizes. The console never panics, the cursor stays inside the window, drafts
+//! are kept, and the run replays to the same state.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use novamind::session::verify;
 use super::harness::Console;
 use crate::support::dice::Dice;
 
-/// Keys to press; frequent ones open something.
+/// Keys that are pressed at random. Keys that open a dialog or screen occur more often.
 const KEYS: &str = "\
     1 2 3 4 5 6 7 8 9 0 n c u w d f i z tab tab tab shift-tab enter enter enter esc esc esc up down down left \
     right right pageup pagedown home end / : ? ; g g s e E y Y = x a r b p v o t m . , + - ctrl-s f5 f2 ctrl-r \
     ctrl-o ctrl-n ctrl-l ctrl-f ctrl-u ctrl-w ctrl-d ctrl-p space backspace delete j k h l G [ ] é 7 M";
 
-/// Texts to paste.
+/// Texts that are pasted at random.
 const PASTES: [&str; 6] = [
     "12",
     "SELECT count(*) FROM customers",
@@ -26,7 +26,7 @@ const PASTES: [&str; 6] = [
     "",
 ];
 
-/// Steps of the regular test, over all its runs.
+/// Number of random steps of the regular test, over all its runs.
 const STEPS: usize = 1_600;
 
 #[test]
@@ -46,7 +46,7 @@ fn soak_random_input_does_not_panic() {
     }
 }
 
-/// Plays one run at random.
+/// Plays one run with random input.
 fn play_random_run(dice: &mut Dice, steps: usize) {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_in_open_run(runs.path(), dice);
@@ -70,7 +70,7 @@ fn play_random_run(dice: &mut Dice, steps: usize) {
     }
 }
 
-/// Opens a run with prices, in a window of some size.
+/// Opens a run with prices in a window of a random size.
 fn console_in_open_run(runs: &Path, dice: &mut Dice) -> Console {
     let mut console = Console::in_new_run(runs, (120, 40));
     console.press("8 enter enter '12' down '25' down '55' enter ctrl-s 1");
@@ -131,7 +131,7 @@ fn random_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
     Event::Mouse(MouseEvent { kind: *dice.pick(&kinds), column, row, modifiers: KeyModifiers::NONE })
 }
 
-/// Places of drafts: keys that lead there and into the text, and keys that return.
+/// Texts that can hold a draft: keys that open the text, and keys that return to it.
 const DRAFTS: [(&str, &str); 5] = [
     ("9 esc i ctrl-n", "9 esc"),
     ("5 esc esc p ctrl-u", "5 esc esc p"),
@@ -145,7 +145,7 @@ const DRAFTS: [(&str, &str); 5] = [
 const WALKS: [&str; 16] =
     ["1", "2", "3", "4", "7", "9", "0", "tab", "up", "down", "?", ":", "c", "w", "d", "["];
 
-/// Writes a draft, navigates at random, and checks that the draft is still there.
+/// Writes a draft, navigates at random, and checks that the draft has been kept.
 fn check_draft_is_kept(console: &mut Console, dice: &mut Dice) {
     // A replay is read-only.
     if console.app.run().is_none_or(|run| !run.company.is_running() || run.playback.is_some()) {
@@ -153,15 +153,15 @@ fn check_draft_is_kept(console: &mut Console, dice: &mut Dice) {
     }
     let size = std::mem::replace(&mut console.size, (120, 40));
     let (there, again) = *dice.pick(&DRAFTS);
-    // Many dialogs may be open, and a filter that was being typed on a screen stays open.
+    // Closes all dialogs. A filter that was being typed on a screen may still be open.
     console.press(&format!("{}1 esc esc", "esc ".repeat(30)));
     console.press(there);
     let number = 1_000 + dice.roll(8_999);
     let draft = if there.starts_with('8') { number.to_string() } else { format!("draft{number}") };
-    // A single word is not wrapped.
+    // The draft is a single word, because a single word is not wrapped.
     console.press(&if there.starts_with('8') { format!("'{draft}'") } else { format!("_ '{draft}'") });
     if there.starts_with('8') {
-        // Esc discards a rejected number, as the footer says.
+        // Esc discards a rejected number, as described in the footer.
         console.press("enter");
     }
     let written = console.screen();
@@ -182,7 +182,7 @@ fn check_draft_is_kept(console: &mut Console, dice: &mut Dice) {
     console.size = size;
 }
 
-/// Returns whether the screen contains the draft; numbers may be grouped.
+/// Returns whether the screen contains the draft. Digits of numbers can be grouped.
 fn shows_draft(screen: &str, draft: &str) -> bool {
     screen.contains(draft) || screen.replace(',', "").contains(draft)
 }

@@ -13,7 +13,7 @@ use super::replay::console_in_replay;
 use crate::support::company::{advance_weeks, apply_opening_decisions, begin_run};
 use crate::support::record::{inspections, read_trajectory, run_folder};
 
-/// Texts that appear with true values.
+/// Labels that appear only if true values are shown.
 const TRUE_VALUE_LABELS: [&str; 5] =
     ["true sat.", "true rep.", "x-ray, day", "x-ray: true", "true values of"];
 
@@ -40,7 +40,7 @@ fn true_values_are_shown_next_to_estimates() {
     insta::assert_snapshot!("overlay-market", market);
     insta::assert_snapshot!("overlay-news", news);
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    // Hiding removes everything, and showing the same day again records no second inspection.
+    // Hiding removes all true values. Showing the same day again records no second inspection.
     console.press("; o");
     for keys in ["3", "7"] {
         console.press(keys);
@@ -52,7 +52,7 @@ fn true_values_are_shown_next_to_estimates() {
     drop(console);
     let folder = run_folder(runs.path());
     assert_eq!(inspections(&read_trajectory(&folder)), ["values  56"]);
-    // The displayed values are those of the simulator.
+    // The displayed values must equal the values of the simulator.
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S1").expect("a group");
     let group_values = session.inspect().hidden_values(None).expect("values").groups[group];
@@ -107,7 +107,7 @@ fn overlay_is_unavailable_in_unfinished_non_debug_runs() {
                 "{mode:?}, {keys}:\n{screen}"
             );
         }
-        console.assert_shows("the x-ray works in debug runs and in runs that are over");
+        console.assert_shows("the x-ray is available in debug runs and in runs that have ended");
         drop(console);
         let mut console = console_in_replay(runs.path(), (200, 60), SeekTarget::Week(1));
         console.press("3 ; o");

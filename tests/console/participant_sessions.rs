@@ -1,4 +1,4 @@
-//! A participant of a study at the console, from the label to the thanks.
+//! A participant of a study at the console, from the label to the final page.
 
 use std::path::{Path, PathBuf};
 
@@ -154,7 +154,7 @@ fn recorded_questions(run: &Path) -> Vec<String> {
     trajectory.lines.iter().chain(&after.lines).filter_map(describe).collect()
 }
 
-/// Runs a week; its report stays open.
+/// Runs a week and leaves its report open.
 fn advance_week(console: &mut Console) {
     console.press("n enter 'test' enter f enter");
 }
@@ -174,7 +174,7 @@ fn participant_session_runs_from_label_to_thanks() {
     console.press("pagedown pagedown y");
     console.assert_shows("The session starts now.");
     console.press("enter");
-    // Two questions come before anything else.
+    // The participant must answer two questions before the first week.
     console.assert_shows("question 1 of 2");
     console.press("8 : n enter");
     console.assert_shows("an answer is required");
@@ -192,10 +192,10 @@ fn participant_session_runs_from_label_to_thanks() {
     console.press("q");
     console.assert_shows("To continue later");
     console.press("enter 'P01' enter");
-    console.assert_shows("continues where you left it");
+    console.assert_shows("continues where you left off");
     console.press("enter");
     advance_week(&mut console);
-    // The final page of the run leads to the last question, and nowhere else.
+    // The final page of the run offers only the last question.
     let end = console.screen();
     assert!(!end.contains("published") && !end.contains("replay"), "{end}");
     console.press("esc v enter");
@@ -241,12 +241,12 @@ fn declining_leaves_no_run_and_withdrawal_leaves_a_record() {
     console.press("enter 'P01' enter end y enter 4 enter enter");
     console.assert_shows("runway");
     assert_eq!(lab.participant_runs("P01").len(), 1);
-    // The second confirmation is cancelled by esc, the first one by n.
+    // The first confirmation is cancelled by n, the second confirmation by esc.
     for step in ["n", "y 'no' enter esc"] {
         console.press(": 'withdraw' enter");
         console.assert_shows("permanently erases");
         console.press(step);
-        console.assert_shows("continues where you left it");
+        console.assert_shows("continues where you left off");
         console.press("enter");
     }
     console.press(": 'withdraw' enter y 'withdraw' enter");
@@ -270,13 +270,13 @@ fn practice_comes_first_and_is_skippable_if_optional() {
     );
     let mut console = lab.open_console((100, 30));
     console.press("'P01' enter end y");
-    console.assert_shows("First comes a practice company");
+    console.assert_shows("First, run a practice company");
     console.press("enter");
     console.assert_shows("PRACTICE");
     console.assert_shows("Tour · 1");
     console.press("f4 n enter 'test' enter f enter");
     console.assert_shows("The practice has ended");
-    console.assert_shows("It does not count. The session comes next.");
+    console.assert_shows("The practice does not count. The session is next.");
     let screen = console.screen();
     for measure in ["$", "lanning", "best channel", "forecast"] {
         assert!(!screen.contains(measure), "{measure}\n{screen}");
@@ -337,7 +337,7 @@ fn other_runs_require_the_experimenter_code() {
     console.assert_shows(&run);
     assert!(!console.screen().contains("No such file"), "{}", console.screen());
     console.request(Request::Open(run.clone(), Access::Write)).expect("nothing to wait for");
-    console.assert_shows("only its participant can continue this run");
+    console.assert_shows("only the participant can continue this run");
     let recorded = RecordSource::Run(run);
     console.request(Request::Replay { recorded, goal: SeekTarget::First, follow: false }).expect("it opens");
     assert!(!console.screen().contains("New run"), "{}", console.screen());

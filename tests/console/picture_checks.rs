@@ -2,11 +2,11 @@
 
 use super::harness::Console;
 
-/// Window sizes: the minimum, the smallest supported, a usual one, a large one.
+/// Window sizes: minimum, smallest supported, usual and large.
 pub const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 
-/// Returns the screen in the usual window. Adds words truncated next to free space, in windows of all these sizes, to
-/// `complaints`. The size of the console does not change.
+/// Returns the screen in a window of the usual size. Draws the screen in windows of all `SIZES` and adds words that
+/// are truncated next to free space to `complaints`. The size of the console does not change.
 pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> String {
     let initial_size = console.size;
     let mut usual = String::new();
@@ -23,10 +23,10 @@ pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> Str
     usual
 }
 
-/// Spaces after a truncated word that count as free space rather than a column gap.
+/// Minimum number of spaces after a truncated word that count as free space instead of a gap between columns.
 const MAX_COLUMN_GAP: usize = 4;
 
-/// Returns the lines with a word truncated next to free space, up to the next border.
+/// Returns the lines that contain a word that is truncated although free space follows up to the next border.
 pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
     let wasteful = |line: &&str| {
         line.match_indices('…').any(|(at, sign)| {
@@ -39,7 +39,8 @@ pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
     screen.lines().filter(wasteful).map(str::to_owned).collect()
 }
 
-/// Returns the share of non-empty cells in the emptiest half, horizontally or vertically, without borders.
+/// Returns the share of non-empty cells in the emptiest half of the screen: left, right, upper or lower half. Borders
+/// do not count.
 pub fn min_half_coverage(screen: &str, width: usize) -> f64 {
     let rows: Vec<Vec<char>> = screen
         .lines()

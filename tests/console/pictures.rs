@@ -1,6 +1,6 @@
-//! Pictures of every screen with realistic companies: the first week, a crisis in week 30, a large company in week
-//! 45. The pictures in `snapshots/` are those of a usual window; small and large windows are checked for truncated
-//! words and empty halves. `cargo insta review` shows the effect of a change.
+//! Pictures of every screen with realistic companies: the first week, a crisis in week 30, a large company in week 45.
+//! The pictures in `snapshots/` have the usual window size. Small and large windows are checked for truncated words
+//! and empty halves. `cargo insta review` shows the effect of a change.
 
 use novamind::record::mode::Mode;
 use novamind::session::SeekTarget;
@@ -12,13 +12,13 @@ use super::harness::Console;
 use super::picture_checks::{min_half_coverage, needlessly_truncated_lines};
 use super::replay::{console_in_replay, played_run};
 
-/// Window sizes: the smallest supported, a usual one, a large one.
+/// Window sizes: smallest supported, usual and large.
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
-/// Themes of the pictures. The text is the same in all of them.
+/// Themes of the pictures. The text must be the same in all themes.
 const THEMES: [&str; 2] = ["dark", "light"];
 
-/// Names of the pictures, the keys that lead there, and the keys that return.
+/// Names of the pictures, keys that open the screen or dialog, and keys that return.
 const PLACES: [(&str, &str, &str); 15] = [
     ("overview", "1", ""),
     ("cash", "2", ""),
@@ -37,7 +37,7 @@ const PLACES: [(&str, &str, &str); 15] = [
     ("next-week", "1 n enter 'because' enter f", "esc esc"),
 ];
 
-/// Takes pictures of every place of a run.
+/// Compares the pictures of all `PLACES` of a run with the snapshots.
 fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let runs = tempfile::tempdir().expect("a folder");
     copy_played_run(policy, seed, until, runs.path());
@@ -57,7 +57,8 @@ fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
 /// Minimum share of non-empty cells in every half of a large window.
 const MIN_INK_SHARE: f64 = 0.04;
 
-/// Returns layout problems of a picture. Only a company with much data fills both halves.
+/// Returns the layout problems of a picture. Empty halves are a problem only if `rich` is set, because only a company
+/// with much data fills both halves.
 fn complaints(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
     let cut = needlessly_truncated_lines(letters);
     let mut found: Vec<String> = cut
@@ -114,7 +115,7 @@ fn pictures_of_a_large_company_in_week_45() {
     check_pictures("week-45", "crowd.toml", 42, 315);
 }
 
-/// Places of a replay.
+/// Names of the pictures of a replay, keys that open the screen or dialog, and keys that return.
 const REPLAY_PLACES: [(&str, &str, &str); 6] = [
     ("overview", "1", ""),
     ("cash", "2", ""),

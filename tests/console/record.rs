@@ -14,7 +14,7 @@ use novamind::session::{NewRun, Session, Storage, verify};
 
 use super::harness::Console;
 
-/// Returns the record of the only run of a folder.
+/// Returns the recorded lines of the only run in a folder.
 fn lines(runs: &Path) -> Vec<Record> {
     let folder = find_run(runs, "latest").expect("a run");
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
@@ -46,7 +46,7 @@ fn advance_clock(console: &mut Console, seconds: u64) {
     console.advance_time(Duration::from_secs(seconds)).expect("time passes");
 }
 
-/// Describes each event in a line: its kind and the relevant values.
+/// Describes each event by its kind and its relevant values, one event per line.
 fn activity_lines(runs: &Path) -> Vec<String> {
     let one = |record: Record| match record {
         Record::Activity(Activity::View(view)) => {
@@ -149,12 +149,12 @@ fn screen_time_never_exceeds_week_time() {
 fn drafts_record_how_text_was_entered() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    // Notes: typed, deleted, pasted, with a pause, and saved.
+    // The notes are typed, deleted, pasted and saved, with a pause.
     console.press("0 tab e 'abcx' backspace");
     advance_clock(&mut console, 3);
     console.send(Event::Paste(" pasted".to_owned()));
     console.press("ctrl-s");
-    // A statement that is left.
+    // A SQL statement is typed and not run.
     console.press("9 'SELECT1' esc esc 1");
     drop(console);
     let drafts = drafts(runs.path());
@@ -179,7 +179,7 @@ fn run_is_hidden_while_the_clock_is_stopped() {
             assert!(!screen.contains(word), "{word} is seen:\n{screen}");
         }
     }
-    // Keys have no effect, and time does not count.
+    // While the clock is stopped, keys have no effect and time does not count.
     console.press("3 n enter");
     advance_clock(&mut console, 100);
     console.press("; p esc");
@@ -188,7 +188,7 @@ fn run_is_hidden_while_the_clock_is_stopped() {
     let expected = ["start", "session Opened", "view overview from  5 s", "clock Stopped", "clock Started"];
     assert_eq!(texts[..5], expected, "{texts:#?}");
     assert!(texts.iter().filter(|line| *line == "clock Stopped").count() == 2, "{texts:#?}");
-    // A clock that was stopped when the program ended starts when the run is opened again.
+    // If the clock was stopped when the program ended, it starts when the run is opened again.
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.assert_shows("NovaMind");
     drop(console);
@@ -241,11 +241,11 @@ fn drafts_survive_a_crash_until_discarded() {
     let file = find_run(runs.path(), "latest").expect("a run").join("drafts.json");
     let all = ["because of S1", "77", "SELECT 4"];
     let kept = || std::fs::read_to_string(&file).unwrap_or_default();
-    // The session thread writes them.
+    // The session thread saves the drafts asynchronously.
     while !all.iter().all(|text| kept().contains(text)) {
         std::thread::yield_now();
     }
-    // A hangup signal.
+    // Signal 1 is the hangup signal.
     console.app.handle_message(novamind::worker::message::Message::Signal(1));
     console.wait_until_idle().expect("it leaves");
     drop(console);

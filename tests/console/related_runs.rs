@@ -1,4 +1,4 @@
-//! Related runs in the Journal: the displayed tree, opening a branch, and cases without a tree.
+//! Related runs in the Journal: the displayed tree, opening a branch, and runs without a tree.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -12,8 +12,8 @@ use super::picture_checks::{SIZES, needlessly_truncated_lines};
 use super::replay::{console_in_replay, played_run};
 use crate::support::company::{advance_weeks, call_tool};
 
-/// Creates a run of four weeks, a branch from week 3 with other decisions, and a branch of that one. Returns their
-/// ids.
+/// Creates a run of four weeks, a branch from week 3 with different decisions, and a branch of the branch. Returns the
+/// ids of the three runs.
 fn related_runs(runs: &Path) -> [String; 3] {
     let id = |session: &Session| session.manifest().id.clone();
     let root = played_run(runs, Mode::Sandbox, 4);
@@ -30,7 +30,7 @@ fn console_in(runs: &Path, id: &str, size: (u16, u16)) -> Console {
     console
 }
 
-/// Returns the screen with fixed names in place of the ids.
+/// Returns the screen with fixed names instead of the run ids.
 fn screen_without_ids(console: &mut Console, ids: &[String; 3]) -> String {
     let names = ["run-root", "run-left", "run-late"];
     ids.iter().zip(names).fold(console.screen(), |text, (id, name)| text.replace(id, name))
@@ -75,7 +75,7 @@ fn enter_opens_a_branch_and_confirms_unsaved_text() {
     let mut console = console_in(runs.path(), &ids[1], (120, 40));
     console.press("0 shift-tab enter");
     console.assert_shows(&format!("run {} is already open", ids[1]));
-    // The root is listed first; there are no drafts, so no confirmation is needed.
+    // The root run is listed first. There are no drafts, so no confirmation is required.
     console.press("up enter");
     let here = |console: &Console| console.app.run().map(|run| run.company.observation.run.clone());
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
@@ -85,7 +85,7 @@ fn enter_opens_a_branch_and_confirms_unsaved_text() {
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("enter y");
     assert_eq!(here(&console).as_deref(), Some(ids[2].as_str()));
-    // The draft is offered where it was typed.
+    // The draft is offered again in the text in which it was typed.
     console.press("0 shift-tab up up enter");
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.assert_shows("mine");

@@ -1,4 +1,5 @@
-//! Playback of a recorded run: forward, back, seeking, playing, taking over, following and recovering.
+//! Playback of a recorded run: steps forward and back, seeking, continuous playback, branching, following a run in
+//! use, and recovery.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,7 @@ use super::harness::Console;
 use crate::support::company::begin_run;
 use crate::support::dice::Dice;
 
-/// Plays some weeks of a short run and returns its session.
+/// Plays a number of weeks of a short run and returns its session.
 pub fn played_run(runs: &Path, mode: Mode, weeks: u32) -> Session {
     let mut session = begin_run(runs, mode, 84);
     let mut call = |tool: &str, args: serde_json::Value| {
@@ -29,7 +30,7 @@ pub fn played_run(runs: &Path, mode: Mode, weeks: u32) -> Session {
     session
 }
 
-/// The player's actions of a week.
+/// Applies the player's decisions of a week.
 fn decide_week(session: &mut Session, week: u32) {
     if week % 3 == 2 {
         session.query("SELECT plan, count(*) FROM subscriptions GROUP BY 1").expect("an answer");
@@ -80,21 +81,21 @@ fn playback_steps_by_weeks_and_actions_and_seeks() {
     let folder = closed_run(runs.path(), Mode::Sandbox, 5);
     let before = std::fs::read(folder.join("trajectory.jsonl")).expect("a trajectory");
     let mut console = Console::start(runs.path(), (120, 40));
-    // From the list of runs.
+    // Opens the replay from the list of runs.
     console.press("down down enter r");
     console.assert_shows("REPLAY");
     console.assert_shows("◂ week 0/5 ▸  day 0");
-    console.assert_shows("Decided before week 1");
+    console.assert_shows("Decisions before week 1");
     console.assert_shows("set_model_tiers B 2 C 4");
     console.press("> >");
     assert_eq!(shown_day(&console), 14);
-    console.assert_shows("Decided before week 3");
+    console.assert_shows("Decisions before week 3");
     console.assert_shows("“If week 2 keeps its leads");
     console.assert_shows("later $98");
     console.assert_shows("rejected: ");
     console.press("<");
     assert_eq!(shown_day(&console), 7);
-    // Single actions: the third sets a price.
+    // Steps through single actions. The third action sets a price.
     let price = |console: &Console| {
         console.app.run().expect("a run").company.setting(novamind::tools::ToolId::SetPrices, "A")
     };
@@ -114,7 +115,7 @@ fn playback_steps_by_weeks_and_actions_and_seeks() {
     console.assert_shows("end of the record");
     console.press("{");
     assert_eq!(shown_day(&console), 0);
-    // The screens show the current position.
+    // The screens show the run at the current position of the playback.
     console.press("# '2' enter 9 esc i ctrl-n 'SELECT_max(day)_FROM_ledger' f5");
     console.assert_shows("14");
     console.press("esc 0");
@@ -242,7 +243,7 @@ fn run_in_use_can_be_watched() {
         console.wait_until_idle().expect("all of it");
     };
     until(&mut console, 21);
-    // The position stays while the record grows.
+    // The position of the playback does not change while the record grows.
     console.press("<");
     assert_eq!(shown_day(&console), 14);
     decide_week(&mut owner, 3);
@@ -281,7 +282,7 @@ fn recovery_opens_the_undamaged_prefix_as_a_branch() {
     assert_eq!(std::fs::read_to_string(&path).expect("a trajectory"), damaged);
 }
 
-/// Random keys: those of a replay, and navigation.
+/// Keys that are pressed at random: keys of a replay, and keys for navigation.
 const KEYS: [&str; 52] = [
     "<", ">", ">", ">", "(", ")", ")", "{", "}", "#", "space", "space", "F", "S", "D", "D", "E", "J", "K",
     "T", "1", "2", "3", "4", "5", "6", "7", "8", "9", "0", "tab", "enter", "enter", "esc", "esc", "esc",

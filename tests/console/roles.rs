@@ -1,4 +1,4 @@
-//! Colors: texts have the style of their role in every theme.
+//! Colors: texts have the style of their palette role in every theme.
 
 use novamind::tui::theme::{Role, Theme};
 

@@ -1,4 +1,4 @@
-//! A finished run: it offers the remaining actions, and no next week.
+//! A finished run offers the remaining actions and no next week.
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
@@ -82,7 +82,7 @@ fn final_page_ranks_the_run_among_policies() {
             console.assert_shows(part);
         }
     }
-    // The page closes to the final page, and can be opened again.
+    // After the ranking is closed, the final page is shown, and the ranking can be opened again.
     console.press("esc");
     console.assert_shows("You end with");
     console.assert_hides("enterprise-led");

@@ -1,4 +1,4 @@
-//! Complete stories of users.
+//! Complete usage scenarios, from the start of the program to its end.
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::list_runs;

@@ -1,4 +1,4 @@
-//! Every screen and every dialog in windows of every size.
+//! Layout of every screen and every dialog in windows of many sizes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use novamind::tui::glyphs::Glyphs;
 
 use super::harness::Console;
 
-/// Keys that lead to every place of the console, each with the keys that close it.
+/// Keys that open every screen and dialog of the console, and keys that close it.
 const PLACES: [(&str, &str); 40] = [
     ("1", ""),
     ("1 z", "z"),
@@ -50,20 +50,20 @@ const PLACES: [(&str, &str); 40] = [
     ("1 g", "esc"),
 ];
 
-/// Widths and heights at which layouts change, and their neighbors.
+/// Widths at which layouts change, and the neighboring widths.
 const WIDTHS: [u16; 30] = [
     0, 1, 2, 59, 60, 61, 69, 70, 79, 80, 81, 89, 90, 99, 100, 101, 103, 104, 109, 110, 111, 119, 120, 121,
     139, 140, 159, 160, 200, 400,
 ];
 const HEIGHTS: [u16; 20] = [0, 1, 2, 15, 16, 17, 19, 20, 23, 24, 25, 29, 30, 31, 39, 40, 41, 59, 60, 120];
 
-/// Returns a console in a run of some weeks, with data on every screen.
+/// Returns a console in a run of five weeks, with data on every screen.
 fn console(runs: &std::path::Path) -> Console {
     super::company::copy_played_run("companies.toml", 3, 35, runs);
     Console::in_latest_run(runs, (120, 40))
 }
 
-/// Returns every width with some of the heights, and the reverse.
+/// Returns one ninth of all pairs of a width and a height, spread over all widths and heights.
 fn boundary_sizes() -> impl Iterator<Item = (u16, u16)> {
     let all = WIDTHS.into_iter().enumerate().flat_map(|(across, width)| {
         HEIGHTS.into_iter().enumerate().map(move |(down, height)| (across + down, (width, height)))
@@ -71,10 +71,10 @@ fn boundary_sizes() -> impl Iterator<Item = (u16, u16)> {
     all.filter(|(at, _)| at % 9 == 0).map(|(_, size)| size)
 }
 
-/// Windows without truncation: their words are complete.
+/// Sizes of windows in which no word is truncated.
 const ROOMY_SIZES: [(u16, u16); 3] = [(160, 50), (220, 60), (400, 120)];
 
-/// Complete words, and words at the edge of a pane, which may be truncated.
+/// Complete words, and words at the edge of a pane, which can be truncated.
 #[derive(Default)]
 struct Words {
     whole: BTreeSet<String>,
@@ -82,7 +82,7 @@ struct Words {
 }
 
 impl Words {
-    /// Reads a screen; with `roomy`, nothing on it is truncated.
+    /// Collects the words of a screen. If `roomy` is set, all words are complete.
     fn read(&mut self, screen: &str, width: u16, roomy: bool, place: &str) {
         for line in screen.lines() {
             let mut begin = 0;
@@ -106,21 +106,21 @@ impl Words {
         }
     }
 
-    /// Returns the words at an edge that are complete nowhere.
+    /// Returns the words at an edge that are not complete on any screen.
     fn truncated_words(&self) -> Vec<&String> {
         self.at_edges.iter().filter(|(word, _)| !self.whole.contains(*word)).map(|(_, line)| line).collect()
     }
 }
 
-/// Draws every place in windows of some sizes. Asserts that restoring the size restores the picture, and that no word
-/// is truncated.
+/// Draws every screen and dialog in windows of the given sizes. Asserts that restoring the size restores the picture,
+/// and that no word is truncated.
 fn check_sizes(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
     let mut words = Words::default();
     for (open, close) in PLACES {
         console.size = (120, 40);
         console.press(open);
         let before = console.screen();
-        // A dialog hides words of the screen below; they are not truncated.
+        // A dialog covers words of the screen below, which does not count as truncation.
         let alone = !close.contains("esc");
         for size in ROOMY_SIZES {
             console.size = size;
@@ -151,7 +151,7 @@ fn layout_boundaries_do_not_panic_and_restore_the_screen() {
     check_sizes(&mut console, &mut || boundary_sizes().collect());
 }
 
-/// Screens whose panes take the focus with tab; each pane is drawn as it is and zoomed.
+/// Keys of the screens whose panes are focused with tab. Each pane is drawn in its normal size and zoomed.
 const SCREENS: [&str; 8] = ["1", "2", "3", "4", "5", "6", "7", "0"];
 const SIZES_OF_PANES: [(u16, u16); 7] =
     [(0, 0), (3, 200), (60, 16), (69, 30), (110, 37), (200, 57), (300, 17)];
@@ -176,7 +176,7 @@ fn every_pane_is_drawn_with_and_without_data() {
     }
 }
 
-/// Draws the screen in windows of some sizes. The size of the console does not change.
+/// Draws the screen in windows of the given sizes. The size of the console does not change.
 fn draw_in(console: &mut Console, sizes: &[(u16, u16)]) {
     let initial_size = console.size;
     for size in sizes {

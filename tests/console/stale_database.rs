@@ -1,4 +1,5 @@
-//! A database that cannot be written: a banner is shown until it is repaired, then the data is requested again.
+//! A database that cannot be written: a banner is shown until the database is repaired, then the screens request the
+//! data again.
 
 use novamind::worker::message::{Message, Response};
 
@@ -16,7 +17,7 @@ fn stale_figures_are_marked_until_the_database_is_current() {
     assert!(!before.contains(BANNER) && !before.contains("stale"), "{before}");
     let problem = "database or disk is full".to_owned();
     console.app.handle_message(Message::Response(Response::DatabaseBehind(problem.clone())));
-    // The banner stays on every screen; outdated panes are marked.
+    // The banner is shown on every screen, and outdated panes are marked.
     for (key, marked) in [("3", true), ("2", false), ("4", true), ("9", true)] {
         console.press(key);
         let screen = console.screen();

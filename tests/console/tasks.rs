@@ -1,5 +1,5 @@
-//! Everyday tasks, key by key, in a usual and in a large window: every key has an effect, none is rejected, and no
-//! task needs more keys than stated.
+//! Everyday tasks, key by key, in windows of two sizes. Every key has an effect, no key is rejected, and no task needs
+//! more keys than its maximum.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use super::harness::Console;
 /// Window sizes of the tasks.
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 
-/// Keys of each step of the tour: those that its texts name, and a statement and a sentence to type.
+/// Heading and keys of each step of the tour: the keys that the step's text names, with typed example texts.
 const TOUR: [(&str, &str); 18] = [
     ("The idea", "3"),
     ("Required quality", "down enter"),
@@ -48,7 +48,7 @@ const UNDO_TWICE_AND_REDO: usize = 3;
 const COMPARE_TWO_RUNS: usize = 5;
 const LEAVE_AND_GO_ON: usize = 2;
 
-/// Presses keys one by one; each must change the picture, and none may be rejected.
+/// Presses keys one by one. Each key must change the picture, and no key may be rejected.
 fn press_within(console: &mut Console, keys: &str, most: usize) {
     let mut pressed = 0;
     for word in keys.split(' ') {
@@ -74,7 +74,7 @@ fn press_within(console: &mut Console, keys: &str, most: usize) {
     assert!(pressed <= most, "{keys}: {pressed} keys, {most} are enough");
 }
 
-/// Returns a current setting.
+/// Returns the current value of a setting.
 fn current_setting(console: &Console, tool: &str, argument: &str) -> Value {
     let company = &console.app.run().expect("a run").company;
     company.settings[&tool.parse().expect("a tool")].get(argument).cloned().unwrap_or(Value::Null)

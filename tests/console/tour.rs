@@ -1,4 +1,4 @@
-//! Stories of a new user.
+//! The tour and the start menu for a new user.
 
 use novamind::record::folder::runs::list_runs;
 use novamind::record::trajectory::record::RunEndReason;
@@ -23,7 +23,7 @@ fn tour_advances_by_actions_and_resumes() {
     assert!(!console.screen().contains("Tour ·"), "it is closed");
     console.press("1 : 'tour' enter");
     console.assert_shows("Tour · 4 of 18 · A model");
-    // The tour resumes from the menu where it was left.
+    // The tour resumes from the start menu at the step where it was left.
     console.press("q");
     drop(console);
     let mut console = Console::start(runs.path(), (80, 24));

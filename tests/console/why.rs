@@ -1,4 +1,5 @@
-//! `; w` on figures of screens and of the weekly report, and cases in which it is not available.
+//! Causes of a change, opened with `; w` from figures of screens and of the weekly report, and runs in which causes
+//! are not available.
 
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use novamind::record::mode::Mode;
 use super::harness::Console;
 use crate::support::company::{advance_week, advance_weeks, apply_opening_decisions, begin_run, call_tool};
 
-/// Opens a run of ten weeks; the last week has higher prices.
+/// Opens a run of ten weeks with higher prices in the last week.
 fn console_in_run(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
     let mut session = begin_run(runs, mode, 84);
     apply_opening_decisions(&mut session);
@@ -18,7 +19,7 @@ fn console_in_run(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
     Console::in_latest_run(runs, size)
 }
 
-/// Opens the causes, waits for the answer, and closes them.
+/// Opens the causes of the selected figure, waits for the result, and closes the dialog.
 fn check_causes(console: &mut Console, heading: &str) {
     console.press("; w");
     console.assert_shows(heading);
@@ -64,12 +65,12 @@ fn causes_open_from_week_report_lines() {
     let name = selected_line(&mut console);
     console.press("; w");
     console.assert_shows(&format!("{}, week 10: ", name.split(',').next().expect("a name")));
-    // A cause without a decision opens the source rows, which close to the report.
+    // A cause that is not a decision opens the source rows. Closing the source rows returns to the report.
     console.press("end enter");
     console.assert_shows("SELECT");
     console.press("esc");
     console.assert_shows("Action needed");
-    // The price opens its form, and the report is closed.
+    // The cause "price" opens the form of prices and closes the report.
     for _ in 0..20 {
         if ["new subscribers", "conversion"].contains(&selected_line(&mut console).as_str()) {
             break;
@@ -88,7 +89,7 @@ fn causes_open_from_week_report_lines() {
     assert!(!console.screen().contains("Action needed"));
 }
 
-/// Returns the marked line of the report.
+/// Returns the selected line of the report.
 fn selected_line(console: &mut Console) -> String {
     let screen = console.screen();
     let marked =
@@ -108,6 +109,6 @@ fn unfinished_baseline_shows_no_causes() {
         assert!(!report.contains(word), "{word}:\n{report}");
     }
     console.press("; w");
-    console.assert_shows("simulate the company again");
+    console.assert_shows("simulate the company");
     assert!(!console.screen().contains("composition"));
 }

@@ -23,7 +23,7 @@ fn create_run(runs: &Path, mode: Mode, count: usize) -> Session {
     session
 }
 
-/// Opens a debug run of some weeks on the X-ray screen.
+/// Opens a debug run of `count` weeks on the X-ray screen.
 fn console_on_xray_screen(runs: &Path, count: usize, size: (u16, u16)) -> Console {
     drop(create_run(runs, Mode::Debug, count));
     let mut console = Console::in_latest_run(runs, size);
@@ -61,7 +61,7 @@ fn xray_views_match_snapshots() {
 fn xray_screen_matches_plain_mode_and_records_inspections() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_on_xray_screen(runs.path(), 4, (200, 60));
-    // The group is typed, the day is chosen with keys.
+    // The group is typed, and the day is selected with keys.
     console.press("e 's2' enter left left ,");
     console.assert_shows("day 19 of 28");
     let screen = console.screen();
@@ -92,7 +92,7 @@ fn former_customer_is_shown_as_in_plain_mode() {
     let [customer, day] = left[0][..] else { panic!("a subscriber cancelled") };
     drop(session);
     let mut console = Console::in_latest_run(runs.path(), (200, 60));
-    // A day that was chosen for a group does not apply to the customer.
+    // A day that was selected for a group does not apply to a customer.
     console.press("g x e 's2' _ '20' enter");
     console.assert_shows("day 20 of 56");
     console.press("esc end up up");
@@ -176,7 +176,10 @@ fn xray_screen_is_unavailable_in_unfinished_non_debug_runs() {
         for keys in ["g x", "; k", "e r b = a left , delete enter tab down z"] {
             console.press(keys);
             let screen = console.screen();
-            assert!(screen.contains("The x-ray works in debug runs and in runs that are over."), "{screen}");
+            assert!(
+                screen.contains("The x-ray is available in debug runs and in runs that have ended."),
+                "{screen}"
+            );
             assert!(!screen.contains("g x X-ray") && !screen.contains("day 7 of"), "{screen}");
         }
         drop(console);
@@ -196,10 +199,10 @@ fn replay_of_a_finished_run_records_inspections() {
         console.assert_shows("leads of S1 on day 14");
         console.press("right");
         console.assert_shows("day 14 of 14");
-        // A replay simulates nothing.
+        // A replay cannot simulate days, so it cannot run to a breakpoint.
         console.press("; k r '7' enter");
         console.assert_shows("this is a replay");
-        // After leaving the replay, the run can be opened: its lock is released.
+        // After the replay is closed, the lock of the run is released and the run can be opened.
         console.press("esc Q");
         let folder = run_folder(runs.path());
         let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
@@ -242,7 +245,7 @@ fn replay_of_an_unfinished_run_cannot_be_inspected() {
     drop(create_run(runs.path(), Mode::Sandbox, 2));
     let mut console = console_in_replay(runs.path(), (120, 40), SeekTarget::Week(1));
     console.press("g x");
-    console.assert_shows("The x-ray works in debug runs and in runs that are over.");
+    console.assert_shows("The x-ray is available in debug runs and in runs that have ended.");
 }
 
 /// Types a command on the X-ray screen and sends it.
@@ -306,7 +309,7 @@ fn parameters_are_set_only_in_debug_runs_after_confirmation() {
     submit_words(&mut console, "set group.S1.c_max_mean 300 from 20");
     console.press("y");
     console.assert_shows("from day 20");
-    // Changing the view and returning sends no new question.
+    // Changing the view and returning sends no new request.
     console.press("esc up down");
     console.assert_shows("from day 20");
     assert_eq!(console.app.run().map(|run| run.company.observation.day), before);
@@ -358,7 +361,7 @@ fn replay_of_a_finished_run_queries_hidden_tables() {
     session.abandon().expect("it ends");
     drop(session);
     let mut console = console_in_replay(runs.path(), (120, 40), SeekTarget::Week(1));
-    // An inspection before it opens the run without its database.
+    // The inspection that precedes the query opens the run without its database.
     console.press("g x 9 'SELECT' _ 'max(day)+100' _ 'FROM' _ 'hidden.drift' f5");
     console.assert_shows("121");
     drop(console);

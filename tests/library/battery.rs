@@ -1,4 +1,5 @@
-//! Hundreds of typical statements of agents, compared between the database of a company and ordinary tables with the same rows.
+//! Hundreds of typical SQL statements of agents. Their results in the database of a run are compared with ordinary
+//! tables that have the same rows.
 //!
 //! Durations with 190,000 subscribers are printed, not checked:
 //! `cargo test --release --test library -- battery --ignored --nocapture`
@@ -19,7 +20,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::call_tool;
 
-/// A limit of steps instead of time: nested scans exceed it.
+/// A limit of steps instead of time, which statements with nested scans exceed.
 const LIMITS: QueryLimits =
     QueryLimits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
 
@@ -90,7 +91,7 @@ fn play_week(session: &mut Session, at: u32) {
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
-/// Accepts the requests of most threads, ends some, and ignores some.
+/// Accepts the requested terms in most threads, ends some threads and ignores some threads.
 fn answer_threads(session: &mut Session) {
     let waiting = session.company().observe().waiting;
     let offer = |thread: &WaitingThread| {
@@ -165,7 +166,7 @@ fn query_plain_tables(plain: &Connection, sql: &str) -> QueryResult {
     }
 }
 
-/// Returns whether a statement defines the order of its rows.
+/// Returns whether a SQL statement defines the order of its rows.
 fn is_ordered(sql: &str) -> bool {
     sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
 }

@@ -1,4 +1,4 @@
-//! Breakpoints stop on the days that a scan of the recorded days finds, and the writes of a figure explain all its changes.
+//! Breakpoints stop on exactly the days that a scan of all recorded days finds. The writes to a figure add up to its changes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -109,7 +109,8 @@ fn record_days(session: &mut Session) -> Vec<DayRecord> {
     all
 }
 
-/// An independent implementation of each condition: whether it is true on a day, from 1, of the recorded values.
+/// An independent implementation of a condition: returns whether the condition is true on a day, counted from 1, of
+/// the recorded days.
 type ReferenceCondition = fn(&[DayRecord], usize) -> bool;
 
 fn churn_7(days: &[DayRecord], day: usize) -> Option<f64> {
@@ -150,7 +151,7 @@ const CONDITIONS: [(&str, ReferenceCondition); 12] = [
     }),
 ];
 
-/// Returns every day on which each condition becomes true, with a loop over the recorded values.
+/// Returns every day on which each condition becomes true, found by a loop over the recorded days.
 fn scan_conditions(days: &[DayRecord]) -> Vec<(u32, String)> {
     let mut found = Vec::new();
     for day in 1..=days.len() {
@@ -201,14 +202,14 @@ fn breakpoints_match_a_full_scan() {
     assert_eq!(stops, expected);
     let kinds: std::collections::BTreeSet<&str> = stops.iter().map(|(_, text)| text.as_str()).collect();
     assert!(kinds.len() >= 9 && stops.len() > 30, "{kinds:?} {}", stops.len());
-    // The hash of the facts restarts with each line, and a stop ends a line.
+    // The hash of the facts is excluded: it restarts with each line, and a stop at a breakpoint ends a line.
     let parts = |session: &Session| {
         let (_, mut parts) = session.state_hash();
         parts.remove("facts").expect("a part");
         parts
     };
     assert_eq!(parts(&stopping), parts(&alone), "stopping changes nothing");
-    // Searching the finished run without breakpoints finds the same days.
+    // A search in the finished run, which does not use breakpoints, finds the same days.
     for (text, holds) in CONDITIONS {
         let parsed = condition(text);
         let found: Vec<u32> = alone
@@ -238,7 +239,7 @@ fn breakpoint_within_a_week_writes_a_step_line() {
     advance_week(&mut other);
     other.step(7, &mut |_| {}).expect("days");
     other.step(3, &mut |_| {}).expect("days");
-    // Days without breakpoints are simulated again first.
+    // The days that ran without breakpoints are simulated again first.
     session.inspect().set_breakpoint(condition("subscribers(S1) < 0")).expect("a breakpoint");
     let run = session.inspect().run_until_breakpoint(10, &mut |_| {}).expect("days");
     assert_eq!((run.from, session.day(), run.hits.len()), (7, 17, 0));
@@ -294,13 +295,14 @@ fn thirty_day_churn_uses_initial_subscribers() {
     assert!(churn > 0.0 && (churn - of_the_tables).abs() < 1e-12, "{churn} {of_the_tables}");
 }
 
-/// Returns a reputation after changes, by the rule of the simulator: each is clamped to 0..=1 and floored.
+/// Returns a reputation after changes, by the rule of the simulator: the value after each change is clamped to 0..=1
+/// and is at least `floor`.
 fn apply_changes(from: f64, changes: &[f64], floor: f64) -> f64 {
     changes.iter().fold(from, |value, change| (value + change).clamp(0.0, 1.0).max(floor))
 }
 
-/// Counts the writes of each mechanism. Checks that the writes of a day form a chain, bit for bit, from the recorded value of the
-/// previous day to that of the day.
+/// Counts the writes of each mechanism. Checks that the writes of a day lead, bit for bit, from the recorded value of
+/// the previous day to the recorded value of the day.
 fn check_writers(
     session: &mut Session,
     targets: &[WriteTarget],
@@ -390,7 +392,7 @@ fn writers_sum_to_the_change_exactly() {
 fn writers_cover_signed_and_lost_enterprises() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = debug_run_with_offers(folder.path(), 6);
-    // From here on, the player does not reply.
+    // The player does not reply to enterprises from this day on.
     advance_weeks(&mut session, 6);
     let sql = |what: &str| {
         format!(
@@ -486,11 +488,11 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
         for refusal in rejections {
             assert_eq!(
                 refusal.to_string(),
-                "not_in_this_mode: the x-ray works in debug runs and in runs that are over"
+                "not_in_this_mode: the x-ray is available in debug runs and in runs that have ended"
             );
         }
         assert_eq!((lines(), session.day()), (before, 7), "no line is recorded and no day is simulated");
-        // After abandoning the run, the user can search it, but not continue it.
+        // After the run is abandoned, the user can search its days but cannot continue it.
         session.abandon().expect("it ends");
         let number = session.inspect().set_breakpoint(hidden_condition).expect("a breakpoint").number;
         assert_eq!(session.inspect().breakpoint_histories(Some(number)).expect("a look").len(), 1);
@@ -538,7 +540,7 @@ fn condition_errors_name_column_and_similar_words() {
         ("churn(S1) > many", 13, "a number is expected, not many"),
         ("churn(S1) > 1e400", 13, "a number is expected, not 1e400"),
         ("churn(S1) > 0.05 over", 22, "over needs a number of days"),
-        ("churn(S1) > 0.05 over 0", 18, "over takes 1 to 1000 days"),
+        ("churn(S1) > 0.05 over 0", 18, "over needs 1 to 1000 days"),
         ("churn(S1) > 0.05 over 1.5", 23, "a whole number is expected, not 1.5"),
         ("cash(S1) < 5", 1, "cash is a figure of the whole company"),
         ("reputation falls", 1, "reputation is a figure of a group"),
@@ -601,7 +603,8 @@ fn breakpoint_search_distinguishes_always_true_from_never_true() {
     assert_eq!(session.company().observe().cash_change_days, 5);
 }
 
-/// The first subscribers sign up in the third week: 30 days later churn has its first value, for those of the first day only.
+/// The first subscribers sign up in the third week. 30 days later, the churn over 30 days has its first value, for the
+/// subscribers of the first day only.
 #[test]
 fn change_conditions_start_at_the_second_value() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -621,7 +624,7 @@ fn change_conditions_start_at_the_second_value() {
         })
         .collect();
     assert_eq!(states, [(began, true, false)], "a condition that is true from the start is reported as such");
-    // Conditions on values of a day are checked from the first day on.
+    // Conditions on daily values are checked from the first day on.
     assert_eq!(
         session.inspect().find_condition_days(condition("subscribers(S1) >= 0")).expect("days").len(),
         1

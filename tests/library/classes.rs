@@ -1,4 +1,4 @@
-//! A class of thirty students: created, played on thirty machines, collected and shown.
+//! A class of thirty students, which is created, played on thirty machines, collected and shown.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -89,7 +89,7 @@ fn lesson() -> HandoutSource {
     HandoutSource::Lesson(Arc::new(Lesson::from_file(&path).expect("a lesson")))
 }
 
-/// Forges lines, and removes database and snapshot, which store the true position.
+/// Forges lines of a run. Removes the database and the snapshot, which store the position in the original trajectory.
 fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
     forge_lines(folder, change);
     let kept = ["run.toml", "trajectory.jsonl", "lesson.toml", "lesson.md"];
@@ -100,7 +100,7 @@ fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
     }
 }
 
-/// Exports a run as an archive next to its machine, and removes the run.
+/// Exports a run as an archive and removes the run.
 fn export_and_remove_run(folder: &Path, archive: &Path) {
     let parent = archive.parent().expect("a folder");
     fs::create_dir_all(parent).expect("a folder");
@@ -134,13 +134,13 @@ fn class_of_thirty_is_collected_completely() {
             _ => {
                 let folder = school.play(label, &machine, price, 3);
                 match label {
-                    // Changes a figure without updating the sum of its line.
+                    // Changes a figure without updating the checksum of its line.
                     "S05" => replace_in(
                         &folder.join("trajectory.jsonl"),
                         "\"event\":\"goal\"",
                         "\"event\":\"hint\"",
                     ),
-                    // Improves a goal, with recomputed sums and hash chain.
+                    // Improves the result of a goal, with recomputed checksums and hash chain.
                     "S06" => forge_all(&folder, |_, line| {
                         if line["event"] == "goal" {
                             line["value"] = json!(99_999.0);
@@ -156,10 +156,10 @@ fn class_of_thirty_is_collected_completely() {
             }
         }
     }
-    // A duplicate of a run is not counted as another run.
+    // A duplicate of a run does not count as a second run.
     let again = school.machine("archives").join("copy-of-S01.tar.gz");
     fs::copy(school.machine("archives").join("S01.tar.gz"), &again).expect("copied");
-    // A machine can have unrelated runs.
+    // Runs on a machine that do not belong to the class are ignored.
     let other = Storage::Runs(school.machine("machine-S02"));
     drop(Session::create(
         NewRun { storage: other, days: Some(28), ..NewRun::default() },
@@ -315,7 +315,7 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     assert_eq!(collection.runs.iter().map(|run| run.evidence.tries).max(), Some(2));
     assert_eq!(collection.findings, [ClassFinding::Missing { label: "S01".to_owned() }]);
 
-    // An easier lesson in a handout with a new seal: its runs have another digest.
+    // A handout with an easier lesson and a new seal: the runs have a different lesson digest.
     let easier = Session::open(&path, Access::Read, false).expect("it opens").manifest().id.clone();
     forge_all(&path, |at, line| {
         if at == 0 {
@@ -334,7 +334,7 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     let other = school.collect(std::slice::from_ref(&path)).findings;
     assert!(matches!(&other[..], [ClassFinding::Missing { .. }, ClassFinding::Altered { .. }]), "{other:?}");
 
-    // A handout of another student, with the own label in the first line.
+    // A run from the handout of another student, whose first line was changed to the player's label.
     forge_all(&folder, |at, line| {
         if at == 0 {
             line["participant"] = json!("S01");

@@ -1,4 +1,4 @@
-//! The curve explorer: who may see which values, and which lines an inspection records.
+//! The curve explorer: which values a run may show, and which lines an inspection records.
 
 use novamind::insight::{CurveExplorer, CurveInspection};
 use novamind::record::mode::Mode;

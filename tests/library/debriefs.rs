@@ -1,5 +1,5 @@
-//! The debrief of a lesson: the student's curve is that of the record, the reference plays are those of the check, and the first
-//! different decision has the value of a re-simulation with it.
+//! The debrief of a lesson. The student's curve equals the record, and the reference plays equal the plays of the
+//! lesson check. The effect of the first different decision equals a re-simulation with this decision.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
     Arc::new(Lesson::from_file(&folder.join("two-weeks.toml")).expect("a lesson"))
 }
 
-/// Starts the lesson of a student, with a seed that differs from that of the lesson.
+/// Starts the lesson for a student, with a seed that differs from the seed of the lesson.
 fn student(folder: &Path) -> Session {
     student_of(lesson(), folder)
 }
@@ -44,7 +44,7 @@ fn student_of(lesson: Arc<Lesson>, folder: &Path) -> Session {
     Session::create(new, &Configuration::bundled()).expect("the lesson begins")
 }
 
-/// Plays the lesson to its end, with a price from a certain week on.
+/// Plays the lesson to its end, with a price that is set in week `from`.
 fn play_lesson(folder: &Path, price: u32, from: u32) -> Session {
     finish_lesson(student(folder), price, from)
 }
@@ -90,7 +90,7 @@ fn debrief_curves_match_the_record_and_reference_plays() {
     assert_eq!(found.bad_play.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
     assert_eq!(found.steps.len(), 2);
     assert_eq!(found.pitfalls, [(7, "Somebody bought.".to_owned())]);
-    // The result from the disk is equal.
+    // The debrief of the run that is read from disk is equal.
     let run = session.folder().expect("a folder").to_owned();
     drop(session);
     assert_eq!(debrief(&Session::open(&run, Access::Read, true).expect("it opens")), found);
@@ -102,12 +102,13 @@ fn first_difference_is_valued_by_resimulation() {
     let found = debrief(&play_lesson(folder.path(), 30, 0));
     let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
     assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
-    // This single decision turns the run into the reference play.
+    // This single decision makes the run equal to the reference play.
     let effect = parting.effect.as_simulated().expect("an effect");
     let good = found.reference.as_ref().expect("a reference play").cash_by_day.clone();
     assert_eq!(Some(&effect.with), good.last());
     assert_eq!(Some(&effect.own), found.cash_by_day.last());
-    // The higher price of the second week stays: the decision of the first week is not the complete reference play.
+    // The higher price of the second week is kept, so the decision of the first week alone does not reproduce the
+    // reference play.
     let later = debrief(&play_lesson(folder.path(), 40, 1));
     let DecisionComparison::Different(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
     assert_eq!(parting.week, 1);

@@ -1,4 +1,4 @@
-//! Comparison of two days of a run and of two runs on a day: exactly the changed values differ, and inspections are recorded.
+//! Comparison of two days of a run, and of two runs on a day. Exactly the changed values differ, and inspections are recorded.
 
 use std::path::Path;
 
@@ -147,10 +147,13 @@ fn difference_requires_permission_and_is_recorded() {
         let from_debug =
             debug.inspect().compare_with_run(&mut session, None).expect_err("hidden").to_string();
         assert_eq!(from_debug, texts[0]);
-        assert!(texts.iter().all(|one| one.starts_with("not_in_this_mode: the x-ray works")), "{texts:?}");
+        assert!(
+            texts.iter().all(|one| one.starts_with("not_in_this_mode: the x-ray is available")),
+            "{texts:?}"
+        );
         drop(session);
         let refused = open_for_inspection(&place, Default::default()).err().expect("hidden").to_string();
-        assert!(refused.contains("debug runs and in runs that are over"), "{refused}");
+        assert!(refused.contains("debug runs and in runs that have ended"), "{refused}");
         let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
         assert!(lines.iter().all(|line| line.record.kind() != "xray"));
         let mut session =

@@ -1,4 +1,4 @@
-//! Negotiations: a company that negotiates with enterprises for several weeks, with its records.
+//! Negotiations: a company negotiates with enterprises for several weeks, and the rows of its tables are checked.
 
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn create(storage: Storage) -> Session {
     session
 }
 
-/// Replies in some threads, ends some, ignores some, and offers a subscriber another price.
+/// Replies in some threads, ends some threads, ignores some threads, and offers a subscriber a different price.
 fn answer_threads(session: &mut Session) {
     let seen = session.company().observe();
     let mine = |thread: &&WaitingThread, rest: u32| {
@@ -61,7 +61,7 @@ fn answer_threads(session: &mut Session) {
                    WHERE status = 'subscribed' AND customer_type = 'large' ORDER BY 1";
         for customer in query_column(session, sql).into_iter().step_by(9) {
             let deal = json!({"deals": [[customer, [["B", 30]]]]});
-            // In an open thread the player may just have replied, which adds a turn.
+            // If the player has just replied in an open thread, the thread has an additional turn.
             session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber can be written to");
         }
     }
@@ -134,7 +134,7 @@ fn check_turn_rows() {
         let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
         assert!(query_number(run, &sql) > 0.0, "{kind}");
     }
-    // Turns are numbered without gaps; only two offers of one call could share a number.
+    // Turns are numbered without gaps. Only two offers of one call can have the same number.
     assert_no_rows(
         run,
         "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",
@@ -143,7 +143,7 @@ fn check_turn_rows() {
         run,
         "SELECT * FROM enterprise_turns WHERE message_id > (SELECT count(*) FROM enterprise_turns)",
     );
-    // Only enterprises have texts and addresses, and the market at the end of a deal.
+    // Only turns of enterprises, and of the market at the end of a deal, have texts and addresses.
     assert_no_rows(run, "SELECT * FROM enterprise_turns WHERE (sender = 'customer') <> (email LIKE '%@%.%')");
     assert_no_rows(
         run,
@@ -153,7 +153,7 @@ fn check_turn_rows() {
         run,
         "SELECT t.email FROM enterprise_turns t JOIN customers c USING (customer_id) WHERE sender = 'customer' AND t.email <> c.email",
     );
-    // Offers.
+    // Checks the rows of offers.
     assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND close_reason = '' \
@@ -167,7 +167,8 @@ fn check_turn_rows() {
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number = 0 AND (seat_count < 30 OR thread_type <> 'renegotiation')",
     );
-    // A thread closes with the acceptance and the market's record, or with a rejection; unanswered threads have no closing row.
+    // A thread closes with the acceptance and the row of the market, or with a rejection. Unanswered threads have no
+    // closing row.
     assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE closed <> (close_reason IN ('accepted', 'agent_rejected'))",
@@ -218,7 +219,7 @@ fn check_deal_rows() {
         f64::from(seen.companies)
     );
     assert!(seen.companies > 10 && seen.seats > 1000, "{} {}", seen.companies, seen.seats);
-    // The row of a lead keeps its billing day; everything else follows the deal.
+    // The row of a lead keeps its billing day. All other columns follow from the deal.
     assert_no_rows(run, &format!("SELECT * {companies} AND billing_day_mod30 <> created_day % 30"));
     assert_no_rows(
         run,
@@ -269,7 +270,7 @@ fn check_deal_rows() {
                   AND abs(l.amount - s.effective_price * s.seat_count) > 0.5"
         ),
     );
-    // The inbox names customers.
+    // Each row of the inbox names an enterprise.
     assert_no_rows(
         run,
         "SELECT day, count(*) AS n FROM notifications WHERE type = 'deal_won' GROUP BY 1 \
@@ -303,7 +304,8 @@ fn check_week_counts() {
         assert_eq!(query_number(run, &sql), f64::from(thread.offers_so_far));
     }
     check_rules_match_tables(run);
-    // The change review lists the offers since the week, with equal offers of a call in one sentence; they cannot be undone.
+    // The change review lists the offers since the last week. Equal offers of a call are listed in one sentence, and
+    // offers cannot be undone.
     answer_threads(run);
     let done = run.company().observe().purchases;
     let offers = done.iter().filter(|line| line.starts_with("offered C at $"));
@@ -329,7 +331,7 @@ fn check_plan_request_text(run: &mut Session, thread: &ThreadContext) {
     assert!(text_at(&rows[0], 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
 }
 
-/// The rows of subscribers that ask for another plan have the plan before any price is named.
+/// Checks the rows of subscribers that ask for a different plan: they contain the plan before a price is named.
 #[test]
 fn check_plan_request_rows() {
     let mut session = create(Storage::Memory);
@@ -348,7 +350,7 @@ fn check_plan_request_rows() {
     assert!(wishes > 0, "no subscriber asked for another plan");
 }
 
-/// The tables have the fields of rules: price and plan that an enterprise named, and the last offer.
+/// Checks that the tables contain the fields that rules use: the price and plan that an enterprise named, and the last offer.
 fn check_rules_match_tables(run: &mut Session) {
     let (threads, _) = ThreadContext::read_all(run).expect("threads");
     let mut asked = 0;

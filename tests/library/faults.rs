@@ -1,4 +1,4 @@
-//! Seeded faults: each changes the simulation, is visible in its view of the x-ray, and stays with its run.
+//! Seeded faults: each fault changes the simulation, is visible in a view of the x-ray, and is kept when its run is reopened.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ fn create_company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
     session
 }
 
-/// Returns days of a run in which cancellations reduce reputation to its minimum.
+/// Number of days of a run in which cancellations reduce reputation to its minimum.
 const STRESSED_DAYS: u32 = 50;
 
 fn group(id: &str) -> Group {
@@ -67,7 +67,8 @@ fn parameter(session: &Session, key: &str) -> f64 {
         .expect("a number")
 }
 
-/// Evidence of a fault: the days until it shows, and whether a view differs from the mechanism.
+/// Symptom of a fault: the number of days after which it is visible, and a check whether a view differs from the
+/// correct mechanism.
 struct Symptom {
     days: u32,
     shows: fn(&mut Session) -> bool,
@@ -90,7 +91,7 @@ fn symptom(fault: Fault) -> Symptom {
         }),
         Fault::QuotaInverted => at(12, |session| {
             let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
-            // No demand is close to the quota.
+            // Without the fault, this term is 0, because no demand is close to the quota.
             mood.term(SatisfactionTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
@@ -216,7 +217,8 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         for place in [&path, &branch_place] {
             verify(place).expect("it verifies");
         }
-        // The manifest can be lost: the first line has the number of the fault, and nothing else about it.
+        // The manifest can be lost, because the first line contains the number of the fault. It contains no other data
+        // about the fault.
         let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
         std::fs::remove_file(path.join("run.toml")).expect("it goes");
@@ -225,7 +227,7 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let text = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
         assert!(!text.contains(&format!("{fault:?}")));
-        // Another number is another run.
+        // A different number of the fault makes a different run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
         let mut forged = read_manifest(&path).expect("of the line");
         forged.fault = Some(other);
@@ -257,7 +259,7 @@ fn faults_require_a_debug_run() {
     for key in ["fault", "run.fault", "fidelity.fault"] {
         assert!(Session::create(new(key), &Configuration::bundled()).is_err(), "{key}");
     }
-    // A manifest with a fault in another mode is rejected.
+    // A manifest with a fault in a mode other than debug is rejected.
     let session = create_company(folder.path(), Some(Fault::DriftTwice), 7);
     let path = run_folder(&session);
     drop(session);

@@ -1,5 +1,5 @@
-//! Conditions of lessons: goals relative to a reference play with rules, hidden state of a part before the next one, starts that
-//! were interrupted by a kill, and figures that are measured in another world.
+//! Special cases of lessons: goals relative to a reference play with rules, hidden state before the last part ends,
+//! interrupted starts, and figures that are measured in a separate simulation.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ fn run_folder(session: &Session) -> PathBuf {
     session.folder().expect("a folder").to_owned()
 }
 
-/// Two parts with one seed, each of two weeks after an initial week.
+/// A lesson with two parts on the same seed. Each part has two weeks after an initial week.
 const PARTS: &str = r#"
 title = "Two parts"
 minutes = 5
@@ -81,7 +81,7 @@ fn hidden_state_requires_the_last_part_to_be_over() {
         assert!(!session.can_inspect());
         let refused = session.check_inspection().expect_err("it is refused");
         assert!(refused.message.contains("after its last part"), "{refused}");
-        // The causes are those of an unfinished run: without hidden figures and inspections.
+        // Causes are computed as for an unfinished run, without hidden figures and inspections.
         let week_question: WeekQuestion = "satisfaction 3".parse().expect("a question");
         assert_eq!(rejection_code(record_figure_inspection(session, &week_question)), "not_in_this_mode");
         assert!(!can_inspect(session.manifest(), session.ended(), session.folder()));
@@ -148,7 +148,7 @@ fn interrupted_retry_is_counted_on_open() {
     }
 }
 
-/// Truncates a run to a number of lines, as a kill does, and removes the files that store later positions.
+/// Truncates a run to the given lines, as a kill does, and removes the files that store a later position.
 fn truncate_run(folder: &Path, lines: &[&str]) {
     std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n") + "\n").expect("written");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
@@ -159,7 +159,7 @@ fn truncate_run(folder: &Path, lines: &[&str]) {
     }
 }
 
-/// A lesson with waiting enterprises, whose reference play replies by rules.
+/// A lesson with enterprises that wait for an answer. The reference play replies by rules.
 const RULE_LESSON: &str = include_str!("../data/lessons/answers-by-rules.toml");
 
 #[test]
@@ -170,7 +170,7 @@ fn goal_compares_with_a_reference_play_that_uses_rules() {
     for _ in 0..3 {
         advance_lesson_week(&mut session).expect("a week");
     }
-    // Without an implementation of the rules, the step stays unjudged instead of being judged wrongly.
+    // Without an implementation of the rules, the step is not judged instead of being judged wrongly.
     advance_lesson_week(&mut session).expect("a week");
     assert!(session.lesson().expect("a lesson").goal_results(0).is_empty());
     assert_eq!(rejection_code(advance_lesson_week(&mut session)), "step_not_begun");

@@ -1,4 +1,4 @@
-//! Lessons: validation of their files, the course of a lesson, its record, and the checks of the bundled lessons.
+//! Lessons: validation of the files, playing a lesson, its record, and the checks of the bundled lessons.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::support::lessons::{self, advance_lesson_week, rejection_code, write_lesson};
 
-/// Two steps of two weeks, with a numeric guess and a choice.
+/// A lesson with two steps of two weeks, one with a numeric guess and one with a choice.
 const PLAN: &str = r#"
 title = "Two steps"
 minutes = 5
@@ -108,7 +108,7 @@ fn wrong_files_name_line_and_key() {
         ("hints = [\"Wait.\"]", "hints = []", "one to three hints"),
         ("weeks = 2\nhints = [\"Wait", "weeks = 0\nhints = [\"Wait", "at least one week"),
         ("[[bad.play]]\nweek = 1", "[[bad.play]]\nweek = 0", "no week 0 in which a student decides"),
-        ("answer = 2", "answer = 3", "the number of one of them"),
+        ("answer = 2", "answer = 3", "the number of a choice"),
         ("at_least = 1\n", "at_least = 1\nat_most = 2\n", "one of at_least, at_most and relative"),
         ("calls = ['set_daily", "calls = ['rules: reject rest', 'set_daily", "accepted"),
         (
@@ -257,7 +257,7 @@ fn missing_evaluation_is_added_on_open() {
     assert!(lines.len() - last_week > 3, "outcome, goal, a parameter and the next step follow");
     for kept in last_week + 1..lines.len() {
         std::fs::write(&path, lines[..kept].join("\n") + "\n").expect("written");
-        // The database would store the position of the removed lines.
+        // The database is removed as well, because it stores the position of the removed lines.
         for entry in std::fs::read_dir(&run_path).expect("a folder").flatten() {
             if entry.file_name().to_string_lossy().starts_with("world.db") {
                 std::fs::remove_file(entry.path()).expect("removed");

@@ -1,4 +1,4 @@
-//! Calculations and scripts of a run: storing, running, display, replay.
+//! Calculations and scripts of a run: they are stored, run, displayed and replayed.
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::trajectory::record::Via;
@@ -118,7 +118,7 @@ fn stored_scripts_survive_reopening() {
     let dashboard = advance_week(&mut session).dashboard;
     assert!(dashboard.contains("money:\n  cash\n  999405.0\n"), "{dashboard}");
 
-    // Branches copy earlier calculations and scripts.
+    // A branch contains the calculations and scripts that were stored before its first day.
     let mut branch = session.branch(2, novamind::record::mode::Mode::Sandbox).expect("a branch");
     assert_eq!(
         call_tool(&mut branch, "list_daily_calculations", json!({})),
@@ -180,7 +180,7 @@ fn dashboard_changes_only_with_the_week() {
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
-    // With the snapshot, and without it.
+    // The run is opened with the snapshot and without it.
     for _ in 0..2 {
         let again = Session::open(&folder, Access::Read, true).expect("it opens");
         assert_eq!(again.company().dashboard(), text);
@@ -209,7 +209,7 @@ fn text_quotas_apply_only_to_new_calls() {
     }
     call_tool(&mut session, "register_script", json!({"name": "small", "code": "SELECT 1"}));
     drop(session);
-    // A record of a version without quotas.
+    // Forges the record of a program version without text quotas.
     forge_lines(&folder, |_, line| {
         if line["tool"] == "register_script" && line["ok"] == true {
             line["args"]["code"] = large.clone().into();

@@ -1,4 +1,4 @@
-//! Parameters that are set during a debug run: reopening it at any line leads to the same run.
+//! Overrides: parameters that are set during a debug run. Reopening the run at any line leads to the same states.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ fn set_parameter(session: &mut Session, key: &str, value: Value, from: Option<u3
     session.set_parameter(key, &value, from).unwrap_or_else(|refusal| panic!("{key}: {refusal}"));
 }
 
-/// Plays a run of eight weeks that sets parameters of all types: at once, within a week, and from later days on.
+/// Plays a run of eight weeks that sets parameters of all types, with immediate effect, within a week, and from a later day on.
 fn run_with_overrides(folder: &Path) -> Session {
     let mut session = begin_run(folder, Mode::Debug, 140);
     apply_opening_decisions(&mut session);
@@ -57,7 +57,7 @@ fn states(folder: &Path) -> Vec<(u32, String)> {
     trajectory.lines.iter().filter_map(state).collect()
 }
 
-/// Returns all data about money and customers in a database.
+/// Returns sums of the ledger, the customers and the subscriptions in the database of a run.
 fn money_and_customer_rows(session: &mut Session) -> Vec<Vec<novamind::database::Cell>> {
     let mut all = Vec::new();
     for sql in [
@@ -90,7 +90,7 @@ fn run_with_overrides_resumes_and_verifies() {
     let kinds = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
     assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
 
-    // By replaying every line, by the snapshot, and by a combination of both.
+    // Verifies the run, and opens it with and without the snapshot and the database.
     assert_eq!(verify(&path).expect("it verifies").day, day);
     for gone in [&[][..], &["snapshot.bin"], &["world.db"], &["snapshot.bin", "world.db"]] {
         for name in gone {
@@ -102,7 +102,7 @@ fn run_with_overrides_resumes_and_verifies() {
         again.save().expect("saved");
     }
 
-    // Forward and backward.
+    // Plays the run forward and backward.
     let mut playback = Playback::open(&path).expect("it opens");
     let on = &mut |_| ControlFlow::Continue(());
     for goal in [
@@ -134,7 +134,7 @@ fn killed_run_keeps_its_overrides() {
     drop(session);
     let text = std::fs::read_to_string(&path).expect("lines");
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
-    // A kill after each line with a setting, before a week, and within a line.
+    // The run is killed after each line with an override, before a week, and within a line.
     let kind = |line: &str| {
         ["override", "advance", "week"]
             .into_iter()
@@ -149,7 +149,7 @@ fn killed_run_keeps_its_overrides() {
         let reached = states(&run_folder(&again));
         assert_eq!(reached, expected[..reached.len()], "cut after line {}", at + 1);
         if again.day() == 56 {
-            // Settings for later days stay pending, also after a snapshot.
+            // Overrides for later days stay pending after a snapshot.
             again.save().expect("saved");
             drop(again);
             let mut again = Session::open(&parent_run_folder(&path), Access::Write, true).expect("it opens");
@@ -283,7 +283,7 @@ fn invalid_overrides_are_rejected_without_effect() {
         ("capacity_tier.3.tier", json!(4), None, "parameter_not_allowed", "numbered"),
         ("capacity_tier", json!([]), None, "parameter_not_allowed", "numbered"),
         ("capacity_tier.3.capacity_units", json!(u64::MAX), None, "parameter_not_allowed", ""),
-        ("run.seed", json!(1), None, "parameter_not_allowed", "acts only when a run begins"),
+        ("run.seed", json!(1), None, "parameter_not_allowed", "takes effect only at the start of a run"),
         ("operations.base_outage_prob", json!(0.5), Some(7), "day_unknown", "between 8 and 140"),
         ("operations.base_outage_prob", json!(0.5), Some(141), "day_unknown", "between 8 and 140"),
     ] {
@@ -326,10 +326,10 @@ fn forged_override_line_is_rejected() {
         verify(&run_path).expect_err(field).to_string()
     };
     for (field, value, part) in [
-        ("new", json!(0.01), "the state on day 14 is not the recorded one"),
-        ("from_day", json!(12), "the state on day 14 is not the recorded one"),
+        ("new", json!(0.01), "the state on day 14 differs from the recorded state"),
+        ("from_day", json!(12), "the state on day 14 differs from the recorded state"),
         ("from_day", json!(0), "not after day 0"),
-        ("old", json!(0.5), "was not 0.5 before it"),
+        ("old", json!(0.5), "was not 0.5 before this change"),
         ("key", json!("operations.nothing"), "no such parameter"),
         ("new", json!(null), "not valid for a parameter"),
         ("new", json!(7), "between 0 and 1"),
@@ -339,7 +339,7 @@ fn forged_override_line_is_rejected() {
         assert!(words.contains(part), "{field}: {words}");
         assert!(Session::open(&run_path, Access::Write, false).is_err(), "{field}");
     }
-    // A run of another mode must not have such a line.
+    // A run that is not a debug run must not contain an override.
     std::fs::write(&path, &good).expect("written");
     forge_lines(&run_path, |_, line| {
         if line["kind"] == "start" {
@@ -348,7 +348,7 @@ fn forged_override_line_is_rejected() {
         }
     });
     let words = verify(&run_path).expect_err("a sandbox").to_string();
-    assert!(words.contains("only debug runs and lessons can"), "{words}");
+    assert!(words.contains("only in debug runs and lessons"), "{words}");
 }
 
 #[test]
@@ -386,7 +386,7 @@ fn run_with_overrides_is_excluded_from_comparisons() {
     assert!(again.company().observe().has_own_parameters);
 }
 
-/// Returns one parameter of each kind: `group.*.c_max_mean` once instead of 26 times.
+/// Returns one parameter of each kind, for example one `group.*.c_max_mean` instead of all 26.
 fn parameter_kinds(params: &Value) -> Vec<String> {
     fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
@@ -476,7 +476,7 @@ fn excessive_leads_are_rejected_and_the_run_stays_intact() {
     let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("no room");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
 
-    // From a later day on, after simulating single days and weeks.
+    // Sets a parameter from a later day on, after single days and weeks have been simulated.
     session.set_parameter("calendar.weekly", &usual, None).expect("as it was");
     session.set_parameter("calendar.weekly", &crowded, Some(today + 3)).expect("it waits");
     let forecasts = session.company().naive_forecasts();

@@ -1,4 +1,4 @@
-//! Python scripts: results, restrictions, limits, and that a replay does not run them again.
+//! Python scripts: results, restrictions, limits, and replays that use recorded results.
 
 use std::ops::ControlFlow;
 use std::process::Command;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::{advance_week, call_tool};
 
-/// Starts a run if python3 is available. Otherwise there is nothing to test.
+/// Starts a run, or returns `None` if python3 is not available and the test is skipped.
 fn run_with_python(storage: Storage) -> Option<Session> {
     let tried = Command::new("python3").args(["-c", ""]).output();
     if !tried.is_ok_and(|done| done.status.success()) {
@@ -94,7 +94,7 @@ fn failed_script_reports_why_and_changes_nothing() {
         &[
             "ZeroDivisionError: division by zero; python3 ended with code 1\n",
             "line 4, in half",
-            "before that it printed:\nso far",
+            "output of the script:\nso far",
         ],
     );
     assert_fails(&mut session, "import sys\nsys.exit(3)", &["python3 ended with code 3"]);
@@ -157,7 +157,7 @@ fn scripts_cannot_block_the_run() {
         let begun = Instant::now();
         let refusal = script_rejection(&mut session, code, 1.5);
         assert_eq!(refusal.code, "script_timeout", "{code}: {refusal}");
-        assert!(refusal.message.starts_with("it did not end in 1.5 s"), "{refusal}");
+        assert!(refusal.message.starts_with("the script did not end in 1.5 s"), "{refusal}");
         assert!(begun.elapsed() < Duration::from_secs(20), "{code}");
         assert!(code.contains('x') || refusal.message.ends_with("printed:\nbegun"), "{refusal}");
     }
@@ -166,7 +166,7 @@ fn scripts_cannot_block_the_run() {
     let value = run_script(&mut session, flood);
     let length = |field: &str| value[field].as_str().map_or(0, |text| text.chars().count());
     assert_eq!((length("stdout"), length("stderr")), (5000, 2000));
-    // Invalid requests on the socket.
+    // The script sends invalid requests to the program.
     let noise = "import os\nfor place in range(3, 64):\n    try: os.write(place, b'{}\\n\\xff\\n' * 100)\n    except OSError: pass\nprint('over')";
     assert_eq!(run_script(&mut session, noise)["stdout"], "over\n");
     assert_eq!(run_script(&mut session, "print(get_vars())")["stdout"], "{'current_day': 0}\n");
@@ -183,7 +183,7 @@ fn scripts_are_sandboxed_on_linux() {
     let file = folder.path().join("file");
     std::fs::write(&file, "kept").expect("a file");
     let file = file.display().to_string();
-    // Only if the kernel has Landlock.
+    // Further restrictions are tested only if the kernel supports Landlock.
     let fence = "import ctypes\nprint(ctypes.CDLL(None).syscall(444, None, 0, 1))";
     let has_fence =
         run_script(&mut session, fence)["stdout"].as_str().is_some_and(|text| !text.starts_with('-'));
@@ -218,7 +218,7 @@ fn replay_uses_recorded_script_output() {
     let runs = tempfile::tempdir().expect("a folder");
     let Some(mut session) = run_with_python(Storage::Runs(runs.path().to_owned())) else { return };
     let folder = session.folder().expect("a folder").to_owned();
-    // Its output differs in each run.
+    // The output of this script differs on every execution.
     let code = "# python\nimport time\nprint(query('SELECT count(*) AS n FROM ledger'), time.time_ns())";
     call_tool(&mut session, "register_daily_calculation", json!({ "name": "now", "code": code }));
     call_tool(

@@ -1,4 +1,4 @@
-//! Bundled queries, compared with counts of single rows of the tables.
+//! Bundled queries, whose results are compared with counts of table rows.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::{call_tool, query_number, query_numbers, query_rows};
 
-/// Returns a company with few individuals and many enterprises, after some weeks of offers at two prices.
+/// Returns a company with few individuals and many enterprises, after several weeks of offers at two prices.
 fn company_with_offers() -> Session {
     let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
@@ -28,7 +28,7 @@ fn company_with_offers() -> Session {
     }
     while session.day() < 84 {
         let waiting = session.company().observe().waiting;
-        // Every third enterprise gets no reply.
+        // Every third thread receives no reply.
         let offered = waiting.iter().filter(|thread| thread.thread % 3 != 0).map(|thread| {
             let price = if thread.thread % 2 == 0 { 19.5 } else { 130.0 };
             json!([thread.customer, [["C", price], ["B", 12.0]]])
@@ -62,7 +62,8 @@ fn sum(rows: &QueryResult, name: &str) -> f64 {
     rows.rows.iter().map(|row| number_at(row, at)).sum()
 }
 
-/// Returns the rows of a statement that ends with a condition, beyond the row limit of one query.
+/// Returns all rows of a statement that ends with a condition. The statement is split into several queries because of
+/// the row limit.
 fn query_in_parts(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     (0..8).flat_map(|part| query_numbers(session, &format!("{sql} AND customer_id % 8 = {part}"))).collect()
 }
@@ -91,7 +92,7 @@ fn due_bills_are_paid_by_active_subscribers() {
         assert_eq!(number_at(row, column(&due, "customers")), billed.len() as f64, "day {day}");
         let dollars = billed.iter().map(|bill| bill[2]).sum::<f64>();
         assert!((number_at(row, column(&due, "dollars_due")) - dollars).abs() < 0.01, "day {day}");
-        // No prices changed: subscribers with the same terms pay the same amount.
+        // Prices did not change, so subscribers with the same terms pay the same amount.
         let paid = format!(
             "SELECT CAST(replace(note, 'Subscription payment from customer ', '') AS INTEGER), amount
              FROM ledger WHERE category = 'subscription_payment' AND day = {day}"

@@ -83,7 +83,7 @@ fn retry_returns_the_first_response_after_reopening() {
     retry(&mut session);
     session.save().expect("it is saved");
     drop(session);
-    // With the snapshot, and from the lines alone.
+    // The run is opened with the snapshot, and from its lines alone.
     let mut session = open(&folder);
     retry(&mut session);
     drop(session);
@@ -122,14 +122,14 @@ fn reused_or_invalid_request_ids_are_rejected() {
     let seven = session.call_once("set_prices", &json!({ "A": 13 }), Via::Http, &json!(7));
     assert_eq!(seven.expect_err("no text").code, "request_id_invalid");
     call(&mut session, "set_prices", json!({ "A": 13 }), &"ä".repeat(128)).expect("prices");
-    // Tools that only read ignore the id.
+    // Read-only tools ignore the request id.
     call(&mut session, "get_vars", json!({}), "x").expect("the day");
     call(&mut session, "get_vars", json!({}), "").expect("the day");
     assert_eq!(code(advance_week(&mut session, "on", json!(7), "w")), "unexpected_day");
     assert_eq!(code(advance_week(&mut session, "on", json!("0"), "v")), "wrong_type");
     assert_eq!(session.day(), 0);
     advance_week(&mut session, "on", json!(0), "w0").expect("a week");
-    // The rejection is repeated, although the run has reached that day.
+    // The rejection is repeated, although the run has reached the expected day.
     assert_eq!(code(advance_week(&mut session, "on", json!(7), "w")), "unexpected_day");
     assert_eq!(session.day(), 7);
 }
@@ -143,7 +143,7 @@ fn retry_answers_after_an_interrupted_week() {
     let first = advance_week(&mut session, "on", Value::Null, "w1").expect("a week");
     session.save().expect("it is saved");
     drop(session);
-    // A kill directly after the line of the request.
+    // The program is killed directly after it wrote the line of the request.
     let path = folder.join("trajectory.jsonl");
     let text = fs::read_to_string(&path).expect("a trajectory");
     let at = text.match_indices("\"kind\":\"advance\"").nth(1).expect("a second week").0;
@@ -170,7 +170,7 @@ fn branch_keeps_request_ids_of_shared_lines() {
     let mut branch = session.branch(2, Mode::Sandbox).expect("a branch");
     assert_eq!(call(&mut branch, "set_prices", json!({ "A": 12 }), "p"), Ok(first));
     assert_eq!(advance_week(&mut branch, "on", Value::Null, "w0"), Ok(passed));
-    // Later decisions are not in the record of the branch.
+    // The record of the branch does not contain later decisions of the parent run.
     assert_eq!(branch.company().current_arguments("set_prices")["A"], 12.0);
     call(&mut branch, "set_prices", json!({ "A": 15 }), "q").expect("a new request");
     assert_eq!(branch.company().current_arguments("set_prices")["A"], 15.0);

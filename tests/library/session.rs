@@ -259,8 +259,8 @@ fn damaged_run_is_rejected() {
     let text = std::fs::read_to_string(&path).expect("text");
     std::fs::write(&path, text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
     let error = Session::open(&place, Access::Write, true).err().expect("damaged").to_string();
-    assert!(error.contains("line 2") && error.contains("Lines 1 to 1 are good"), "{error}");
-    // Changed with recomputed hashes, so that only the state reveals it.
+    assert!(error.contains("line 2") && error.contains("Lines 1 to 1 are valid"), "{error}");
+    // The line is changed and all hashes are recomputed, so that only the re-simulated state reveals the change.
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     lines[1] = lines[1].replace("\"A\":12", "\"A\":13");
     for at in 1..lines.len() {
@@ -274,7 +274,7 @@ fn damaged_run_is_rejected() {
     }
     std::fs::write(&path, lines.join("\n") + "\n").expect("a change");
     let error = Session::open(&place, Access::Write, true).err().expect("the database knows").to_string();
-    assert!(error.contains("it was changed") && error.contains("world.db was made from it"), "{error}");
+    assert!(error.contains("it was changed") && error.contains("world.db contains its result"), "{error}");
     std::fs::remove_file(place.join("world.db")).expect("it is there");
     let error = Session::open(&place, Access::Write, true).err().expect("another state").to_string();
     assert!(error.contains("different: customers"), "{error}");
@@ -466,7 +466,7 @@ fn player_post_gets_reactions_comments_and_a_notice() {
     let complaint =
         query_number(&mut session, "SELECT max(post_id) FROM social_media_posts WHERE day % 7 = 0");
     assert!(complaint > 0.0, "customers posted on the seventh day");
-    // A real discount, posted for a group that values discounts.
+    // The post announces a real discount to a group that values discounts.
     call_tool(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
     let content = "Every plan is $2 off from today: no tricks, cancel anytime. We cut the price because students asked for \
                    it, and the discount stays free of small print. Tell the community forum what you think.";

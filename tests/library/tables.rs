@@ -17,7 +17,7 @@ fn create(overrides: &[(&str, &str)]) -> Session {
     Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
-/// Starts a company with two channels, one of them for two groups, one of which has no budget.
+/// Opens a company with advertising in two channels. One channel has two groups, and one of these groups has no budget.
 fn fund_two_channels(session: &mut Session) {
     call_tool(session, "set_prices", json!({"A": 12, "B": 25, "C": 55}));
     call_tool(session, "set_model_tiers", json!({"B": 2, "C": 4}));
@@ -30,7 +30,7 @@ fn fund_two_channels(session: &mut Session) {
     );
 }
 
-/// Returns a company with enterprise leads that never get a reply.
+/// Returns a company with enterprise leads that never receive a reply.
 fn open_for_companies() -> Session {
     let new =
         NewRun { seed: Some(7), days: Some(140), cash: Some(20e6), mode: Mode::Debug, ..NewRun::default() };
@@ -162,7 +162,7 @@ fn customers_match_subscriptions() {
         "status = 'cancelled' AND (end_day IS NULL OR end_day % 30 <> start_day % 30)",
     );
     assert_no_rows(&mut session, "subscriptions", "status = 'subscribed' AND end_day IS NOT NULL");
-    // Enterprises get no reply here: a lead is lost after seven days.
+    // Enterprises receive no reply in this run, so every enterprise lead is lost after seven days.
     assert_no_rows(&mut session, joined, "customer_type = 'large' AND plan <> 'pending'");
     assert_no_rows(&mut session, joined, "customer_type = 'large' AND status = 'lead' AND start_day <= 63");
     assert_no_rows(
@@ -187,7 +187,7 @@ fn usage_service_and_settings_follow_the_days() {
     call_tool(&mut session, "set_prices", json!({"A": 13}));
     call_tool(&mut session, "set_prices", json!({"A": 14}));
     advance_days(&mut session, 32);
-    // The first usage of a subscriber is on the day after the start; rows older than 30 days are deleted every ten days.
+    // The first usage of a subscriber is on the day after signup. Rows older than 30 days are deleted every ten days.
     let first = "SELECT count(*) FROM (SELECT min(day) AS first, customer_id FROM daily_usage GROUP BY 2) \
                  JOIN subscriptions USING (customer_id) WHERE start_day >= 10 AND first <> start_day + 1";
     assert_eq!(query_number(&mut session, first), 0.0);
@@ -202,7 +202,7 @@ fn usage_service_and_settings_follow_the_days() {
         "service_day",
         "downtime_minutes NOT IN (0, 10, 30, 90) OR error_rate NOT BETWEEN 0 AND 1",
     );
-    // One row per day with changes; days without a call have none.
+    // Each day with changes has one row. Days without a call have no row.
     let history = query_rows(
         &mut session,
         "SELECT day, price_A, price_B, capacity_tier, spend_advertising FROM config_history",
@@ -243,7 +243,7 @@ fn overrides_keep_the_whole_family_after_every_call() {
     let ops = r#"{"by_group": {"E1": 30.0}, "by_plan": {"A": 10.0}, "by_group_plan": {}, "by_customer": {"42": 7.0}}"#;
     let none = r#"{"by_group": {"E1": 30.0}, "by_plan": {}, "by_group_plan": {}, "by_customer": {}}"#;
     let promotion = r#"{"global": 0.0, "by_group": {}, "by_customer": {}, "by_group_plan": {}}"#;
-    // Budgets of ads and development keep their sent notation, all other amounts have a decimal point.
+    // Budgets of ads and development keep the notation of the call. All other amounts have a decimal point.
     let development = r#"{"targeted_spend": {"S1": 4000, "E1": 80.0, "S2": 0.5}}"#;
     let ads = r#"{"targeted_spend": {"linkedin": {"E1": 80, "S1": 40.0}}}"#;
     let strength = r#"{"global": 0.0, "by_group": {"S1": 1.0}, "by_customer": {}}"#;
@@ -383,7 +383,7 @@ fn research_discovery_and_the_economy_are_announced() {
     assert_eq!(level(&mut session, &group), levels([3, 1, 7, 12]));
     assert!(notice(&mut session, "group_research_complete")[1].1.contains("refreshed"));
 
-    // Readings of the economy are published a month later.
+    // PMI measurements are published a month later.
     advance_days(&mut session, 30 - 17);
     assert_eq!(query_number(&mut session, "SELECT count(*) FROM macroeconomic_conditions"), 0.0);
     let running =
@@ -411,7 +411,7 @@ fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     let mut session = create(&[]);
     fund_two_channels(&mut session);
     advance_days(&mut session, 35);
-    // The third pair has no budget, so it has no rows.
+    // The third pair of channel and group has no budget, so it has no rows.
     let pairs = query_rows(
         &mut session,
         "SELECT channel_id, group_id, count(*), sum(leads_generated) > 0 FROM ad_channel_leads GROUP BY 1, 2",

@@ -1,5 +1,5 @@
-//! The raw bytes of the database file: of undiscovered groups it has only the identifiers, which are visible in
-//! `group_info_levels`.
+//! The raw bytes of the database file. The file contains no data of undiscovered groups except the identifiers, which
+//! are visible in `group_info_levels`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::support::company::{advance_week, advance_weeks, apply_opening_decisions, call_tool};
 
-/// Returns the words that would reveal a group: its name, and profile words that no initially known group uses.
+/// Returns the words that would reveal a group: its name, and words of its profile that no initially known group uses.
 fn revealing_words(group: Group, params: &Params) -> BTreeSet<String> {
     let words = |group: Group| {
         let group_persona = &params.personas.group[group.index()];
@@ -35,7 +35,7 @@ fn revealing_words(group: Group, params: &Params) -> BTreeSet<String> {
     };
     let known: BTreeSet<String> =
         Group::all().filter(|other| other.is_initially_known()).flat_map(words).collect();
-    // A known word can contain another one: Chief Compliance Officer, Compliance Officer.
+    // A known title can contain a shorter title: Chief Compliance Officer, Compliance Officer.
     let group_words = words(group)
         .into_iter()
         .filter(|word| word.contains([' ', '-']) && !known.iter().any(|other| other.contains(word.as_str())));
@@ -78,7 +78,7 @@ fn database_texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
     all
 }
 
-/// Returns the words of groups in the file that are not among `known`.
+/// Asserts that the database file does not reveal an undiscovered group that is not in `found`.
 fn check_undiscovered_groups(session: &mut Session, found: &BTreeSet<Group>) {
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
@@ -88,7 +88,7 @@ fn check_undiscovered_groups(session: &mut Session, found: &BTreeSet<Group>) {
     for group in Group::all().filter(|group| !group.is_initially_known()) {
         let known = found.contains(&group);
         let revealing = revealing_words(group, params);
-        // Words that are part of a found word do not count.
+        // A word that is part of a word of a known group does not count.
         for word in revealing.iter().filter(|word| !used.iter().any(|other| other.contains(word.as_str()))) {
             assert!(known || !contains(&bytes, word), "{word} of {group} is in the file");
         }
@@ -130,7 +130,7 @@ fn database_reveals_no_undiscovered_groups() {
     }
     advance_weeks(&mut session, 4);
     check_undiscovered_groups(&mut session, &found);
-    // After reopening, the words are the same.
+    // After the run is reopened, the file still reveals no undiscovered group.
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
     let mut session = super::durability::run::open(&folder);

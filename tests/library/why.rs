@@ -1,4 +1,4 @@
-//! Causes of changes: figures of groups equal those of breakpoints and of the tables, and hidden ones stay hidden.
+//! Causes of changes: figures of groups equal the figures of breakpoints and tables, and hidden figures stay hidden.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -24,7 +24,7 @@ fn why(session: &Session, text: &str) -> Result<ChangeExplanation, Rejection> {
     Ok(causes.explain(parse_question(text), &|_| ControlFlow::Continue(()))?.expect("it is not stopped"))
 }
 
-/// Plays some weeks, then one with higher prices.
+/// Plays several weeks, then a week with higher prices.
 fn run_in(folder: &Path) -> Session {
     let mut session = begin_run(folder, Mode::Debug, 140);
     apply_opening_decisions(&mut session);

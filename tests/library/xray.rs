@@ -43,7 +43,7 @@ fn unfinished_non_debug_runs_cannot_be_inspected() {
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
-        // The rejection is the same for a known group, an unknown one, and a missing day.
+        // The rejection is the same for a known group, an unknown group and a missing day.
         let texts: Vec<String> =
             [(s2(), None), (Group::at(25).expect("a group"), Some(3)), (s2(), Some(9000))]
                 .into_iter()
@@ -52,9 +52,12 @@ fn unfinished_non_debug_runs_cannot_be_inspected() {
                 })
                 .collect();
         assert!(texts.iter().all(|one| *one == texts[0]), "{texts:?}");
-        assert_eq!(texts[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+        assert_eq!(
+            texts[0],
+            "not_in_this_mode: the x-ray is available in debug runs and in runs that have ended"
+        );
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
-        // After abandoning the run, the user can inspect it, but not continue it.
+        // After the run is abandoned, the user can inspect it but cannot continue it.
         session.abandon().expect("it ends");
         assert_eq!(session.inspect().lead_equations(s2(), Some(3)).expect("a look").len(), 3);
         drop(session);
@@ -77,7 +80,7 @@ fn inspections_are_recorded_without_changing_the_state() {
     watched.inspect().lead_equations(s2(), Some(2)).expect("a look");
     watched.step(3, &mut |_| {}).expect("days");
     alone.step(3, &mut |_| {}).expect("days");
-    // Within a week, after a call, and for an earlier day.
+    // Inspections are made within a week, after a call, and for an earlier day.
     for session in [&mut watched, &mut alone] {
         session.call("set_prices", &json!({"A": 13}), Via::Script).expect("a price");
     }
@@ -223,7 +226,7 @@ fn customer_view_matches_the_tables() {
                 assert_eq!(query_column(&mut session, &sql), [f64::from(since)], "customer {customer}");
                 *seen.entry("with an issue").or_insert(0) += 1;
             }
-            // The result for an earlier day is a prefix.
+            // The view of an earlier day is a prefix of the full view.
             let shown = view.signup.day + 1;
             if shown <= last_day {
                 let earlier = individual_view(&mut session, customer, Some(shown));
@@ -287,7 +290,7 @@ pub fn debug_run_with_offers(folder: &Path, count: u32) -> Session {
 fn enterprise_view_predicts_recorded_answers() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = debug_run_with_offers(folder.path(), 10);
-    // Replies: turns of enterprises after one of the player.
+    // Replies are turns of enterprises that follow a turn of the player.
     let sql = "SELECT customer_id, thread_id, day, offer_json FROM enterprise_turns AS own \
                WHERE sender = 'customer' AND EXISTS (SELECT 1 FROM enterprise_turns AS other \
                WHERE other.thread_id = own.thread_id AND other.sender = 'agent' \
@@ -363,7 +366,7 @@ fn lead_residuals_fit_a_poisson_distribution() {
                     (lead_equation.expected_leads(), f64::from(lead_equation.actual_leads));
                 if expected > 0.0 {
                     statistic += (actual - expected) * (actual - expected) / expected;
-                    // Variance of a term: 2 + 1 / λ.
+                    // The variance of each term of the statistic is 2 + 1 / λ.
                     spread += 2.0 + 1.0 / expected;
                     freedom += 1.0;
                 }
@@ -397,7 +400,7 @@ fn read_only_run_cannot_be_inspected() {
         "read_only"
     );
     assert_eq!(read.inspect().compare_days(3, 4).expect_err("a refusal").code, "read_only");
-    // Errors mention hidden tables only on connections that have them.
+    // Error messages mention hidden tables only on connections that have these tables.
     let refused = read.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(refused.message.contains("query --xray"), "{refused}");
     drop(read);

@@ -1,4 +1,4 @@
-//! Views of groups, of the market and of random draws: permissions, recorded lines, and rejections.
+//! X-ray views of groups, of the market and of random draws: permissions, recorded lines and rejections.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ fn run_in(folder: &Path, mode: Mode) -> Session {
     session
 }
 
-/// Returns the output or the rejection of every view for a group and a day.
+/// Returns the success or the rejection of every view for a group and a day.
 fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Rejection>> {
     let group = Group::parse(group).expect("a group");
     let mut inside = session.inspect();
@@ -56,7 +56,10 @@ fn views_are_unavailable_in_unfinished_non_debug_runs() {
         }
         for answer in answers {
             let refusal = answer.expect_err("hidden").to_string();
-            assert_eq!(refusal, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+            assert_eq!(
+                refusal,
+                "not_in_this_mode: the x-ray is available in debug runs and in runs that have ended"
+            );
         }
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         session.abandon().expect("it ends");
@@ -115,7 +118,10 @@ fn only_draws_are_available_before_the_first_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
     for answer in views(&mut session, "S1", None) {
-        assert_eq!(answer.expect_err("no day").to_string(), "day_unknown (day): no day has run yet");
+        assert_eq!(
+            answer.expect_err("no day").to_string(),
+            "day_unknown (day): no day has been simulated yet"
+        );
     }
     for part in RandomPart::ALL {
         assert_eq!(session.inspect().next_draws(part, None).expect("a look").day, 1);

@@ -1,4 +1,4 @@
-//! Agents with a shell: `novamind agent` finds, starts, stops and loses its server.
+//! Agents with a shell: `novamind agent` finds, starts and stops its server, and restarts a server that was killed.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::interfaces::{CALLS, last_hash, plain_mode_hash, predictions};
 use crate::support::home::{Home, ProgramOutput, run_with_input};
 
-/// A home whose servers end with the test.
+/// Folders of a user, whose servers are killed at the end of the test.
 struct Shell {
     home: Home,
 }
@@ -45,7 +45,7 @@ impl Shell {
         run_with_input(self.home.program().arg("agent").args(words), "")
     }
 
-    /// Runs a command that succeeds; returns its object.
+    /// Runs a command that must succeed, and returns its JSON output.
     #[track_caller]
     fn run_json(&self, words: &[&str]) -> Value {
         let done = self.agent(words);
@@ -69,7 +69,7 @@ impl Shell {
         Some(serde_json::from_slice(&text).expect("JSON"))
     }
 
-    /// Kills the server.
+    /// Kills the server of the current run.
     fn kill_server(&self) {
         let pid = self.announcement().as_ref().and_then(announced_pid).expect("a server");
         assert!(Command::new("kill").args(["-KILL", &pid]).status().expect("kill").success());
@@ -135,7 +135,7 @@ fn killed_server_is_restarted() {
     let first = shell.create_run();
     shell.advance_week(7);
     shell.kill_server();
-    // Concurrent commands find the same server.
+    // Concurrent commands must use the same server.
     let children: Vec<_> = (0..4)
         .map(|_| {
             shell.home.program().args(["agent", "call", "get_vars"]).spawn().expect("the program starts")
@@ -162,7 +162,7 @@ fn stale_announcement_is_ignored() {
     shell.advance_week(7);
     assert_eq!(shell.run_json(&["stop"])["stopped"], true);
     let run = shell.home.only_run();
-    // Another program took the port; requests to it would get no answer.
+    // Another program has bound the port of the dead server and does not answer requests.
     let stranger = std::net::TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     stranger.set_nonblocking(true).expect("a socket");
     let port = stranger.local_addr().expect("an address").port();
@@ -177,7 +177,7 @@ fn stale_announcement_is_ignored() {
         assert_eq!(shell.run_json(&["stop"])["stopped"], true);
     }
     assert!(stranger.accept().is_err(), "the other program gets no request");
-    // A run that a user plays is not taken over.
+    // An agent cannot use a run that is in use by a user.
     let mut child = shell.home.program().args(["serve", "--run", &name]).spawn().expect("the program starts");
     let mut line = String::new();
     let mut out = std::io::BufReader::new(child.stdout.take().expect("a pipe"));
@@ -258,7 +258,7 @@ fn code_option_after_a_tool_belongs_to_the_tool() {
 fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
     let shell = Shell::new();
     let out = shell.home.0.path().join("batch");
-    // Each start plays one week; the second try gives up.
+    // Each start of the command plays one week. The second try exits with an error.
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let program = env!("CARGO_BIN_EXE_novamind");
     let command = format!(

@@ -1,4 +1,4 @@
-//! The audit of a study finds contradictions of the records with their line, and reports nothing for honest sessions.
+//! The audit of a study finds contradictions in the records with their line, and reports no findings for honest sessions.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -72,7 +72,7 @@ impl Study {
         runs.remove(0)
     }
 
-    /// Returns the kinds of findings, with the line of each.
+    /// Returns the kind, line and description of each finding.
     fn audit(&self, machines: &[&str]) -> Vec<(String, Option<u64>, String)> {
         let machines: Vec<String> =
             machines.iter().map(|name| self.machine(name).display().to_string()).collect();
@@ -105,12 +105,12 @@ fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Writes lines with a correct chain and correct checksums.
+/// Writes lines to a trajectory, with a correct hash chain and correct checksums.
 fn write_forged_lines(run: &Path, lines: Vec<Map<String, Value>>) {
     write_forged_lines_with_afterwards(run, lines, Vec::new());
 }
 
-/// Writes lines, and lines after the end.
+/// Writes lines to a trajectory and to `afterwards.jsonl`.
 fn write_forged_lines_with_afterwards(
     run: &Path,
     lines: Vec<Map<String, Value>>,
@@ -185,7 +185,7 @@ fn records_of_earlier_builds_with_removed_fields_still_verify() {
     let verified = study.run("one", &["--as", "P01", "replay", &id, "--verify"]);
     assert_eq!(verified.exit_code, 0, "{}{}", verified.stdout, verified.stderr);
     assert_eq!(study.audit(&["one"]), []);
-    // The run continues, and its first lines keep their bytes.
+    // When the run continues, the bytes of its first lines do not change.
     study.play_session("one", &format!("P01\n{}quit\n", WEEKS[2]));
     let continued = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
     assert!(continued.starts_with(&text) && !continued[text.len()..].contains("worlds"));
@@ -203,7 +203,7 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
         fs::remove_dir_all(study.machine("one")).expect("gone");
         copy(&good, &study.machine("one"));
     };
-    // A decision is changed; chain and checksums are correct.
+    // A decision is changed, and the hash chain and checksums are recomputed.
     let mut changed = lines(&run);
     let call = changed.iter().position(|line| line["kind"] == "call").expect("a call");
     changed[call]["args"]["A"] = json!(30);
@@ -211,7 +211,7 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
     let kinds = study.kinds(&["one"]);
     assert!(kinds.contains(&"not_reached".to_owned()), "{kinds:?}");
     restore();
-    // The last weeks are removed; the database still has them.
+    // The last weeks are removed from the trajectory but not from the database.
     let advance = lines(&run).iter().position(|line| line["kind"] == "advance").expect("a week");
     let text = fs::read_to_string(run.join("trajectory.jsonl")).expect("a trajectory");
     let cut: String = text.lines().take(advance).map(|line| format!("{line}\n")).collect();
@@ -219,7 +219,7 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
     let found = study.audit(&["one"]);
     assert_eq!((found[0].0.as_str(), found[0].1), ("cut", Some(advance as u64 + 1)), "{found:?}");
     restore();
-    // A byte is changed, and the trajectory is removed.
+    // First a byte of the trajectory is changed, then the trajectory is removed.
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":9", "\"A\":8", 1)).expect("written");
     assert!(study.kinds(&["one"]).contains(&"damaged".to_owned()));
     fs::remove_file(run.join("trajectory.jsonl")).expect("gone");
@@ -245,7 +245,7 @@ fn audit_finds_edited_manifests_and_clocks() {
     }
     fs::write(run.join("run.toml"), &good).expect("written");
     assert_eq!(study.audit(&["one"]), []);
-    // The label in the first line and in the file is changed, with a correct chain.
+    // The label is changed in the first line and in `run.toml`, with a recomputed hash chain.
     let mut record_lines = lines(&run);
     record_lines[0].insert("participant".to_owned(), json!("P02"));
     write_forged_lines(&run, record_lines.clone());
@@ -254,7 +254,7 @@ fn audit_finds_edited_manifests_and_clocks() {
     let kinds = study.kinds(&["one"]);
     assert!(kinds.contains(&"assignment".to_owned()), "{kinds:?}");
     fs::write(run.join("run.toml"), &good).expect("written");
-    // A clock was set back between two lines.
+    // The clock was set back between two lines.
     record_lines[0].insert("participant".to_owned(), json!("P01"));
     let at = record_lines.len() - 2;
     record_lines[at].insert("at".to_owned(), json!("2026-01-01T00:00:00Z"));
@@ -271,7 +271,7 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     assert_eq!((found.len(), found[0].0.as_str()), (1, "nothing_examined"), "{found:?}");
     study.play_session("one", &format!("P01\nyes\n{}quit\n", WEEKS[0]));
     assert_eq!(study.audit(&["one"]), []);
-    // The protocol is changed: the run belongs to the old digest.
+    // After the protocol is changed, the run belongs to the old digest.
     let path = study.home.0.path().join("pilot/study.toml");
     let text = fs::read_to_string(&path).expect("a protocol");
     fs::write(&path, format!("{text}\n# changed\n")).expect("written");
@@ -286,7 +286,7 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
         "{}",
         program_output.stdout
     );
-    // The label has a run, which the collection reports.
+    // The collection reports that the label has a run with the old protocol.
     let (one, out) =
         (study.machine("one").display().to_string(), study.machine("data").display().to_string());
     let collected = study.home.run(&["study", "collect", &one, "--out", &out, "--protocol", &study.folder()]);
@@ -297,7 +297,7 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     );
     assert!(!collected.stdout.contains("label P01 has no session;"), "{}", collected.stdout);
     assert!(collected.stdout.contains("label P02 has no session\n"), "{}", collected.stdout);
-    // With another name it is another study: counted, but not a finding.
+    // After the name is changed, the run belongs to a different study: it is counted but is not a finding.
     fs::write(&path, text.replace("name = \"pilot\"", "name = \"other\"")).expect("written");
     let output = study.run("one", &["study", "audit", &study.folder()]);
     assert!(output.stdout.contains("Runs of other studies, not examined: 1."), "{}", output.stdout);
@@ -323,7 +323,7 @@ fn audit_finds_a_clock_that_was_set_within_the_last_sitting() {
     let (text, after) = (read("trajectory.jsonl"), read("afterwards.jsonl"));
     let at = text.lines().count() - 4;
     for (seconds, is_found) in [(1, false), (600, true)] {
-        // The wall clock moved forward; the monotonic clock of the `session` lines did not.
+        // The wall clock moved forward, but the monotonic clock of the `session` lines did not.
         let moved = |text: &str, from| shift(text, from, seconds);
         let lines = moved(&text, at) + &moved(&after, 0);
         let (text, after): (Vec<_>, Vec<_>) = lines
@@ -345,7 +345,7 @@ fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
     study.play_session("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
     study.play_session("two", &format!("P02\nyes\n{}quit\n", WEEKS[0]));
     assert_eq!(study.audit(&["one", "two"]), []);
-    // P01 is over and is viewed while P02 still plays the seed.
+    // The finished run of P01 is inspected while P02 still plays the same seed.
     let id = study.only_run("one", "P01").file_name().expect("a name").to_string_lossy().into_owned();
     let viewed = run_with_input(
         study.command("one").args(["--as", "P01", "play", "--plain", "--run", &id]),
@@ -360,7 +360,7 @@ fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
         "{found:?}"
     );
     assert_eq!(study.audit(&["one"]), [], "no other run has the seed there");
-    // A debug run of the seed.
+    // A debug run of the same seed shows hidden state.
     let debug = ["play", "--plain", "--seed", "2718", "--mode", "debug", "--days", "42"];
     assert_eq!(run_with_input(study.command("two").args(debug), "quit\n").exit_code, 0);
     let found = study.audit(&["two"]);
@@ -386,7 +386,8 @@ fn audit_counts_match_the_tables() {
         "next \"own\" 990000 980000 999000 960000 940000 980000 900000 800000 990000 800000 700000 990000\n";
     study.play_session("two", &format!("P02\nyes\n{text}{}quit\n", WEEKS[..2].concat()));
     study.play_session("two", &format!("P03\nyes\n{text}{text}"));
-    // One week of the second participant has one forecast of their own, and half a minute passed before the last.
+    // Forges the record of the second participant: one forecast of a week is not naive, and half a minute passes
+    // before the third week.
     let run = study.only_run("two", "P02");
     let mut record_lines = lines(&run);
     let weeks: Vec<usize> =
@@ -452,17 +453,17 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
     study.play_session("one", &format!("P01\nyes\n{}", WEEKS[0]));
     let run = study.only_run("one", "P01");
     let id = run.file_name().expect("a name").to_string_lossy().into_owned();
-    // A run of the study cannot be played outside of it, nor watched while it is unfinished.
+    // A run of the study cannot be played without the study, and cannot be watched while it is unfinished.
     for options in [&["--run", &id][..], &["--run", &id, "--watch"]] {
         let program_output =
             study.run("one", &[&["--as", "P01", "play", "--plain"], options, &["--strict"]].concat());
         assert_eq!(program_output.exit_code, 2, "{}", program_output.stdout);
         assert!(program_output.stderr.contains("belongs to the study"), "{}", program_output.stderr);
     }
-    // A copy of a folder of runs is not a second session.
+    // A copy of a folder of runs does not count as a second session.
     copy(&study.machine("one"), &study.machine("copy"));
     assert_eq!(study.kinds(&["one", "copy"]), [] as [&str; 0]);
-    // Pipes in the place of files block no command.
+    // Named pipes instead of files must not block a command.
     let pipes = [
         study.machine("one").join("participants/P02/11112222/trajectory.jsonl"),
         study.machine("one").join("visits.jsonl"),

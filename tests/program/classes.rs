@@ -1,11 +1,12 @@
-//! A class from the command line: handed out, played on several machines, collected, shown; every command finds its runs.
+//! A class on the command line, which is handed out, played on several machines, collected and shown. Every command
+//! finds the runs of the class.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::support::home::{Home, run_id, run_with_input};
 
-/// A class of three in a folder, and a machine for each student.
+/// The folder of a class with three students, and a machine for each student.
 struct Classroom {
     teacher: Home,
 }
@@ -96,7 +97,7 @@ fn class_workflow_from_handouts_to_the_projector_page() {
     assert_eq!(written.exit_code, 0, "{}", written.stderr);
     assert!(!fs::read_to_string(&page).expect("a page").contains("S0"));
 
-    // An archive of a lesson is complete: importing it is enough to view the run.
+    // An archive of a lesson run is complete, so the run can be viewed after the import.
     let teacher = &room.teacher;
     assert_eq!(teacher.run(&["runs", "import", &archive]).exit_code, 0);
     assert_eq!(teacher.run(&["report", &run_id(&run)]).exit_code, 0);

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::interfaces::{NEW_RUN_OPTIONS, Server};
 use crate::support::home::Home;
 
-/// Returns the names of the fields of a result; a name in angle brackets stands for any requested name.
+/// Returns the documented field names of a result. A name in angle brackets stands for any requested name.
 fn documented_fields(tool: &Value) -> BTreeSet<&str> {
     let returns = tool["returns"].as_array().expect("returns");
     returns.iter().map(|output| output["name"].as_str().expect("a name")).collect()
@@ -60,7 +60,7 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
     check_described_routes(&server);
 }
 
-/// Checks that a rejection is in the catalog or common to all tools.
+/// Checks that a rejection is documented for the tool or for all tools.
 fn is_documented(tool: &Value, value: &Value) {
     let code = value["code"].as_str().unwrap_or_else(|| panic!("{}: {value}", tool["name"]));
     let values = tool["refusals"].as_array().expect("refusals");
@@ -74,7 +74,7 @@ fn check_described_routes(server: &Server) {
     let paths = described["paths"].as_object().expect("paths");
     assert!(paths.len() >= 10, "{paths:?}");
     for (path, methods) in paths {
-        // This request stops the server, as `agent stop` does.
+        // `POST /shutdown` is excluded, because it stops the server.
         let may_be_tried = |method: &&String| path != "/shutdown" || *method != "post";
         for method in methods.as_object().expect("methods").keys().filter(may_be_tried) {
             let (status, value) =

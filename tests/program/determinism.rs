@@ -1,4 +1,5 @@
-//! The same run in another process, on other threads, closed and continued, and killed gives the same states.
+//! A run has the same states in a different process, with a different number of threads, when it is closed and
+//! continued, and when it is killed.
 
 use std::fs;
 use std::io::Write;
@@ -21,7 +22,7 @@ fn program(runs: &Path) -> Command {
     command
 }
 
-/// Runs a policy in the built program; one object per seed, without the duration.
+/// Runs a policy with the built program. Returns one object per seed, without the duration.
 fn run(command: &mut Command) -> Vec<Value> {
     let output = command.arg("--json").output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -34,7 +35,7 @@ fn run(command: &mut Command) -> Vec<Value> {
     text.lines().map(parse).collect()
 }
 
-/// A market that fills so fast that all threads have work after a few weeks.
+/// Options for a market that fills so fast that all threads are used after a few weeks.
 const SATURATED_MARKET: [&str; 4] = ["--cash", "1e9", "--set", "leads.saturation_base=14.5"];
 
 #[test]
@@ -81,7 +82,7 @@ fn figures_and_states_do_not_depend_on_threads() {
 #[test]
 fn saved_run_has_the_reported_state() {
     let runs = tempfile::tempdir().expect("a folder");
-    // Spending in fractions of dollars: the trajectory must preserve every bit.
+    // Spending has fractions of dollars, of which the trajectory must preserve every bit.
     let mut command = program(runs.path());
     command.args(["run", "--policy", "P1a", "--seed", "5", "--until", "84", "--save"]);
     let value = run(&mut command).remove(0);
@@ -125,7 +126,7 @@ fn reopening_at_any_week_keeps_the_state() {
     let create = |storage| Session::create(new(storage), &Configuration::bundled()).expect("it begins");
     let mut straight = create(Storage::Memory);
     (0..WEEKS).for_each(|week| play_a_week(&mut straight, week));
-    // Closed after every week, and after only one of them.
+    // The run is closed after every week, or after one week.
     for left_after in (0..WEEKS).map(Some).chain([None]) {
         let mut session = create(Storage::Runs(folder.path().to_owned()));
         let place = session.folder().expect("a folder").to_owned();
@@ -156,7 +157,7 @@ fn state_does_not_depend_on_the_mode() {
     assert_eq!(hash(Mode::Baseline), debug);
 }
 
-/// Returns the state hashes of the weeks of a run, by day.
+/// Returns the day and the state hash of each week of a run.
 fn states(folder: &Path) -> Vec<(u32, String)> {
     let read = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     let closed = read.lines.iter().filter_map(|line| Some((line.day, line.record.closing()?)));
@@ -190,7 +191,7 @@ fn complete_weeks_while_simulating(folder: &Path) -> Option<usize> {
     last.contains(r#""kind":"advance""#).then_some(complete)
 }
 
-/// Waits until at least this many weeks are complete and another one runs, and kills the program.
+/// Waits until at least `complete` weeks are complete and the next week is running, then kills the program.
 fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
     let is_there = || {
@@ -232,18 +233,18 @@ fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
     for complete in 2..5 {
         kill_in_a_week(child, broken.path(), complete);
         interrupted += usize::from(complete_weeks_while_simulating(&only_run(broken.path())).is_some());
-        // Any number of complete weeks is valid, because the check may miss one.
+        // Any number of complete weeks is accepted, because the check can miss a week.
         child = start(broken.path(), &["--run", "latest"]);
         tell(&mut child, &next.repeat(8));
     }
-    // A week may end between the check and the kill, but hardly three times.
+    // A week can end between the check and the kill, but it is very unlikely that this happens three times.
     assert!(interrupted > 0, "no week was ever interrupted");
     let folder = only_run(broken.path());
     let output = child.wait_with_output().expect("it ends");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(states(&folder), expected);
 
-    // The database is also that of the uninterrupted run.
+    // The database must equal the database of the uninterrupted run.
     let mut straight = Session::open(&only_run(whole.path()), Access::Write, true).expect("it opens");
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
     assert_eq!(session.state_hash(), straight.state_hash());

@@ -1,4 +1,4 @@
-//! Exit codes, earlier names, and the number of rows of queries.
+//! Exit codes, earlier names of commands and options, and the row limit of queries.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use crate::support::home::{Home, run_id};
 #[test]
 fn bankruptcy_is_exit_code_4_on_request() {
     let home = Home::new();
-    // Capacity costs $85 per day in any case.
+    // Without any decision, capacity costs $85 per day.
     let idle = |extra: &[&str]| {
         home.run(&[&["run", "--policy", "P0", "--seed", "3", "--days", "14"], extra].concat())
     };
@@ -16,7 +16,7 @@ fn bankruptcy_is_exit_code_4_on_request() {
     assert!(ruined.stdout.contains("bankrupt on day 6"), "{}", ruined.stdout);
     assert_eq!(idle(&["--cash", "500"]).exit_code, 0, "the option is not given");
     assert_eq!(idle(&["--cash", "50000", "--fail-on-bankruptcy"]).exit_code, 0, "no run is bankrupt");
-    // One of several runs is enough, regardless of its position.
+    // One bankruptcy in several runs is sufficient, regardless of its position.
     let options = ["--cash", "500", "--fail-on-bankruptcy", "--json"];
     let several =
         home.run(&[&["run", "--policy", "P0", "--seed", "3..4", "--days", "14"], &options[..]].concat());

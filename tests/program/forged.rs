@@ -1,4 +1,4 @@
-//! Records that were changed deliberately: every checksum that can be recomputed was recomputed.
+//! Forged records, in which every checksum that can be recomputed was recomputed.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,7 +21,7 @@ fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
-/// Returns the line with a matching checksum.
+/// Returns the text of a line with a matching checksum.
 fn line_with_checksum(mut line: Map<String, Value>) -> String {
     line.shift_remove("sum");
     let sum = digest(&Value::Object(line.clone()).to_string())[..16].to_owned();
@@ -29,7 +29,7 @@ fn line_with_checksum(mut line: Map<String, Value>) -> String {
     Value::Object(line).to_string()
 }
 
-/// Returns the file with recomputed checksums, and optionally with recomputed links to the previous lines.
+/// Returns the text of a trajectory with recomputed checksums and, if `chained` is set, with a recomputed hash chain.
 fn trajectory_text(lines: Lines, chained: bool) -> String {
     let mut text = String::new();
     let mut before = digest("");
@@ -44,7 +44,7 @@ fn trajectory_text(lines: Lines, chained: bool) -> String {
     text
 }
 
-/// Changes the price of the second week.
+/// Changes the price of the second week. Returns the index of the changed line.
 fn change_price(lines: &mut Lines) -> usize {
     let is_it = |line: &Map<String, Value>| line.get("args").is_some_and(|args| args["C"] == 50);
     let at = lines.iter().position(is_it).expect("the call of the second week");
@@ -135,7 +135,7 @@ fn rechained_trajectory_does_not_verify() {
     let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
     change_price(&mut lines);
     fs::write(&path, trajectory_text(lines, true)).expect("written");
-    // The database would reveal the change; without it the states must.
+    // The database would reveal the change. Without the database, the re-simulated states must reveal it.
     fs::remove_file(run.join("world.db")).expect("it is there");
     fs::remove_file(run.join("snapshot.bin")).unwrap_or_default();
     let program_output = home.run(&["replay", &run_id(&run), "--verify"]);
@@ -171,7 +171,7 @@ fn resealed_archive_is_still_verified() {
         program_output.stdout, program_output.stderr
     );
 
-    // Recomputing everything gives another run, which its states reveal.
+    // If every hash is recomputed, only the recorded states reveal the change.
     let mut forged = opened();
     let mut lines = lines_of(&forged.text("trajectory.jsonl"));
     change_price(&mut lines);

@@ -1,5 +1,5 @@
-//! Figures agree with the released simulator over many seeds (docs/interfaces/golden.md), and exactly with the last release of this
-//! program.
+//! Figures agree with the released simulator over many seeds (docs/interfaces/golden.md), and equal the figures of the
+//! last release of this program.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ fn data_path(below: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(below)
 }
 
-/// Policies that every test run compares, because their companies are small.
+/// Policies that every test run compares, because their small companies are simulated fast.
 const FAST: [&str; 2] = ["P6", "P8"];
 
 #[test]
@@ -38,12 +38,12 @@ fn check_policies(policies: &[&str]) {
     check_deviation_changes(policies, &text);
 }
 
-/// Standard errors by which a figure may change against the released simulator between versions. The seeds are the same, so only a
-/// change of the mechanics changes it at all.
+/// Maximum change of a figure's deviation from the released simulator between two versions, in standard errors. The
+/// seeds are the same, so deviations change only if the mechanics change.
 const MAX_DEVIATION_CHANGE: f64 = 0.25;
 
-/// Compares the median deviation of every figure with that of the last release. The verdict of the laboratory allows any difference that
-/// chance explains; this comparison does not.
+/// Compares the median deviation of every figure with the last release. This comparison is stricter than the verdict
+/// of the laboratory, which allows any difference that chance can explain.
 fn check_deviation_changes(policies: &[&str], output: &str) {
     let text = fs::read_to_string(data_path("medians.csv")).expect("the deviations of the last release");
     let mut policy = "";
@@ -82,8 +82,8 @@ fn figures(path: &Path) -> Figures {
     text.lines().skip(1).map(|line| row(line).expect("five columns")).collect()
 }
 
-/// Compares exact figures. Random streams are the same in every version, so any difference is a change of the code: a mistake, or
-/// intended with a new mechanics number and new figures.
+/// Compares exact figures with the last release. Random streams are the same in every version, so a difference is
+/// either an error or an intended change with a new mechanics number and new figures.
 #[track_caller]
 fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
     let folder = tempfile::tempdir().expect("a folder");

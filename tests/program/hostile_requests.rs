@@ -31,7 +31,7 @@ fn unexpected_value(random: &mut ChaCha8Rng) -> Value {
     }
 }
 
-/// Returns a body like that of a program, possibly malformed.
+/// Returns a random request body, which can be malformed.
 fn random_body(tools: &[Value], random: &mut ChaCha8Rng) -> String {
     let tool = &tools[random.random_range(0..tools.len())];
     let mut args = tool["example"].clone();
@@ -51,7 +51,8 @@ fn random_body(tools: &[Value], random: &mut ChaCha8Rng) -> String {
         .to_string()
 }
 
-/// Returns a request and the accepted statuses; without any, the connection may be closed without a response.
+/// Returns a random request and the accepted statuses. If no status is listed, the server may close the connection
+/// without a response.
 fn random_request(tools: &[Value], known: &str, random: &mut ChaCha8Rng) -> (Vec<u8>, &'static [u16]) {
     let sent = random_body(tools, random);
     let head = |head: &str, path: &str, length: usize| {
@@ -88,7 +89,7 @@ fn random_request(tools: &[Value], known: &str, random: &mut ChaCha8Rng) -> (Vec
         }
         7 => (with(head("host: 127.0.0.1\r\n", "/call", sent.len()), &sent), &[401]),
         8 => {
-            // A content length that is too long, too short, or not a number.
+            // The content length is too large, too small or not a number.
             let length = ["7", "-1", "99999999999999999999", "x"][random.random_range(0..4)];
             let head = format!(
                 "POST /call HTTP/1.1\r\n{known}connection: close\r\ncontent-length: {length}\r\n\r\n"
@@ -139,7 +140,7 @@ fn a_thousand_hostile_requests_leave_the_server_answering_and_the_run_valid() {
     assert_eq!(home.run(&["replay", &id, "--verify"]).exit_code, 0);
 }
 
-/// Ten megabytes are rejected before they have arrived.
+/// Checks that a body of ten megabytes is rejected before it is received completely.
 fn check_large_bodies(server: &Server, known: &str) {
     let text = format!(r#"{{"tool": "{}"}}"#, "x".repeat(10 << 20));
     for path in ["/call", "/query", "/next-week", "/daily-scripts"] {
@@ -148,11 +149,11 @@ fn check_large_bodies(server: &Server, known: &str) {
     }
 }
 
-/// Of concurrent requests for weeks one runs at a time, whether or not the clients wait for the end.
+/// Checks that concurrent requests run one week at a time, even if clients disconnect.
 fn check_concurrent_weeks(server: &Server, known: &str) {
     let day =
         || server.request_with_head("GET", "/vars", known, "").1["current_day"].as_u64().expect("a day");
-    // One of the hostile calls of next_week may have been valid.
+    // The current day is requested, because a random call of `next_week` may have been valid.
     let before = day();
     let body = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let statuses: Vec<u16> = thread::scope(|scope| {

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::support::home::{Home, run_with_input};
 
-/// A server of a new run; it ends with the test.
+/// A server of a new run, which is stopped at the end of the test.
 pub struct Server {
     child: Child,
     pub port: u16,
@@ -22,7 +22,7 @@ impl Drop for Server {
     }
 }
 
-/// A status with its JSON.
+/// The status and the JSON body of a response.
 type StatusAndBody = (u16, Value);
 
 impl Server {
@@ -36,11 +36,11 @@ impl Server {
         Server { child, port }
     }
 
-    /// Sends bytes and reads until the server closes.
+    /// Sends bytes and reads the response until the server closes the connection.
     pub fn send_raw(&self, bytes: &[u8]) -> String {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
         stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a socket");
-        // The server may close before everything is sent.
+        // The server may close the connection before all bytes are sent.
         let _ = stream.write_all(bytes);
         let mut answer = String::new();
         let _ = stream.read_to_string(&mut answer);
@@ -87,14 +87,14 @@ pub fn predictions() -> Value {
 
 pub const NEW_RUN_OPTIONS: [&str; 7] = ["--new", "--seed", "7", "--days", "28", "--mode", "sandbox"];
 
-/// The same decisions for every interface.
+/// Calls that are made through every interface.
 pub const CALLS: [(&str, &str); 3] = [
     ("set_prices", r#"{"A": 10, "B": 20, "C": null}"#),
     ("set_usage_quotas", r#"{"A": 50000, "B": 200000, "C": 900000}"#),
     ("set_targeted_ad_spend", r#"{"content_marketing": {"S1": 500}}"#),
 ];
 
-/// Returns the last state hash of a run of two weeks without other effects.
+/// Returns the last state hash of the only run.
 pub fn last_hash(home: &Home) -> String {
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
     let verified = home.run(&["replay", &id, "--verify"]);
@@ -154,10 +154,10 @@ fn abandoned_script_is_stopped() {
         std::thread::sleep(std::time::Duration::from_millis(500));
         stream
     };
-    // Its client disconnects, and others are answered again. The script would run for ten minutes.
+    // The client of the script disconnects, and other clients are answered again. The script would run for ten minutes.
     drop(begin());
     assert_eq!(server.get("/vars")["current_day"], 0);
-    // The server is asked to end while it runs.
+    // The server is stopped while a script is running.
     let waiting = begin();
     assert_eq!(server.stop(), 0);
     drop(waiting);
@@ -470,7 +470,7 @@ assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
 
 #[test]
 fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() {
-    // A client that closes at once: the run has started.
+    // The client disconnects immediately, but the run has been created.
     let mode_of = |options: &[&str]| {
         let home = Home::new();
         let program_output = home.run(&[&["mcp", "--seed", "3"], options].concat());
@@ -514,6 +514,6 @@ fn client_of_a_run_that_cannot_be_opened_is_answered() {
     assert_eq!((&answer["id"], &answer["jsonrpc"]), (&json!(1), &json!("2.0")));
     let message = answer["error"]["message"].as_str().expect("a message");
     assert!(program_output.stderr.contains(message) && message.contains("nothere"), "{answer}");
-    // A client that sends nothing sees the message on standard error.
+    // If the client sends no request, the message is written to standard error.
     home.run(&["mcp", "--run", "nothere"]).assert_fails(3, &["nothere"]);
 }

@@ -1,8 +1,8 @@
-//! `novamind lab metrics` and `novamind lab diff`: hidden figures of runs that may be inspected.
+//! `novamind lab metrics` and `novamind lab diff`: hidden figures of saved runs that may be inspected.
 
 use crate::support::home::Home;
 
-/// Saves runs of the policy P0; returns the figures that were written.
+/// Plays and saves a run of the policy P0, and returns the figures that were written during play.
 fn keep_run(home: &Home, seed: &str) -> String {
     let file = home.0.path().join(format!("{seed}.csv"));
     let path = file.to_str().expect("a path");
@@ -19,7 +19,7 @@ fn metrics_of_a_kept_run_match_those_written_while_playing() {
     let program_output = home.run(&["lab", "metrics", "latest"]);
     assert_eq!((program_output.exit_code, program_output.stderr.as_str()), (0, ""));
     assert!(program_output.stdout == live, "{} and {} bytes", program_output.stdout.len(), live.len());
-    // The inspection is recorded, and the run verifies.
+    // The inspection is recorded, and the run can still be verified.
     assert_eq!(home.run(&["replay", "latest", "--verify"]).exit_code, 0);
 }
 
@@ -64,7 +64,7 @@ fn unfinished_sandbox_cannot_be_inspected() {
         let program_output = home.run(arguments);
         assert_ne!(program_output.exit_code, 0);
         assert!(
-            program_output.stderr.contains("debug runs and in runs that are over"),
+            program_output.stderr.contains("debug runs and in runs that have ended"),
             "{}",
             program_output.stderr
         );
@@ -85,9 +85,9 @@ fn why_shows_causes_without_hidden_state() {
         let [played, answers @ ..] = &program_output.stdout.split("> why ").collect::<Vec<_>>()[..] else {
             panic!("{}", program_output.stdout)
         };
-        // The report on the week lists settings and changes, without causes.
+        // The weekly report lists settings and changes without causes.
         let (_, report) = played.split_once("> report").expect("a report");
-        assert!(report.contains("decisions before it: price A: 12 → 40 $/month"), "{report}");
+        assert!(report.contains("decisions before the week: price A: 12 → 40 $/month"), "{report}");
         for word in ["because", "due to", "cause", "may be", "led to", "thanks to", "blame"] {
             assert!(!report.contains(word), "{word}: {report}");
         }

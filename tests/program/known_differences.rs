@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::interfaces::{NEW_RUN_OPTIONS, Server, predictions};
 use crate::support::home::Home;
 
-/// A company with individuals and enterprises.
+/// Commands that play a company with individuals and enterprises.
 const FIXTURE_COMMANDS: &str = r#"
 set_prices A=12 B=22.5 C=40
 set_model_tiers B=2 C=5
@@ -44,12 +44,12 @@ sql SELECT message FROM notifications WHERE type = 'deal_won'
 sql SELECT * FROM enterprise_turns LIMIT 1
 "#;
 
-/// The runs and answers that the examples check.
+/// The runs and responses that the examples check.
 struct Fixture {
     home: Home,
     story: Vec<Value>,
     server: Server,
-    /// The folders of the server.
+    /// Folders of the server, which must exist until the end of the test.
     _served: Home,
 }
 
@@ -64,7 +64,7 @@ impl Fixture {
         Fixture { home, story, server, _served: served }
     }
 
-    /// Returns the data of the last answer to a line with this prefix.
+    /// Returns the data of the last response to a command with this prefix.
     fn fixture_data(&self, line: &str) -> &Value {
         let is_it = |answer: &&Value| answer["input"].as_str().is_some_and(|input| input.starts_with(line));
         let answer = self.story.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
@@ -72,7 +72,7 @@ impl Fixture {
         &answer["data"]
     }
 
-    /// Returns the answers of another run in plain mode.
+    /// Plays a separate run in plain mode and returns its responses.
     fn play(&self, options: &[&str], lines: &str) -> Vec<Value> {
         let home = Home::new();
         home.play(&[&["--json"], options].concat(), lines).json_lines()
@@ -82,7 +82,7 @@ impl Fixture {
         self.play(&["--mode", "baseline", "--participant", "P01", "--seed", "3"], lines)
     }
 
-    /// Returns the text of plain mode after the last line of the story.
+    /// Continues the run of the fixture in plain mode and returns the printed text.
     fn play_after_fixture(&self, lines: &str) -> String {
         self.home.play(&["--run", "latest"], lines).stdout
     }
@@ -138,7 +138,7 @@ fn columns(answer: &Value) -> Vec<&str> {
     list(&answer["columns"]).iter().filter_map(Value::as_str).collect()
 }
 
-/// The beginning of a line of the page, and its example.
+/// The start of a line of the page, and the example that checks it.
 type Example = (&'static str, fn(&Fixture));
 
 const INSTRUCTION_EXAMPLES: [Example; 6] = [
@@ -146,14 +146,14 @@ const INSTRUCTION_EXAMPLES: [Example; 6] = [
         stage.manual_says("set_daily_spend", &["probability", "solve open issues"]);
         stage.manual_says("set_targeted_ops_spend", &["per day and dollar"]);
         stage.term_says("outage", &["probability"]);
-        stage.term_says("operations", &["for each dollar"]);
+        stage.term_says("operations", &["per dollar"]);
     }),
     ("the effect of development", |stage| {
         stage.manual_says("set_daily_spend", &["Development permanently raises the quality", "ln(1 + spend"]);
         stage.manual_says("set_targeted_dev_spend", &["ln(1 + spend"]);
         stage.term_says("development", &["ln(1 + spend"]);
     }),
-    ("the rise of perceived quality", |stage| {
+    ("the increase of perceived quality", |stage| {
         stage.term_says("perceived quality", &["days as a subscriber"]);
     }),
     ("the ranges of the economy's index", |stage| {
@@ -161,16 +161,16 @@ const INSTRUCTION_EXAMPLES: [Example; 6] = [
     }),
     ("the cost of every lead,", |stage| {
         stage.manual_says("set_targeted_ad_spend", &["for every lead"]);
-        stage.term_says("lead acquisition cost", &["a lead"]);
+        stage.term_says("lead acquisition cost", &["per lead"]);
     }),
     ("the cost of a late reply to an", |stage| {
         stage.manual_says("send_enterprise_deal", &["of the relationship", "the thread ends"]);
-        stage.term_says("turn", &["of the relationship for each further day"]);
+        stage.term_says("turn", &["of the relationship"]);
     }),
 ];
 
 const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
-    ("the situations that need", |stage| {
+    ("problems that need action", |stage| {
         let needs = stage.play(&["--seed", "3"], "needs\n");
         let needs = list(&needs[1]["data"]["needs"]);
         assert!(needs.iter().any(|need| !need["call"].is_null()), "{needs:?}");
@@ -231,7 +231,7 @@ const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
         let check = stage.baseline("check start_research_project tier=1\n");
         assert!(check[1]["data"]["research"]["spread"].is_null(), "{}", check[1]);
     }),
-    ("the accuracy of earlier forecasts", |stage| {
+    ("the errors of earlier forecasts", |stage| {
         assert!(list(&stage.fixture_data("queries forecast-record")["rows"])[0]["inside"].is_number());
     }),
     ("the meaning of a term, figure,", |stage| {
@@ -334,7 +334,7 @@ const CALL_EXAMPLES: [Example; 15] = [
     ("documents tools 24 to 34", |stage| {
         assert_eq!(stage.data("list_scripts", json!({}))["scripts"], json!([]));
     }),
-    ("`error` with its own texts", |stage| {
+    ("has its own texts in `error`", |stage| {
         let answer = stage.call("reject_enterprise_deal", json!({ "deals": [5, 6] }));
         assert_eq!(
             (&answer["code"], &answer["data"]),
@@ -344,11 +344,11 @@ const CALL_EXAMPLES: [Example; 15] = [
         assert_eq!(list(&answer["results"]).len(), 2);
         assert_eq!(answer["error"].as_str().expect("a text").lines().count(), 2, "{answer}");
     }),
-    ("`/game-status` and `/next-week`", |stage| {
+    ("returns no end of the run", |stage| {
         let status = stage.server.get("/game-status");
         assert_eq!((&status["total_days"], &status["ended"]), (&json!(28), &Value::Null), "{status}");
     }),
-    ("`/reinitialize` restarts", |stage| {
+    ("restarts the engine", |stage| {
         assert_eq!(stage.server.post("/reinitialize", &json!({})).0, 404);
     }),
 ];
@@ -425,7 +425,7 @@ const QUERY_EXAMPLES: [Example; 9] = [
 ];
 
 const DASHBOARD_EXAMPLES: [Example; 5] = [
-    ("its own layout", |stage| {
+    ("has its own layout", |stage| {
         let shown = ["Cash Change:", "Recurring Revenue:", "Payments:", "Running Costs:", "Enterprise Lost:"];
         assert_contains(stage.dashboard(), &shown);
     }),
@@ -435,7 +435,7 @@ const DASHBOARD_EXAMPLES: [Example; 5] = [
             &["Prices: A $12 | B $22.50 | C $40", "dev $90,000/day, ads $3,300/day"],
         );
     }),
-    ("\"awaiting your response\" counts", |stage| {
+    ("counts only threads", |stage| {
         let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
         let first = weeks.map(|week| week["data"]["dashboard"].as_str().expect("a dashboard")).next();
         assert_contains(first.expect("a week"), &["1 awaiting your response; the first is lost in"]);
@@ -451,13 +451,13 @@ const DASHBOARD_EXAMPLES: [Example; 5] = [
 ];
 
 const DOCUMENT_EXAMPLES: [Example; 4] = [
-    ("tool documents with coefficients", |stage| {
+    ("has tool documents", |stage| {
         let manual = stage.data("get_tool_documentation", json!({ "tool_names": ["all"] }));
         let (support, development) = (&manual["set_targeted_ops_spend"], &manual["set_targeted_dev_spend"]);
         assert_contains(&support.to_string(), &["0.6 per day and dollar", "0.1 for enterprises"]);
         assert_contains(&development.to_string(), &["0.0225 ln(1 + spend / 5000)"]);
     }),
-    ("posts, messages and notices", |stage| {
+    ("has posts, messages and notifications", |stage| {
         assert!(
             stage.fixture_data("get_social_posts")["posts"][0]["content"]
                 .as_str()
@@ -541,11 +541,11 @@ fn responses_have_the_released_form() {
         let name = if tool == "describe_tables" { "table_names" } else { "tool_names" };
         assert_eq!(stage.data(tool, json!({ name: ["all"] })), stage.data(tool, json!({})), "{tool}");
     }
-    // Unnamed arguments of targeted operations are the map by group.
+    // Arguments of targeted operations without a name are the map by group.
     stage.data("set_targeted_ops_spend", json!({ "by_group": {"S1": 5}, "by_plan": {"A": 10} }));
     let cleared = stage.data("set_targeted_ops_spend", json!({}));
     assert_eq!((&cleared["by_group"], &cleared["by_plan"]["A"]), (&json!({}), &json!(10.0)));
-    // Keys are checked before values; maps by customer entry by entry.
+    // Keys are checked before values. Maps by customer are checked entry by entry.
     stage.assert_rejected("set_promotion", json!({ "by_group": {"S1": -1, "S9": 5} }), "unknown_group");
     stage.assert_rejected("set_promotion", json!({ "by_customer": {"1": -1, "x": 5} }), "promotion_negative");
     let refused = stage.call("reject_enterprise_deal", json!({ "deals": [5, 6] }));

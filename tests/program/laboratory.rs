@@ -33,7 +33,7 @@ fn lab_commands_without_runs_support_all_formats() {
     let path = drawing.to_string_lossy();
     assert_eq!(home.run(&["lab", "curves", "--svg", &path]).exit_code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
-    // Changed parameters change the account.
+    // Changed parameters change the computed bound.
     let bound_value = |row: usize, arguments: &[&str]| {
         let all = json(&home, &[&["lab", "bound"], arguments].concat());
         all["tables"]["account"]["rows"][row]["own"].as_f64().expect("a number")

@@ -1,4 +1,5 @@
-//! Large studies: split by a job scheduler, killed, repeated and merged; a full disk, an interruption, invalid paths.
+//! Large laboratory studies. Shards are run by a job scheduler, killed, repeated and merged. Failures are a full disk,
+//! an interruption and invalid paths.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::support::home::{Home, run_with_input};
 
-/// 100 short runs.
+/// A study with 100 short runs.
 const STUDY: &str = r#"
 name = "small"
 policies = ["P0", "P1b"]
@@ -19,7 +20,7 @@ days = 28
 "#;
 
 const SHARDS: usize = 4;
-/// The shard that the test kills.
+/// Number of the shard that the test kills.
 const KILLED_SHARD: usize = 3;
 
 fn write_study(home: &Home, text: &str) -> String {
@@ -28,7 +29,7 @@ fn write_study(home: &Home, text: &str) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// Returns the files with stored runs.
+/// Returns the paths of the files with stored results.
 fn result_files(home: &Home) -> Vec<PathBuf> {
     let entries = fs::read_dir(home.runs().join(".lab/studies")).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).collect()
@@ -85,7 +86,7 @@ impl Scheduler<'_> {
         )
     }
 
-    /// Starts all shards, or those that failed.
+    /// Starts all shards, or only the shards that failed.
     fn start(&self, only_failed: bool) -> Vec<Child> {
         let quiet = |command: &mut Command| {
             command
@@ -157,7 +158,7 @@ fn merged_shards_equal_the_unsplit_study() {
     assert_eq!(fs::read(&into).expect("rows"), program_output.stdout.as_bytes());
 }
 
-/// Returns whether the kill truncated a line. Such a line stays, and its run is played again.
+/// Returns whether the kill truncated a line. A truncated line stays in the file, and its run is played again.
 fn has_incomplete_line(home: &Home, ending: &str) -> bool {
     let result_file =
         result_files(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
@@ -165,7 +166,7 @@ fn has_incomplete_line(home: &Home, ending: &str) -> bool {
     text.lines().any(|line| serde_json::from_str::<serde_json::Value>(line).is_err())
 }
 
-/// Twenty runs.
+/// A study with twenty runs.
 const SMALL_STUDY: &str = "name = \"few\"\npolicies = [\"P1b\"]\nseeds = \"1..20\"\ndays = 56\n";
 
 #[test]
@@ -198,7 +199,7 @@ fn full_disk_keeps_stored_runs() {
     let into = home.0.path().join("few.csv").to_string_lossy().into_owned();
     let whole = alone.run(&["lab", "study", &file]).stdout;
     let program = env!("CARGO_BIN_EXE_novamind");
-    // In blocks of 512 bytes: enough for some of the runs, then for all runs but not for the rows.
+    // File size limits in blocks of 512 bytes: first sufficient for some of the runs, then for all runs but not for the table.
     let limited = |blocks: usize, more: &str| {
         let script = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}"

@@ -1,4 +1,4 @@
-//! Your own lessons, as in the guide for authors, and lessons in plain mode.
+//! User-defined lessons, as described in the guide for authors, and lessons in plain mode.
 
 use std::fs;
 
@@ -27,7 +27,7 @@ fn a_lesson_is_copied_changed_and_checked() {
     let [plan, texts] =
         ["toml", "md"].map(|ending| home.0.path().join(format!("configuration/lessons/late-help.{ending}")));
     assert!(fs::read_to_string(texts).expect("texts").contains("## For the teacher"));
-    // Existing lessons are never replaced.
+    // An existing lesson must not be replaced.
     for taken in ["late-help", "ladder"] {
         let message = format!("lesson {taken} already exists");
         home.run(&["lesson", "copy", "ladder", taken]).assert_fails(2, &[&message]);

@@ -1,4 +1,4 @@
-//! Tests of the built program: pipes, scripts, files, archives, terminals, and its figures compared with recorded ones.
+//! Tests of the built program: pipes, scripts, files, archives, terminals, and comparisons of figures with recorded figures.
 
 #[cfg(all(feature = "server", unix))]
 mod agents;

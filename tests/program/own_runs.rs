@@ -1,4 +1,5 @@
-//! The laboratory's tables of own runs: results and published figures, behavior, common random draws.
+//! The laboratory's tables of the user's runs: results with published figures, behavior, and consistency with common
+//! random draws.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,7 +22,7 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     let home = Home::new();
     let saved = home.run(&["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"]);
     assert_eq!(saved.exit_code, 0, "{}", saved.stderr);
-    // A changed parameter, and a different length.
+    // Runs with a changed parameter and with a different length are not comparable.
     for options in [&["--surges", "off", "--days", "500"][..], &["--surges", "on", "--days", "28"]] {
         let program_output = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
         assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
@@ -141,7 +142,8 @@ fn many_runs_are_compared_in_rows_that_fit() {
     }
 }
 
-/// Returns the commands of a section and their expected output: the first two cells of its table rows, by command.
+/// Returns the commands in a section of the page with their documented output: the first two cells of the table rows
+/// after each command.
 fn documented_claims(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let page = include_str!("../../docs/experiments.md");
     let (_, from) = page.split_once(&format!("\n## {section}\n")).expect(section);

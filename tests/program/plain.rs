@@ -1,4 +1,4 @@
-//! Plain mode through the built program: pipes, scripts, rejections, exits.
+//! Plain mode of the built program: pipes, scripts, rejections and exit codes.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ fn program(runs: &Path) -> Command {
     command
 }
 
-/// Plays lines; returns standard output and the exit code.
+/// Sends lines to plain mode, and returns standard output and the exit code.
 fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32) {
     let mut child = program(runs)
         .args(["play", "--plain"])
@@ -22,7 +22,7 @@ fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32)
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
-    // A program that ends early does not read the rest.
+    // Ignores errors, because a program that ends early does not read all input.
     let _ = child.stdin.take().expect("a pipe").write_all(lines.as_ref());
     let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
     let code = status.code().expect("it ends on its own");
@@ -123,7 +123,7 @@ fn syntax_errors_name_column_and_suggestions() {
     assert!(values[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
 }
 
-/// A list of deals may be given without its name; there is no enterprise yet.
+/// A list of deals can be given without the argument name. The call is rejected only because there is no enterprise yet.
 #[test]
 fn deal_lists_need_no_argument_name() {
     let runs = tempfile::tempdir().expect("a folder");
@@ -226,7 +226,7 @@ fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
         line.clear();
         assert!(output.read_line(&mut line).expect("readable") > 0, "it ended");
     }
-    // The answer was printed, so the line is on disk; the prompt may not have been reached yet.
+    // The answer was printed, so the line is on disk. The program may not have printed the next prompt yet.
     let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
     assert!(kill.success());
     let rest = std::io::read_to_string(output).expect("readable");
@@ -321,10 +321,10 @@ fn report_describes_weeks_and_runs() {
     let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
     let (output, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
     for part in [
-        "> report\nrefused no_week_yet: no week has run yet; next runs one\n",
+        "> report\nrefused no_week_yet: no week has run yet; next simulates a week\n",
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
-        "decisions before it: price A: 0 → 12 $/month",
+        "decisions before the week: price A: 0 → 12 $/month",
         "forecast from 1 week ago: inside the interval, point ",
         "new: ",
         "> report run\n# NovaMind · run ",
@@ -437,7 +437,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     ] {
         assert!(output.contains(part), "{part} is missing in\n{output}");
     }
-    // In a sandbox run the answer does not depend on the question.
+    // In a sandbox run, the rejection does not depend on the command.
     let (output, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
     let answers = json_lines(&output);
     let answers = &answers[answers.len() - views.len() - 1..answers.len() - 1];
@@ -507,7 +507,7 @@ run 3 until subscribers(S1) < 0   # never
     assert_eq!(answers[15]["error"], "run needs a number of days, for example run 28");
     assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
     assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
-    // In a run without permission to inspect, all of them are rejected before anything is parsed.
+    // In a run without permission to inspect, all commands are rejected before their arguments are parsed.
     let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
     let answers = json_lines(&output);
@@ -576,7 +576,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
         .find_map(|entry| std::fs::read_to_string(entry.path().join("trajectory.jsonl")).ok());
     let lines = lines.expect("a run");
     assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each that was let through is a line");
-    // In other runs the answer is the same for any question.
+    // In other runs, the rejection does not depend on the query.
     let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));
     let answers = json_lines(&output);
@@ -587,7 +587,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
     for sql in [sql, "nonsense", "no-such-query"] {
         let (out, err, code) = query(&["--xray", "latest", sql]);
         assert!(out.is_empty() && code != Some(0), "{out}");
-        assert!(err.contains("the x-ray works in debug runs and in runs that are over"), "{err}");
+        assert!(err.contains("the x-ray is available in debug runs and in runs that have ended"), "{err}");
     }
 }
 
@@ -673,7 +673,7 @@ fn curve_shows_expected_lead_decisions() {
     ] {
         assert!(answers[at].to_string().contains(words), "{words}: {}", answers[at]);
     }
-    // In a debug run the same commands are recorded inspections.
+    // In a debug run, the same commands are recorded as inspections.
     let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug"], "curve S1\ncurve D_S05\n");
     assert!(

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::interfaces::{NEW_RUN_OPTIONS, Server};
 use crate::support::home::Home;
 
-/// Writes the client to a folder; `None` without Python.
+/// Writes the client to a folder and returns the folder, or `None` if Python is not installed.
 fn client(home: &Home) -> Option<PathBuf> {
     if Command::new("python3").arg("--version").stdout(Stdio::null()).status().is_err() {
         println!("SKIPPED: python3 is not installed");
@@ -103,7 +103,7 @@ else:
     assert_eq!((price(&home), price(&other)), (Some(15.into()), Some(14.into())));
 }
 
-/// Reads one HTTP message, head and body.
+/// Reads the head and the body of an HTTP message.
 fn read_message(stream: &mut TcpStream) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut piece = [0; 4096];

@@ -1,4 +1,4 @@
-//! Python scripts through the built program: without python3 they are rejected, and recorded answers are still used.
+//! Python scripts in the built program. Without python3, scripts are rejected, but recorded results are still used.
 
 use std::process::Command;
 
@@ -22,13 +22,13 @@ next naive
     assert!(
         program_output
             .stdout
-            .contains("refused script_failed (code): python3 is not on the path of this machine"),
+            .contains("refused script_failed (code): python3 is not on the PATH of this machine"),
         "{}",
         program_output.stdout
     );
     assert!(program_output.stdout.contains("ok python_exec\nx\n5\n"), "{}", program_output.stdout);
     assert!(
-        program_output.stdout.contains("day:\n  failed: python3 is not on the path"),
+        program_output.stdout.contains("day:\n  failed: python3 is not on the PATH"),
         "{}",
         program_output.stdout
     );
@@ -87,7 +87,7 @@ next naive
         without.stderr
     );
     assert!(verified.stdout.contains("2 states verified"), "{}", verified.stdout);
-    // Simulated from the first line, the dashboard is the one that was shown.
+    // A simulation from the first line reproduces the dashboard that was shown.
     std::fs::remove_file(home.only_run().join("snapshot.bin")).ok();
     let opened = run_without_python(&home, &["play", "--plain", "--run", &id], "dashboard\n");
     assert_eq!(opened.exit_code, 0, "{}", opened.stderr);

@@ -1,4 +1,4 @@
-//! Retries of requests over HTTP, from several threads, with a server that is killed and restarted.
+//! Retries of HTTP requests from several threads, and after the server was killed and restarted.
 
 use serde_json::{Value, json};
 
@@ -34,7 +34,7 @@ fn a_retry_after_a_kill_returns_the_first_answer() {
         (400, &json!("unexpected_day"), &json!("expected_day"))
     );
     assert!(late.1["error"].as_str().is_some_and(|text| text.contains("day 7")), "{late:?}");
-    // Dropping it kills it.
+    // Dropping the server kills its process.
     drop(server);
     let server = Server::start(&home, &["--run", "latest"]);
     assert_eq!([server.post("/call", &prices), server.post("/daily-scripts", &script)], first);
@@ -75,7 +75,7 @@ fn a_week_refuses_arguments_that_it_does_not_have() {
         assert_eq!(answer["field"], "expected_dy");
     }
     assert_eq!(lines(&home, "call").len(), 2, "both are on record");
-    // The id and the day may be among the arguments of a call or next to them.
+    // The request id and the day can be arguments of the call or separate fields of the request.
     let filed = json!({ "rationale": "on", "predictions": predictions() });
     let mut within = filed.clone();
     within["request_id"] = "b".into();

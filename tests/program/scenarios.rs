@@ -1,4 +1,4 @@
-//! Scenarios through the built program: listed, shown, played.
+//! Scenarios in the built program: listing, showing and playing them.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -34,7 +34,7 @@ fn all_scenarios_are_listed_and_shown_with_their_parameters() {
     assert_eq!(usual["series"]["replayed"].as_str(), Some("none"));
 }
 
-/// The hidden index and the competitors are the recorded ones for every seed.
+/// With every seed, the hidden index and the competitors equal the recorded market.
 #[test]
 fn reference_scenario_uses_the_recorded_market() {
     let folder = tempfile::tempdir().expect("a folder");

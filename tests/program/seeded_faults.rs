@@ -1,11 +1,11 @@
-//! The answers to the seeded faults: every first difference and every figure on the page is what the program shows.
+//! The documented answers to the seeded faults: the program shows every first difference and every figure of the page.
 
 use crate::support::home::{Home, ProgramOutput};
 
 const WALKTHROUGH: &str = include_str!("../../docs/debugging-walkthrough.md");
 const ANSWERS: &str = include_str!("../../docs/debugging-answers.md");
 
-/// A row of the page: the number of the fault, its first difference, the commands that show it, and what they show.
+/// A row of the page: the number of the fault, its first difference, the commands that show the fault, and their output.
 struct Row {
     number: String,
     first: String,
@@ -30,7 +30,7 @@ fn answer_rows() -> Vec<Row> {
     ANSWERS.lines().filter(is_row).map(of).collect()
 }
 
-/// Returns the decisions of the walkthrough.
+/// Returns the commands of the walkthrough in the documentation.
 fn walkthrough_decisions() -> String {
     let from = WALKTHROUGH.find("set_prices {").expect("decisions");
     WALKTHROUGH[from..].split("```").next().expect("their end").to_owned()
@@ -87,7 +87,7 @@ fn debugging_answers_match_the_program() {
             None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
         }
         let shown = ask(&home, &faulty, &row.commands);
-        // The figures of the correct run are listed, too; a row of a changed figure would change them.
+        // The page also lists figures of the run without the fault. They are not compared if a command runs further days.
         let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
         let sound_output = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
         let texts = figures(&row.shown);

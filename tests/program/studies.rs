@@ -1,4 +1,4 @@
-//! Studies with people, from the view of experimenter and participants.
+//! Studies with people: commands of the experimenter and sessions of participants.
 
 use std::fs;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use novamind::study::{VisitEvent, read_visits};
 
 use crate::support::home::{Home, ProgramOutput, run_id, run_with_input};
 
-/// A study of five weeks with questions, with its own machine.
+/// The home of a machine with a study of five weeks and questions.
 struct Lab(Home);
 
 impl Lab {
@@ -89,7 +89,7 @@ fn participant_session_runs_from_label_to_thanks() {
     // The command that continues can be typed as shown, and contains neither label nor code.
     let again = format!("To continue, run `novamind --study {}` and give the same label.", lab.folder());
     assert!(first.stdout.contains(&again), "{again} is missing in\n{}", first.stdout);
-    // They return, end the run, and answer the remaining questions.
+    // The participant returns, ends the run and answers the remaining questions.
     let second = lab.play_session("P01\nnext \"e\" naive\nI tried to grow.\n1, 3\n");
     for part in ["run ended: horizon", "What did you try to do", "Thank you"] {
         assert!(second.stdout.contains(part), "{part} is missing in\n{}", second.stdout);
@@ -151,7 +151,7 @@ fn declined_and_withdrawn_participants_leave_no_run() {
     assert_eq!(left, ["withdrawn.toml"]);
     assert!(lab.play_session("P03\n").stdout.contains("You have withdrawn"));
     assert!(!lab.0.runs().join("participants/P02").exists());
-    // Both are counted and in the table of visits.
+    // Both participants are counted and appear in the table of visits.
     let counted = "2 came: 1 declined, 1 withdrew, 0 finished, 0 neither · refused: 0 labels, 0 codes";
     for command in ["watch", "audit"] {
         let program_output = lab.0.run(&["study", command, &lab.folder()]);
@@ -245,7 +245,7 @@ fn other_commands_require_the_experimenter_code() {
         (vec![(String::new(), VisitEvent::CodeRefused); 4], false)
     );
     with(&["play", "--plain", "--seed", "3"]).assert_fails(2, &["protocol"]);
-    // A participant who started under one protocol cannot continue under another.
+    // A participant who started with one version of the protocol cannot continue with another version.
     lab.play_session("P1\nyes\n3\nquit\n");
     lab.edit("advice = false", "advice = true ");
     assert!(lab.play_session("P1\n").stdout.contains("the study was changed after P1 started"));
@@ -265,7 +265,7 @@ fn practice_results_require_the_experimenter_code() {
     as_participant(&["play", "--plain", "--run"])
         .assert_fails(2, &["continue it with `novamind --study DIR`"]);
     as_participant(&["report"]).assert_fails(2, &["hides its results"]);
-    // The other three weeks end it, and the session starts.
+    // The remaining three weeks end the practice run, and the session starts.
     let over = lab.play_session("P1\nnext \"b\" naive\nnext \"c\" naive\nnext \"d\" naive\nquit\n");
     assert!(over.stdout.contains("Before you begin"), "{}", over.stdout);
     for command in [&["play", "--plain", "--run"][..], &["report"], &["report", "--session"], &["pictures"]] {
@@ -322,7 +322,7 @@ fn watch_lists_sessions_and_writes_remarks() {
     assert_eq!(watch(&["--note", "P01", "asked what a lead is"]).exit_code, 0);
     watch(&["--note", "P 01", "no label"]).assert_fails(2, &["participant label"]);
     assert!(watch(&["--once"]).stdout.contains("P01: asked what a lead is"));
-    // A participant plays, and the program is killed.
+    // The program is killed while a participant plays.
     let mut child = lab.0.program().args(["--study", &lab.folder()]).spawn().expect("it starts");
     use std::io::Write;
     child.stdin.as_mut().expect("a pipe").write_all(b"P03\nyes\n3\nset_prices A=3\n").expect("written");
@@ -386,7 +386,7 @@ fn final_page_shows_only_permitted_results() {
             visit(&format!("{label}\nyes\n5\n{WEEKS}4\n2\nquit\n"));
             let end = visit(&format!("{label}\nnext \"e\" naive\n"));
             assert_eq!(end.exit_code, 0, "{}", end.stderr);
-            // The start of the session shows the company as of the last week.
+            // When the session starts, the company is shown as of the last week.
             let (_, after) = match json {
                 true => end.stdout.split_once('\n').expect("the greeting"),
                 false if shows => {
@@ -439,7 +439,7 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     assert_eq!(sealed_by(), b's');
     let second = lab.play_session("P01\nquit\n");
     assert!(!second.stdout.contains("snapshot"), "{}", second.stdout);
-    // Without the key nothing is lost: the run is simulated from its lines.
+    // Without the key, no data is lost, because the run is simulated from its lines.
     let aside = folder.join("aside");
     fs::rename(folder.join("seal.key"), &aside).expect("moved");
     let without = lab.play_session("P01\nset_prices A=7\nquit\n");
@@ -449,11 +449,11 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
     fs::rename(&aside, folder.join("seal.key")).expect("moved");
     let damaged = fs::read(folder.join("seal.key")).expect("a key");
     fs::write(folder.join("seal.key"), "no key").expect("written");
-    lab.0.run(&["--study", &lab.folder()]).assert_fails(2, &["seal.key is not a key of this kind"]);
+    lab.0.run(&["--study", &lab.folder()]).assert_fails(2, &["seal.key is not a key file of this kind"]);
     fs::write(folder.join("seal.key"), damaged).expect("written");
     assert_eq!(lab.play_session("P01\nquit\n").exit_code, 0);
     assert_eq!(sealed_by(), b's');
-    // In the folder of the study every export and collection is signed.
+    // With the key in the folder of the study, every export and collection is signed.
     let out = lab.0.0.path().join("p01.tar.gz").display().to_string();
     let export = |file: &str, place: &std::path::Path| {
         run_with_input(

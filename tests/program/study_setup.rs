@@ -1,11 +1,11 @@
-//! Preparation and supervision of a study: check, assign, watch, notes.
+//! Preparation and supervision of a study: the commands `check`, `assign`, `watch` and `protocol`.
 
 use std::fs;
 use std::path::PathBuf;
 
 use crate::support::home::{Home, ProgramOutput, run_with_input};
 
-/// A study of four weeks without questions and practice.
+/// The home of a machine with a study of four weeks, without questions and practice.
 struct Lab(Home);
 
 impl Lab {
@@ -104,7 +104,7 @@ fn check_reports_impossible_designs() {
     lab.edit("# week_minutes = 20", "week_minutes = 2");
     lab.edit("# warning_minutes = 2", "warning_minutes = 2");
     lab.run("check", &[])
-        .assert_fails(3, &["limits.warning_minutes", "week_minutes = 2 would show from the start"]);
+        .assert_fails(3, &["limits.warning_minutes", "week_minutes = 2 would be shown from the start"]);
     lab.edit("warning_minutes = 2", "warning_minutes = 1");
     lab.edit("offer = \"none\"", "offer = \"optional\"");
     let output = lab.run("check", &[]).stdout;
@@ -140,7 +140,7 @@ fn assign_add_keeps_existing_rows() {
     cells.iter_mut().for_each(|cell| *cell = cell.rsplit_once(',').expect("an order").0);
     cells.sort_unstable();
     assert_eq!(cells, ["A,11", "A,12", "A,13", "B,11", "B,12", "B,13"]);
-    // Rows edited by hand do not change, and neither does the file.
+    // Rows that were edited by hand are kept, and the file does not change.
     let by_hand = second.replacen(",A,", ",C,", 1);
     fs::write(lab.path("pilot/assignment.csv"), &by_hand).expect("written");
     lab.run("assign", &["--add", "1"]).assert_fails(1, &["were not drawn with seed 5", "by hand"]);

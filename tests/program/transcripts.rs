@@ -23,7 +23,7 @@ set_daily_spend operations=120
 next "help" naive
 "#;
 
-/// Plays a run in plain mode; returns its id and last hash.
+/// Plays a run in plain mode, and returns its id and its last state hash.
 fn played_run(home: &Home) -> (String, String) {
     played_run_with(home, &["--seed", "11", "--days", "28", "--participant", "P01"])
 }
@@ -120,7 +120,7 @@ fn atif_export_contains_calls_and_responses_only() {
     };
     let prices: Vec<bool> = named("set_prices").iter().map(|answer| answer["success"] == true).collect();
     assert_eq!(prices, [true, false]);
-    // Rows are not in the record; the export queries them as of that moment.
+    // The record does not contain the rows of queries. The export queries the rows as of the time of the query.
     assert_eq!(named("query")[0]["rows"][0]["cash"].as_f64(), Some(1e6));
     assert_eq!(named("query")[1]["code"], "sql_error");
     let weeks = named("next_week");
@@ -144,7 +144,7 @@ fn every_export_has_the_calls_of_unknown_tools() {
     let refused = |line: &Value| line["kind"] == "call" && line["ok"] == false;
     let calls: Vec<Value> =
         text.lines().map(|line| serde_json::from_str(line).expect("JSON")).filter(refused).collect();
-    // A word without arguments is a typing error, not a call.
+    // An unknown word without arguments is a typing error and not a tool call.
     assert_eq!(calls.len(), 1, "{calls:?}");
     assert_eq!((&calls[0]["tool"], &calls[0]["args"]), (&json!("set_wages"), &json!({ "sales": 3 })));
     assert_eq!(calls[0]["refusal"]["code"], "unknown_tool");
@@ -188,7 +188,7 @@ fn evaluation_log_has_a_sample_with_every_message() {
     assert_eq!((roles("system"), roles("user")), (1, 1));
     let called = messages.iter().filter(|message| message["tool_calls"].is_array()).count();
     assert!(called > 8 && roles("tool") == called, "{called}");
-    // Message tables are built from the model events: each message is in one of them.
+    // Inspect builds message tables from the model events, so each message must be in one model event.
     let events = sample["events"].as_array().expect("events");
     let of_model = events.iter().filter(|event| event["event"] == "model");
     let of_events: Vec<&Value> = of_model
@@ -207,7 +207,7 @@ fn evaluation_log_has_a_sample_with_every_message() {
     assert!(ids.len() == messages.len() && ids.iter().all(|id| id.starts_with(&run)), "{ids:?}");
 }
 
-/// Returns what `runs show` prints of an unfinished, an abandoned, a finished and a bankrupt run, and their logs for Inspect.
+/// Returns the output of `runs show` and the Inspect log of an unfinished, an abandoned, a finished and a bankrupt run.
 fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
     played_run(home);
     assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").exit_code, 0);
@@ -279,8 +279,8 @@ fn evaluation_log_becomes_a_run_in_the_same_state() {
     assert!(program_output.stdout.contains(&hash), "{}", program_output.stdout);
 }
 
-/// `tests/data/inspect.eval` was written by Inspect 0.3.285: four calls of tools of this program, one of which was rejected, and one of
-/// another tool.
+/// `tests/data/inspect.eval` was written by Inspect 0.3.285. It contains four calls of NovaMind tools, one of which
+/// was rejected, and a call of an unrelated tool.
 #[test]
 fn archive_of_inspect_is_imported() {
     let home = Home::new();
@@ -320,7 +320,7 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
         "{manifest}"
     );
     assert_eq!(other.run(&["replay", "latest", "--verify"]).exit_code, 0);
-    // Another world answers differently, and the import reports it.
+    // With a different seed, the results differ from the imported log, and the import reports the difference.
     let output = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
     output.assert_fails(1, &["the final state differs"]);
     let lines = other.0.path().join("calls.jsonl");

@@ -1,4 +1,5 @@
-//! A language model as voice on the command line: without answers the game continues, and the run records the model.
+//! A language model as voice on the command line. If the model does not answer, the run continues, and the record
+//! names the model.
 
 use std::net::TcpListener;
 
@@ -11,7 +12,7 @@ fn write_model_file(home: &Home, endpoint: &str, more: &str) -> String {
     home.0.path().join("configuration/voice.toml").display().to_string()
 }
 
-/// Returns an address of this machine without a server.
+/// Returns a local address on which no server listens.
 fn unreachable_endpoint() -> String {
     let port =
         TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port();
@@ -50,7 +51,7 @@ fn run_continues_without_the_model() {
         "set_prices A=12\npost_social_media content=\"Prices are down 20% today.\"\nnext naive\nnext naive\n";
     let played = home.play(&["--new", "--days", "28", "--voice", &file], lines);
     assert_eq!(played.exit_code, 0, "{}", played.stderr);
-    assert_eq!(played.stdout.matches("The built-in voice replaces it").count(), 1, "{}", played.stdout);
+    assert_eq!(played.stdout.matches("The built-in voice is used instead").count(), 1, "{}", played.stdout);
     let run = home.only_run();
     let manifest = std::fs::read_to_string(run.join("run.toml")).expect("a manifest");
     assert!(manifest.contains("[voice]") && manifest.contains("model = \"llama3\""), "{manifest}");
@@ -61,5 +62,9 @@ fn run_continues_without_the_model() {
     let card = home.run(&["report", &run_id(&run), "--card"]);
     assert!(card.stdout.contains("A language model worded"), "{}", card.stdout);
     let program_output = home.play(&["--run", &run_id(&run)], "next naive\n");
-    assert!(program_output.stdout.contains("name its file with --voice"), "{}", program_output.stdout);
+    assert!(
+        program_output.stdout.contains("name its settings file with --voice"),
+        "{}",
+        program_output.stdout
+    );
 }

@@ -17,9 +17,9 @@ pub struct ConsoleParticipant<'a> {
     clock: &'a ScriptedClock,
     pub diary: Diary,
     began: i64,
-    /// Current screen, previous screen, and the time of the change.
+    /// Current screen, previous screen, and time at which the current screen was opened.
     current_view: (&'static str, &'static str, i64),
-    /// Class of the time that is being spent.
+    /// Class to which the passing time belongs.
     spends: TimeCategory,
 }
 
@@ -38,7 +38,7 @@ impl DerefMut for ConsoleParticipant<'_> {
 }
 
 impl<'a> ConsoleParticipant<'a> {
-    /// Starts at the page that asks for the label.
+    /// Opens the console on the page that asks for the label.
     pub fn arrive(
         lab: &Lab,
         machine: &str,
@@ -62,7 +62,7 @@ impl<'a> ConsoleParticipant<'a> {
         ConsoleParticipant { console, clock, diary, began: 0, current_view: view, spends: TimeCategory::Away }
     }
 
-    /// Lets time pass after everything sent to the worker is written.
+    /// Advances the clock after all messages to the worker have been processed.
     pub fn wait(&mut self, seconds: u64) {
         let mut left = Duration::from_secs(seconds);
         while !left.is_zero() {
@@ -79,13 +79,13 @@ impl<'a> ConsoleParticipant<'a> {
         }
     }
 
-    /// Types keys without adding to the diary.
+    /// Types keys without adding an entry to the diary.
     pub fn press_unrecorded(&mut self, keys: &str) {
         self.console.press(keys);
         self.process_pending_events();
     }
 
-    /// Also waits for messages without a request: due questions, limits.
+    /// Also waits for messages that are not responses: due questions and time limits.
     fn process_pending_events(&mut self) {
         self.console.flush_notes();
         while let Some(message) = self.console.try_receive() {
@@ -110,7 +110,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.diary.lines.push(line);
     }
 
-    /// Enters unknown labels, then the correct one; reads the consent text and agrees.
+    /// Enters wrong labels and then the correct label, reads the consent text, and agrees.
     pub fn agree(&mut self, wrong: &[&str], reads: u64) {
         for label in wrong {
             self.press_unrecorded(&format!("'{label}' enter"));
@@ -198,7 +198,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.diary.notes.push(text.to_owned());
     }
 
-    /// Reviews the changes, enters a reason, fills the forecasts with the projection, and simulates the week.
+    /// Reviews the changes, enters a rationale, fills in the naive forecasts, and runs the week.
     pub fn play_week(&mut self, why: &'static str, reviews: u64, thinks: u64) {
         self.press_unrecorded("n");
         self.wait(reviews);
@@ -222,14 +222,14 @@ impl<'a> ConsoleParticipant<'a> {
         }
     }
 
-    /// Reads the report of the week.
+    /// Reads the weekly report for a number of seconds.
     pub fn report(&mut self, seconds: u64) {
         self.wait(seconds);
         self.press_unrecorded("enter");
         self.note("dialog", "week report", "cancelled", Some(seconds * 1000));
     }
 
-    /// Sets the price of plan A on the screen of tools.
+    /// Sets the price of plan A on the Tools screen.
     pub fn set_price(&mut self, price: &str) {
         self.select("enter", "tool", "set_prices");
         self.type_price(price);
@@ -247,14 +247,14 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("call", "set_prices", "form", None);
     }
 
-    /// Reads the page at the end.
+    /// Reads the final page for a number of seconds.
     pub fn read_the_end(&mut self, seconds: u64) {
         self.wait(seconds);
         self.press_unrecorded("enter");
         self.note("dialog", "final page", "cancelled", Some(seconds * 1000));
     }
 
-    /// Leaves the final page to the next participant.
+    /// Closes the final page, as before the next participant.
     pub fn finish(mut self) -> Diary {
         self.close_view();
         self.record_leaving("quit");
@@ -263,7 +263,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.diary.clone()
     }
 
-    /// Stops and restarts the clock, and gets the question about the break.
+    /// Stops and restarts the clock, and answers the question about the break.
     pub fn pause(&mut self, reason: &'static str, seconds: u64) {
         self.press_unrecorded("; p");
         self.wait(2);
@@ -317,15 +317,13 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("session", "resumed", "", None);
     }
 
-    /// Exceeds the time limit of a week: gets the warning, types a reason, and the week is filed without it.
+    /// Exceeds the time limit of a week: receives the warning and types a rationale. The week is filed without the rationale.
     pub fn exceed_week_limit(&mut self) {
         let spent =
             self.diary.time.get(&(self.diary.week(), TimeCategory::Active)).copied().unwrap_or_default()
                 / 1000;
         self.stay_active(WEEK_SECONDS - WARNING_SECONDS - spent);
-        self.await_limit(
-            "1 of 10 min left for this week; then the week is submitted with the naive projection",
-        );
+        self.await_limit("1 of 10 min left for this week; then the week is submitted with naive forecasts");
         self.note("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
         self.press_unrecorded("n enter 'half'");
         self.assert_shows("half");
@@ -335,7 +333,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
         self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
         self.note("draft", "rationale", "left", Some(0));
-        self.assert_shows("The time for this week ran out: it was submitted with the projection.");
+        self.assert_shows("The time for this week ran out: the week was submitted with the projection.");
         self.assert_shows("a week ago the projection submitted at the limit forecast");
         self.assert_shows("Your draft was not submitted; the record keeps it as a draft.");
         self.record_week("time limit", "form");
@@ -357,7 +355,7 @@ impl<'a> ConsoleParticipant<'a> {
         }
     }
 
-    /// Withdraws and confirms twice.
+    /// Withdraws from the study and confirms twice.
     pub fn withdraw(mut self) -> Diary {
         self.press_unrecorded(": 'withdraw' enter y 'withdraw' enter");
         self.console.assert_shows("You have withdrawn");
@@ -383,7 +381,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("call", "set_prices", "palette", None);
     }
 
-    /// Types half a reason, loses the terminal, returns, and restores the text.
+    /// Types half a rationale, loses the terminal, returns, and restores the text.
     pub fn hang_up_with_text(
         mut self,
         lab: &Lab,
@@ -402,7 +400,7 @@ impl<'a> ConsoleParticipant<'a> {
         back
     }
 
-    /// Leaves the run, returns later, and gets the question about the break.
+    /// Leaves the run, returns later, and answers the question about the break.
     pub fn leave_for(&mut self, seconds: u64) {
         self.press_unrecorded("; q");
         self.close_view();
@@ -418,7 +416,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.spends = TimeCategory::Away;
     }
 
-    /// Loses the terminal and returns later on another console.
+    /// Loses the terminal and returns later in a new console.
     fn hang_up_for(mut self, lab: &Lab, machine: &str, seconds: u64) -> ConsoleParticipant<'a> {
         self.console.app.handle_message(Message::Signal(1));
         self.console.wait_until_idle().expect("the console exits");

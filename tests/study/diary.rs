@@ -1,18 +1,18 @@
-//! The actions of a script, recorded by the script itself in the terms of the tables.
+//! The actions of a script, which the script itself records in the format of the tables.
 
 use std::collections::BTreeMap;
 
-/// Class of time.
+/// Class of a participant's time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TimeCategory {
     Active,
-    /// Answering questions of the study.
+    /// Time for answering questions of the study.
     Answering,
     Idle,
     Away,
-    /// The clock is stopped.
+    /// Time with the clock stopped.
     Paused,
-    /// After the end of the run.
+    /// Time after the end of the run.
     After,
 }
 
@@ -23,7 +23,7 @@ pub struct ExpectedLine {
     pub at: u64,
     /// Week that was being decided.
     pub week: u32,
-    /// Kind of the line, what, which and for how many milliseconds, as in `events.csv`.
+    /// Kind, object, outcome and duration of the line, as in the columns `kind`, `what`, `which` and `for_ms` of `events.csv`.
     pub kind: &'static str,
     pub what: String,
     pub which: String,
@@ -39,14 +39,14 @@ pub struct ExpectedAnswer {
     pub for_ms: u64,
 }
 
-/// All actions of one participant.
+/// All actions of a scripted participant.
 #[derive(Debug, Clone, Default)]
 pub struct Diary {
     pub label: &'static str,
     pub refused_labels: u32,
     pub lines: Vec<ExpectedLine>,
     pub answers: Vec<ExpectedAnswer>,
-    /// Milliseconds by week.
+    /// Milliseconds by week and class of time.
     pub time: BTreeMap<(u32, TimeCategory), u64>,
     pub sittings: u32,
     pub sittings_not_closed: u32,
@@ -60,12 +60,12 @@ pub struct Diary {
     pub erased: bool,
     /// Whether times come from a real clock, for which the script knows only bounds.
     pub is_real_time: bool,
-    /// Minimum and maximum milliseconds.
+    /// Minimum and maximum milliseconds by class of time.
     pub bounds: BTreeMap<TimeCategory, (u64, u64)>,
 }
 
 impl Diary {
-    /// Returns the week that is being decided, or the last one after the end.
+    /// Returns the week that is being decided, or the last week after the end.
     pub fn week(&self) -> u32 {
         (self.weeks.len() as u32 + 1).min(WEEKS)
     }
@@ -107,18 +107,18 @@ pub struct StudyQuestion {
     pub question: &'static str,
 }
 
-/// Weeks of a session.
+/// Number of weeks of a session.
 pub const WEEKS: u32 = 4;
 
-/// Before the first week.
+/// Question that is asked before the first week.
 pub const BEFORE: StudyQuestion =
     StudyQuestion { occasion: "before", questionnaire: "1-before", question: "experience" };
-/// After the second week.
+/// Question that is asked after the second week.
 pub const WEEK: StudyQuestion =
     StudyQuestion { occasion: "week 2", questionnaire: "2-week", question: "check" };
-/// After a break.
+/// Question that is asked after a break.
 pub const BREAK: StudyQuestion =
     StudyQuestion { occasion: "break", questionnaire: "3-break", question: "spoke" };
-/// After the end.
+/// Question that is asked after the end.
 pub const END: StudyQuestion =
     StudyQuestion { occasion: "end", questionnaire: "4-end", question: "strategy" };

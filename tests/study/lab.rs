@@ -133,7 +133,7 @@ impl Lab {
         self.home.run(arguments)
     }
 
-    /// Runs a command on the folders of all machines.
+    /// Runs a command with the folders of all machines as arguments.
     fn about_machines(&self, before: &[&str], after: &[&str]) -> ProgramOutput {
         let machines = MACHINES.map(|name| self.machine(name).display().to_string());
         let machines: Vec<&str> = machines.iter().map(String::as_str).collect();
@@ -149,7 +149,7 @@ impl Lab {
         self.about_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])
     }
 
-    /// Writes tables that do not identify the participants, and returns their folder.
+    /// Writes anonymized tables and returns their folder.
     pub fn anonymise(&self) -> PathBuf {
         let (public, secret) = (self.path("public"), self.path("secret"));
         let path = |path: &PathBuf| path.display().to_string();

@@ -1,5 +1,5 @@
 //! A whole study without a screen: twelve scripted participants on three machines, then the experimenter's commands on their
-//! runs. Every line, time, week, question and decision in the tables is compared with the actions of the scripts.
+//! runs. The tables are compared with the actions of the scripts: every line, time, week, question and decision.
 //!
 //!     cargo test --test study
 

@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::diary::{Diary, ExpectedLine, StudyQuestion, TimeCategory, WEEKS};
 use crate::lab::Lab;
 
-/// The program and its participant.
+/// The program in plain mode and the diary of its participant.
 pub struct PlainParticipant<'a> {
     lab: &'a Lab,
     machine: &'static str,
@@ -21,7 +21,7 @@ pub struct PlainParticipant<'a> {
 }
 
 impl<'a> PlainParticipant<'a> {
-    /// Enters a label and agrees.
+    /// Starts the program, enters a label and agrees to the consent text.
     pub fn arrive(lab: &'a Lab, machine: &'static str, label: &'static str) -> PlainParticipant<'a> {
         let diary = Diary { label, is_real_time: true, ..Diary::default() };
         let mut plain = PlainParticipant::start(lab, machine, diary);
@@ -135,7 +135,7 @@ impl<'a> PlainParticipant<'a> {
         }
     }
 
-    /// Quits and returns.
+    /// Quits the program and returns.
     pub fn quit_and_return(mut self) -> PlainParticipant<'a> {
         let before = Instant::now();
         self.send_line("quit");
@@ -185,8 +185,8 @@ impl<'a> PlainParticipant<'a> {
     }
 }
 
-/// Returns the milliseconds since a time, rounded up, as an upper bound: the record subtracts times that are truncated to
-/// milliseconds, so its difference can be the next larger number.
+/// Returns an upper bound of the milliseconds since a time. The number is rounded up, because the record subtracts
+/// times that are truncated to milliseconds.
 fn elapsed_ms(since: Instant) -> u64 {
     u64::try_from(since.elapsed().as_micros().div_ceil(1000)).unwrap_or(u64::MAX)
 }

@@ -1,4 +1,4 @@
-//! The script of each participant.
+//! The scripts of all participants, by machine.
 
 use novamind::record::clock::{ScriptedClock, parse_nanoseconds};
 
@@ -7,7 +7,7 @@ use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};
 use crate::lab::Lab;
 use crate::plain::PlainParticipant;
 
-/// The first machine: a complete session, a pause, a time limit, and absences.
+/// Plays the scripts of the first machine: a complete session, a pause, a time limit, and absences.
 pub fn first_machine(lab: &Lab) -> Vec<Diary> {
     let clock = ScriptedClock::start(parse_nanoseconds("2026-03-02T09:00:00Z"));
     vec![
@@ -18,7 +18,7 @@ pub fn first_machine(lab: &Lab) -> Vec<Diary> {
     ]
 }
 
-/// Plays from the first page to the last.
+/// Plays a complete session from the first page to the last page.
 fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P01", clock);
     player.agree(&[], 30);
@@ -43,7 +43,7 @@ fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish_console_session(player)
 }
 
-/// Stops the clock once and leaves once for some hours.
+/// Stops the clock once, and leaves once for several hours.
 fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P02", clock);
     player.agree(&[], 20);
@@ -75,7 +75,7 @@ fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish_console_session(player)
 }
 
-/// Presses no key for some minutes, focuses another window, and suspends the program.
+/// Presses no key for several minutes, focuses another window, and suspends the program.
 fn play_with_absences(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P04", clock);
     player.agree(&[], 20);
@@ -111,7 +111,7 @@ fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
     player.finish()
 }
 
-/// The second machine: declines, withdraws, mistypes the label, and loses the terminal.
+/// Plays the scripts of the second machine: participants decline, withdraw, mistype the label, and lose the terminal.
 pub fn second_machine(lab: &Lab) -> Vec<Diary> {
     let clock = ScriptedClock::start(parse_nanoseconds("2026-03-03T09:00:00Z"));
     vec![
@@ -149,7 +149,7 @@ fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish_console_session(player)
 }
 
-/// Loses the terminal while typing a reason.
+/// Loses the terminal while typing a rationale.
 fn play_with_hang_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P08", clock);
     player.agree(&[], 20);
@@ -160,7 +160,8 @@ fn play_with_hang_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
     finish_console_session(player)
 }
 
-/// The third machine, in plain mode: a pause, a killed program, a closed terminal, and two sittings.
+/// Plays the scripts of the third machine in plain mode: a pause, a killed program, a closed terminal, and a session
+/// in two parts.
 pub fn third_machine(lab: &Lab) -> Vec<Diary> {
     vec![
         play_in_plain_mode(lab),

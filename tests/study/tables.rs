@@ -93,7 +93,7 @@ fn compare_run_row(diary: &Diary, row: &Row) {
     for (column, expected) in expected {
         assert_eq!(row[column], expected, "{}: {column}", diary.label);
     }
-    // Actions after the end are not counted.
+    // Actions after the end of the run are not counted.
     let before_the_end = diary.lines.iter().position(|deed| deed.kind == "end").expect("it ended");
     let played = Diary { lines: diary.lines[..before_the_end].to_vec(), ..diary.clone() };
     for (column, kind) in [("views", "view"), ("selects", "select"), ("helps", "help")] {
@@ -116,7 +116,7 @@ fn cell_ms(row: &Row, column: &str) -> u64 {
     (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64
 }
 
-/// Compares the times of the whole run.
+/// Compares the sums of times over the whole run.
 fn compare_times(diary: &Diary, row: &Row) {
     let recorded = |column: &str| cell_ms(row, column);
     let from_diary = |spent| diary.total_ms(spent);
@@ -208,10 +208,10 @@ fn compare_answers(diary: &Diary, rows: &[&Row]) {
 
 const QUESTIONS: [&str; 4] = ["experience", "check", "spoke", "strategy"];
 
-/// Kinds whose duration depends on the machine, not on the participant.
+/// Kinds of lines whose duration depends on the machine and not on the participant.
 const MACHINE_TIMED_KINDS: [&str; 2] = ["query", "call"];
 
-/// Describes a line of the table. Times of a real clock are compared elsewhere.
+/// Describes a row of `events.csv`. Times of a real clock are omitted, because [`compare_times`] compares them.
 fn event_text(row: &Row, real: bool) -> String {
     let cell = |name: &str| row[name].as_str();
     let which = if cell("kind") == "note" { "" } else { cell("which") };
@@ -221,14 +221,14 @@ fn event_text(row: &Row, real: bool) -> String {
     format!("{at} week {}: {} {} {which} {for_ms}", cell("week"), cell("kind"), cell("what"))
 }
 
-/// Describes an action of the script in the same format.
+/// Describes an action of the script in the format of [`event_text`].
 fn expected_event_text(line: &ExpectedLine, real: bool) -> String {
     let for_ms = line.for_ms.map(|ms| ms.to_string()).unwrap_or_default();
     let at = if real { String::new() } else { (line.at as f64 / 1e3).to_string() };
     format!("{at} week {}: {} {} {} {for_ms}", line.week, line.kind, line.what, line.which)
 }
 
-/// Checks that the anonymized tables contain the same runs.
+/// Checks that the anonymized tables contain the same runs as the original tables.
 pub fn compare_anonymized_tables(lab: &Lab, diaries: &[Diary]) {
     let public = lab.anonymise();
     for entry in fs::read_dir(&public).expect("a folder").flatten() {

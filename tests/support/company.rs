@@ -1,4 +1,4 @@
-//! A company that is run through the library: calls, weeks, and queries.
+//! Helpers for a company that is played through the library: calls, weeks and queries.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session, Storage, WeekResult};
 use serde_json::{Value, json};
 
-/// Calls a tool that must accept.
+/// Calls a tool and asserts that the call is accepted.
 #[track_caller]
 pub fn call_tool(session: &mut Session, tool: &str, arguments: Value) -> Value {
     let answer = session.call(tool, &arguments, Via::Script);
@@ -30,7 +30,7 @@ pub fn begin_run(runs: &Path, mode: Mode, days: u32) -> Session {
     Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
-/// Makes the first decisions of a sensible beginner.
+/// Applies the first decisions of a sensible beginner.
 pub fn apply_opening_decisions(session: &mut Session) {
     for (tool, arguments) in opening_calls() {
         call_tool(session, tool, arguments);
@@ -59,7 +59,7 @@ pub fn advance_week(session: &mut Session) -> WeekResult {
     session.advance("if leads hold, grow", &forecasts, Via::Script, &mut |_| {}).expect("a week")
 }
 
-/// Runs some weeks.
+/// Runs a number of weeks with naive forecasts.
 #[track_caller]
 pub fn advance_weeks(session: &mut Session, count: usize) {
     for _ in 0..count {
@@ -67,13 +67,13 @@ pub fn advance_weeks(session: &mut Session, count: usize) {
     }
 }
 
-/// Returns the rows of a statement, as many as a query may return.
+/// Returns the rows of a SQL statement, up to the row limit of a query.
 #[track_caller]
 pub fn query_rows(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
     session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
 }
 
-/// Returns the rows of a statement as numbers.
+/// Returns the rows of a SQL statement as numbers.
 #[track_caller]
 pub fn query_numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     let number = |cell: &Cell| match cell {
@@ -84,19 +84,19 @@ pub fn query_numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     query_rows(session, sql).iter().map(|row| row.iter().map(number).collect()).collect()
 }
 
-/// Returns the first column of a statement as numbers.
+/// Returns the first column of a SQL statement as numbers.
 #[track_caller]
 pub fn query_column(session: &mut Session, sql: &str) -> Vec<f64> {
     query_numbers(session, sql).iter().map(|row| row[0]).collect()
 }
 
-/// Returns the first cell of a statement as a number.
+/// Returns the first cell of a SQL statement as a number.
 #[track_caller]
 pub fn query_number(session: &mut Session, sql: &str) -> f64 {
     query_column(session, sql)[0]
 }
 
-/// Returns the first cell of a statement as a text.
+/// Returns the first cell of a SQL statement as a text.
 #[track_caller]
 pub fn query_text(session: &mut Session, sql: &str) -> String {
     match &query_rows(session, sql)[0][0] {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-/// Changes lines and recomputes checksums and chain.
+/// Changes the lines of a trajectory and recomputes the checksums and the hash chain.
 pub fn forge_lines(folder: &Path, change: impl Fn(usize, &mut Value)) {
     let path = folder.join("trajectory.jsonl");
     let text = fs::read_to_string(&path).expect("a trajectory");

@@ -1,4 +1,4 @@
-//! The folders of a user, and the program that works in them.
+//! The folders of a user, and the built program that runs in these folders.
 
 use std::fs;
 use std::io::Write;
@@ -55,7 +55,7 @@ impl Home {
         run_with_input(self.program().args(["play", "--plain"]).args(options), lines)
     }
 
-    /// Plays a run of two weeks and closes it; returns its folder.
+    /// Plays a run of two weeks, closes it, and returns its folder.
     pub fn two_weeks(&self) -> PathBuf {
         let lines = "set_prices A=12\nset_prices B=20\nnext naive\nset_prices C=50\nnext naive\n";
         assert_eq!(self.play(&["--days", "28"], lines).exit_code, 0);
@@ -72,7 +72,7 @@ impl Home {
 
 pub fn run_with_input(command: &mut Command, lines: &str) -> ProgramOutput {
     let mut child = command.spawn().expect("the program starts");
-    // A program that cannot start does not read.
+    // Ignores errors, because a program that cannot start does not read its input.
     let _ = child.stdin.take().expect("a pipe").write_all(lines.as_bytes());
     let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
@@ -84,7 +84,7 @@ pub fn run_with_input(command: &mut Command, lines: &str) -> ProgramOutput {
 }
 
 impl ProgramOutput {
-    /// Checks the exit code, and that standard error is one line with all of these parts.
+    /// Asserts the exit code, and that standard error is a single line that contains all `parts`.
     #[track_caller]
     pub fn assert_fails(&self, code: i32, parts: &[&str]) {
         assert_eq!(self.exit_code, code, "{}{}", self.stdout, self.stderr);

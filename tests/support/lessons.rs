@@ -1,4 +1,4 @@
-//! Lessons of a test: a plan in a folder, and its first part.
+//! Helpers for lessons that a test defines.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{LessonEntry, NewRun, Session, Storage};
 use novamind::tools::Rejection;
 
-/// Reads a lesson from a plan, which is written to a file of that name.
+/// Writes a plan to a file with the name of the lesson, and reads the lesson from the file.
 pub fn write_lesson(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {
     let path = folder.join(format!("{name}.toml"));
     std::fs::write(&path, plan).expect("a file");
@@ -18,7 +18,7 @@ pub fn write_lesson(folder: &Path, name: &str, plan: &str) -> Result<Lesson, Str
     Lesson::from_file(&path).map_err(|error| error.to_string())
 }
 
-/// Starts the first part of the lesson.
+/// Writes a lesson and starts its first part.
 pub fn begin_lesson(folder: &Path, name: &str, plan: &str) -> Session {
     let lesson = Arc::new(write_lesson(folder, name, plan).expect("a lesson"));
     let new = NewRun {

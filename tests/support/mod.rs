@@ -1,5 +1,5 @@
-//! Shared test support: a company run through the library, the built program in its own home, random numbers.
-#![allow(dead_code, reason = "each group of stories uses its part")]
+//! Shared test support: a company that is played through the library, the built program in a separate home, and random numbers.
+#![allow(dead_code, reason = "each test program uses a part of the helpers")]
 
 pub mod company;
 pub mod dice;

@@ -1,4 +1,4 @@
-//! The measures, recomputed by a script that shares no code with the program.
+//! The measures of a study, recomputed by a Python script that shares no code with the program.
 
 use std::path::Path;
 use std::process::Command;

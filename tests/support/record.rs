@@ -1,4 +1,4 @@
-//! Access to the record of a run.
+//! Helpers that read the record of a run.
 
 use std::path::{Path, PathBuf};
 
@@ -11,14 +11,14 @@ pub fn read_trajectory(folder: &Path) -> Trajectory {
     Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines")
 }
 
-/// Returns the folder of the only run, or of the one with the last name.
+/// Returns the run folder with the alphabetically last name, which is the only run in most tests.
 #[track_caller]
 pub fn run_folder(runs: &Path) -> PathBuf {
     let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
     folders.filter(|path| path.is_dir()).max().expect("a run")
 }
 
-/// Returns the x-ray views with object and day, in the order of the lines.
+/// Returns the recorded x-ray views with object and day, in the order of the lines.
 pub fn inspections(lines: &Trajectory) -> Vec<String> {
     let look = |record: &Record| match record {
         Record::Activity(Activity::Inspection(inspection)) => {

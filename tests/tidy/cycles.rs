@@ -1,5 +1,5 @@
 //! Modules of a crate that import each other in a cycle. A module is a folder or a file directly below the folder of its crate.
-//! The file of the crate itself (`lib.rs`, `mod.rs`) is not a module: its exports belong to the modules they come from.
+//! The root file of a crate (`lib.rs`, `mod.rs`) is not a module. Its exports belong to the modules that define them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -24,15 +24,15 @@ fn no_cycle_has_more_than_three_modules() {
     assert!(found.is_empty(), "split or move a module of each cycle:\n{}", found.join("\n"));
 }
 
-/// A crate, or a module of the root crate that has a folder in `src`.
+/// A crate, or a module of the root crate with a folder in `src`.
 struct Unit {
     name: String,
     folder: PathBuf,
-    /// The names after `crate::` in the paths of its modules.
+    /// The names after `crate::` in the paths of the unit's modules.
     prefix: Vec<String>,
 }
 
-/// Returns the root crate without the crates below it, and each folder of `src`.
+/// Returns each folder of `src`, and the root crate without these folders.
 fn units() -> Vec<Unit> {
     let sources = root().join("src");
     let entries = fs::read_dir(&sources).expect("the sources").map(|entry| entry.expect("an entry").path());
@@ -49,14 +49,14 @@ fn units() -> Vec<Unit> {
     units
 }
 
-/// A source file: the modules that lead to it from its crate, and its text without tests and comments.
+/// A source file: its module path within the crate, and its text without tests and comments.
 struct File {
     module: Vec<String>,
     text: String,
 }
 
 impl Unit {
-    /// Returns the imports of each module from the others.
+    /// Returns the modules that each module imports.
     fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
         let files = self.files();
         let modules: BTreeSet<&str> =
@@ -107,7 +107,8 @@ impl Unit {
         all
     }
 
-    /// Returns the name directly below the crate to which a path in a module leads; `None` if it leads elsewhere.
+    /// Returns the top-level module that a path in module `from` refers to, or `None` if the path refers to something
+    /// outside the crate.
     fn imported_module<'a>(&self, from: &[String], path: &'a [String]) -> Option<&'a String> {
         let up = path.iter().take_while(|name| *name == "super").count();
         let rest = if path.first()? == "crate" {
@@ -141,16 +142,16 @@ fn without_tests(text: &str) -> (String, Vec<String>) {
     (kept, modules)
 }
 
-/// A path in a text: `crate::figures::WeekResult` by its names.
+/// A path in a source text, split into its names: `crate::figures::WeekResult`.
 struct ImportedPath {
     names: Vec<String>,
-    /// The exported name.
+    /// The name under which the path is exported.
     exported: String,
-    /// Whether it is in a `pub use`.
+    /// Whether the path is in a `pub use`.
     is_export: bool,
 }
 
-/// Returns every path of a text, those of `use a::{b, c}` separately.
+/// Returns every path in a source text. The paths of `use a::{b, c}` are returned separately.
 fn paths(text: &str) -> impl Iterator<Item = ImportedPath> {
     let mut all = Vec::new();
     let mut end = 0;
@@ -170,7 +171,7 @@ fn is_name_character(sign: char) -> bool {
     sign.is_alphanumeric() || sign == '_'
 }
 
-/// Parses one tree of paths; returns its length.
+/// Parses a `use` tree, adds its paths to `all`, and returns the length of the tree.
 fn parse_use_tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<ImportedPath>) -> usize {
     let mut names = prefix.to_vec();
     let mut at = 0;
@@ -204,7 +205,7 @@ fn parse_use_tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<
     at
 }
 
-/// Returns groups of modules that reach each other.
+/// Returns the groups of modules that import each other directly or indirectly.
 fn cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
     let mut reach = imports.clone();
     loop {

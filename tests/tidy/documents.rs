@@ -1,4 +1,4 @@
-//! Documents: links have targets, values are those of the parameters, and every named parameter, test and file exists.
+//! Documents: link targets exist, values equal the parameters, and every named parameter, test and file exists.
 //!
 //! `NOVAMIND_WRITE_DOCUMENTS=1 cargo test documents` writes the values and tables.
 
@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 use super::{files, root};
 
-/// Parameter tables with one entry per group, pair of groups or persona: pages show columns of them.
+/// Parameter tables with one entry per group, pair of groups or persona. Pages show columns of these tables.
 const BY_GROUP: [&str; 3] = ["referral_leads_per_subscriber_day", "reputation_influence", "personas"];
 
 /// A Markdown file.
@@ -25,7 +25,7 @@ impl Page {
         Page { path, text }
     }
 
-    /// Returns the lines with their numbers, without code blocks.
+    /// Returns the lines outside of code blocks, with their numbers.
     fn prose(&self) -> impl Iterator<Item = (usize, &str)> {
         let mut is_code = false;
         self.text.lines().enumerate().filter_map(move |(at, line)| {
@@ -40,14 +40,14 @@ impl Page {
         format!("{}:{line}: {what}", path.display())
     }
 
-    /// Returns the anchors of the headings.
+    /// Returns the anchors of all headings of the page.
     fn anchors(&self) -> BTreeSet<String> {
         let headings = self.prose().filter_map(|(_, line)| line.strip_prefix('#'));
         headings.map(|heading| slug(heading.trim_start_matches('#').trim())).collect()
     }
 }
 
-/// Returns the anchor of a heading.
+/// Returns the anchor that GitHub generates for a heading.
 fn slug(heading: &str) -> String {
     let kept = heading.to_lowercase();
     let kept = kept.chars().filter(|sign| sign.is_alphanumeric() || " -_".contains(*sign));
@@ -68,7 +68,7 @@ fn between<'a>(line: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item 
     parts.filter_map(move |part| part.split_once(to).map(|(inner, _)| inner))
 }
 
-/// Returns the words in code marks: every second piece of a line.
+/// Returns the texts between backticks in a line.
 fn code_spans(line: &str) -> impl Iterator<Item = &str> {
     line.split('`').skip(1).step_by(2)
 }
@@ -83,7 +83,7 @@ fn is_rule(cells: &[&str]) -> bool {
     cells.iter().all(|cell| !cell.is_empty() && cell.chars().all(|sign| "-: ".contains(sign)))
 }
 
-/// Returns the parameters of the base files.
+/// Returns the parameters of the base configuration files.
 fn parameters() -> Table {
     let texts = files(&root().join("configs/world"), "toml");
     let tables = texts
@@ -92,7 +92,7 @@ fn parameters() -> Table {
     tables.flatten().collect()
 }
 
-/// Formats a value as in a page.
+/// Formats the value of a parameter as it is written in documents.
 fn format_value(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -116,8 +116,8 @@ fn value_of<'a>(parameters: &'a Table, key: &str) -> Option<&'a Value> {
     (!value.is_table() || key.contains('.')).then_some(value)
 }
 
-/// Returns a page with current values: the second cell of each row that begins with a parameter, and the tables after
-/// `<!-- table: list column … -->`.
+/// Returns the text of a page with current values. Values are the second cell of each row that begins with a
+/// parameter, and the tables after `<!-- table: list column … -->`.
 fn fill_parameters(page: &Page, parameters: &Table) -> Result<String, String> {
     let mut text = String::new();
     let mut lines = page.text.lines().enumerate().peekable();
@@ -146,7 +146,7 @@ fn fill_parameters(page: &Page, parameters: &Table) -> Result<String, String> {
     Ok(text)
 }
 
-/// Returns columns of a list of parameters, one row per entry.
+/// Returns a Markdown table with columns of a list of parameters, one row per entry.
 fn table(parameters: &Table, wanted: &str) -> Result<String, String> {
     let mut words = wanted.split_whitespace();
     let list = words.next().unwrap_or_default();
@@ -300,7 +300,7 @@ fn named_files_exist() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// Returns whether a page of the documents, or a heading of it, exists.
+/// Returns whether a documentation page exists, and the heading if the link names one.
 fn leads_to_a_heading(word: &str) -> bool {
     let (file, anchor) = word.split_once('#').unwrap_or((word, ""));
     let path = root().join(file);
@@ -354,7 +354,7 @@ fn function_body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
     Some(&rest[..rest.find(&end).unwrap_or(rest.len())])
 }
 
-/// Pages of mechanisms link to their code.
+/// Every page about a mechanism must link to its code.
 #[test]
 fn every_mechanism_names_its_code() {
     let folder: &Path = &root().join("docs/mechanics");
@@ -366,7 +366,7 @@ fn every_mechanism_names_its_code() {
     assert!(nameless.is_empty(), "{nameless:?}");
 }
 
-/// Documents and comments only refer to what is in the repository, not to numbered chapters of other texts.
+/// Documents and comments must not refer to numbered chapters of texts outside the repository.
 #[test]
 fn nothing_refers_to_external_chapters() {
     let numbered = |line: &str| {

@@ -1,5 +1,6 @@
-//! Rules for the sources: crates import what the architecture lists, no cycles of more than three modules, nothing unfinished, no clock and no
-//! random iteration order in the simulator, valid configuration.
+//! Rules for the sources. Crates import only the crates that the architecture lists, import cycles have at most three
+//! modules, and no code is marked as unfinished. The simulator uses no clock and no random iteration order, and
+//! bundled configuration files are valid.
 
 mod cycles;
 mod documents;
@@ -8,7 +9,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A source file without its tests.
+/// The path of a source file, and its lines without the test module.
 struct Source {
     path: PathBuf,
     lines: Vec<String>,
@@ -28,7 +29,7 @@ impl Source {
         numbered.filter(|(_, line)| !line.trim_start().starts_with("//"))
     }
 
-    /// Returns the first folder or file below `src`.
+    /// Returns the name of the first folder or file below `src` in the path.
     fn unit_name(&self) -> String {
         let below = self.path.strip_prefix(root().join("src")).expect("below src");
         let first = below.components().next().expect("a name").as_os_str().to_string_lossy();
@@ -39,7 +40,7 @@ impl Source {
         self.path.file_name().is_some_and(|name| name == "tests.rs" || name == "test_kit.rs")
     }
 
-    /// Returns a complaint for every line of code that a rule forbids.
+    /// Returns a message for every line of code that a rule forbids.
     fn rule_violations(&self, forbidden: impl Fn(&str) -> Option<String>) -> Vec<String> {
         let complaint = |(number, line): (usize, &str)| {
             forbidden(line).map(|why| format!("{}:{number}: {why}", self.path.display()))
@@ -48,7 +49,8 @@ impl Source {
     }
 }
 
-/// Returns the folder of the workspace, two above that of the package `base`. Cargo sets it when the test is built and run.
+/// Returns the folder of the workspace, which is two levels above the package `base`. Cargo sets the folder of the
+/// package when the test is built and run.
 fn root() -> PathBuf {
     let package =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or(env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
@@ -138,7 +140,7 @@ fn nothing_is_left_unfinished() {
     assert_none(&complaints);
 }
 
-/// Returns the crates of the workspace with their dependencies, from the manifests.
+/// Returns the dependencies of each crate of the workspace, from the manifests.
 fn dependencies() -> BTreeMap<String, Vec<String>> {
     let folders =
         fs::read_dir(root().join("src")).expect("the sources").map(|entry| entry.expect("an entry").path());
@@ -192,10 +194,10 @@ fn simulator_uses_no_clock_files_or_unordered_maps() {
     assert_none(&complaints);
 }
 
-/// Re-simulation shows hidden state. The crate that does it checks who may see the result.
+/// Re-simulation shows hidden state, so only the crate that checks the permission may import the engine.
 #[test]
 fn only_insight_imports_the_engine_of_sessions() {
-    // The session itself, and crates that cannot import it.
+    // The session crate itself, and crates below it that cannot import it.
     const BELOW: [&str; 8] = ["assets", "base", "database", "record", "session", "tools", "voice", "world"];
     let complaint = |line: &str| {
         let listed = ["session::engine", "{engine", ", engine"].iter().any(|path| line.contains(path));

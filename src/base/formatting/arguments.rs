@@ -1,25 +1,26 @@
-//! Parser for the arguments of a line: `name=value` or values alone, with or without commas and brackets
+//! Parser for the arguments of a command line in plain mode: `name=value` or bare values, with or without commas and
+//! parentheses
 //! (docs/interfaces/plain-mode.md#grammar).
 
 use serde_json::Value;
 
-/// One argument.
+/// One argument of a command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Argument {
-    /// Name, if the argument has one.
+    /// Name of a named argument.
     pub key: Option<String>,
-    /// Value.
+    /// Value of the argument.
     pub value: Value,
-    /// Column of its first character, from 1.
+    /// Column of the argument's first character, counted from 1.
     pub column: usize,
 }
 
-/// A problem of a line and its column.
+/// A syntax error of a command line and its column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParseError {
-    /// Description.
+    /// Description of the error.
     pub text: String,
-    /// Column in characters, from 1.
+    /// Column of the error in characters, counted from 1.
     pub column: usize,
 }
 
@@ -27,7 +28,7 @@ impl Argument {
     /// Returns the value as a whole number.
     ///
     /// # Errors
-    /// Returns a problem if the value is not a whole number, or if the argument has a name.
+    /// Returns a parse error if the value is not a whole number, or if the argument has a name.
     pub fn as_u32(&self) -> Result<u32, ParseError> {
         let number = self.value.as_u64().filter(|_| self.key.is_none());
         let number = number.and_then(|number| u32::try_from(number).ok());
@@ -37,20 +38,20 @@ impl Argument {
 }
 
 impl ParseError {
-    /// Returns a problem of all arguments together, at the first one.
+    /// Creates an error that concerns all arguments and points to the first argument.
     pub fn at_first_argument(arguments: &[Argument], text: &str) -> ParseError {
         ParseError { text: text.to_owned(), column: arguments.first().map_or(1, |argument| argument.column) }
     }
 }
 
-/// A reader of a line from left to right.
+/// A parser that reads a command line from left to right.
 pub struct LineParser<'a> {
     line: &'a str,
     position: usize,
 }
 
 impl<'a> LineParser<'a> {
-    /// Returns a reader at the start of a line.
+    /// Creates a parser at the start of a line.
     pub fn new(line: &'a str) -> LineParser<'a> {
         LineParser { line, position: 0 }
     }
@@ -60,22 +61,23 @@ impl<'a> LineParser<'a> {
         &self.line[self.position..]
     }
 
-    /// Returns the column of the next character, from 1.
+    /// Returns the column of the next character, counted from 1.
     pub fn column(&self) -> usize {
         self.line[..self.position].chars().count() + 1
     }
 
-    /// Returns a problem in the current column.
+    /// Creates an error at the current column.
     pub fn error_here(&self, text: impl Into<String>) -> ParseError {
         ParseError { text: text.into(), column: self.column() }
     }
 
-    /// Skips blanks.
+    /// Skips whitespace.
     pub fn skip_whitespace(&mut self) {
         self.position += self.remaining().len() - self.remaining().trim_start().len();
     }
 
-    /// Reads a word of letters, digits, dots, dashes and underscores; empty if there is none.
+    /// Parses a word of letters, digits, dots, dashes and underscores. Returns an empty string if the next character
+    /// is none of these.
     pub fn parse_word(&mut self) -> String {
         let is_word = |letter: char| letter.is_alphanumeric() || ['_', '.', '-'].contains(&letter);
         let end = self.remaining().find(|letter| !is_word(letter)).unwrap_or(self.remaining().len());
@@ -84,10 +86,10 @@ impl<'a> LineParser<'a> {
         word
     }
 
-    /// Reads the arguments up to the end of the line.
+    /// Parses the arguments up to the end of the line.
     ///
     /// # Errors
-    /// Returns the first problem and its column.
+    /// Returns the first syntax error and its column.
     pub fn parse_arguments(&mut self) -> Result<Vec<Argument>, ParseError> {
         self.skip_whitespace();
         let opened = self.remaining().starts_with('(');
@@ -101,7 +103,7 @@ impl<'a> LineParser<'a> {
             let comment = rest.starts_with('#') && (self.position > before || arguments.is_empty());
             if rest.is_empty() || comment {
                 return if opened {
-                    Err(self.error_here("the bracket is not closed"))
+                    Err(self.error_here("the opening parenthesis is not closed"))
                 } else {
                     Ok(arguments)
                 };
@@ -134,7 +136,7 @@ impl<'a> LineParser<'a> {
         if self.remaining().is_empty() || self.remaining().starts_with('#') {
             Ok(arguments)
         } else {
-            Err(self.error_here("only a comment can follow the closing bracket"))
+            Err(self.error_here("only a comment can follow the closing parenthesis"))
         }
     }
 
@@ -193,7 +195,7 @@ impl<'a> LineParser<'a> {
     }
 }
 
-/// Returns the value of an unquoted word: null, true, false, a number (such as 1_000_000), otherwise a string.
+/// Converts an unquoted word to JSON: null, true, false, a number (such as 1_000_000), or otherwise a string.
 fn scalar_from_text(text: &str) -> Value {
     let digits = text.replace('_', "");
     let json = digits.strip_prefix('+').unwrap_or(&digits);
@@ -208,7 +210,7 @@ fn scalar_from_text(text: &str) -> Value {
     }
 }
 
-/// Returns the byte offset of serde_json's line and column.
+/// Converts the line and column of a serde_json error to a byte offset.
 fn byte_offset(text: &str, line: usize, column: usize) -> usize {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     (before + column.saturating_sub(1)).min(text.len())

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::cli::Failure;
 use crate::tools::{ArgumentKind, FORECAST_KEYS, find};
 
-/// Returns a text, or standard input for `-`.
+/// Returns the argument itself, or the content of standard input if the argument is `-`.
 ///
 /// # Errors
 /// Standard input cannot be read.
@@ -21,7 +21,7 @@ pub fn read_text(word: &str) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Returns the body of a request for a week.
+/// Returns the request body of `next-week`.
 ///
 /// # Errors
 /// The arguments are neither one object nor a rationale with twelve numbers.
@@ -51,10 +51,10 @@ fn parse_number(word: &str) -> Result<f64, Failure> {
     read.ok_or_else(|| Failure::usage(format!("{word} is not a number; write it as 950000 or 9.5e5")))
 }
 
-/// Returns the arguments of a call.
+/// Returns the arguments of a tool call as a JSON value.
 ///
 /// # Errors
-/// They are neither one object nor pairs of --KEY VALUE.
+/// The arguments are neither one object nor pairs of --KEY VALUE.
 pub fn parse_call(tool: &str, words: &[String]) -> Result<Value, Failure> {
     match words {
         [] => Ok(json!({})),
@@ -77,7 +77,7 @@ fn parse_pairs(tool: &str, words: &[String]) -> Result<Map<String, Value>, Failu
     while let Some(word) = rest.next() {
         let wrong = || {
             Failure::usage(format!(
-                "unexpected {word}: arguments are one JSON object, or --KEY VALUE for each"
+                "unexpected {word}: give one JSON object, or --KEY VALUE for each argument"
             ))
         };
         let name = word.strip_prefix("--").filter(|name| !name.is_empty()).ok_or_else(wrong)?;
@@ -94,7 +94,7 @@ fn parse_pairs(tool: &str, words: &[String]) -> Result<Map<String, Value>, Failu
     Ok(given)
 }
 
-/// Converts a value to the type of its argument. Texts stay texts even if they look like numbers.
+/// Converts the value of a tool argument to the argument's type. Text arguments remain strings even if they look like numbers.
 fn parse_value(tool: &str, name: &str, text: String) -> Value {
     let is_argument = |argument: &&crate::tools::Argument| argument.name == name;
     let kind = find(tool).and_then(|tool| tool.spec().arguments.iter().find(is_argument));

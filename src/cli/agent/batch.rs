@@ -62,7 +62,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         write_client(&work.join("client"))?;
         eprintln!("try {number} of {}: run {} in {}", options.tries, agent_run.id, work.display());
         let played = play_until_over(options, number, &agent_run, &work, &stop);
-        // The server must stop in any case.
+        // Stop the server even if the command failed.
         agent_run.stop_server()?;
         let (attempts, exit_code) = played?;
         tries.push(read_outcome(number, &agent_run, attempts, exit_code)?);
@@ -79,7 +79,8 @@ fn write_failure(path: &Path, error: &std::io::Error) -> Failure {
     Failure::failed(format!("{}: {error}", path.display()))
 }
 
-/// Starts the command until the run is over or the restarts are used up. Returns the number of starts and the last exit code.
+/// Starts the command repeatedly until the run is over or no restarts are left. Returns the number of starts and the
+/// last exit code.
 fn play_until_over(
     options: &Options,
     number: u32,
@@ -105,7 +106,7 @@ fn play_until_over(
         let child =
             command.spawn().map_err(|error| Failure::failed(format!("cannot start a shell: {error}")))?;
         let status = wait_for_exit(child, stop)?;
-        // If the command stopped the server, another one continues the run.
+        // If the command stopped the server, a new server continues the run.
         let reply = send_request(
             &agent_run.connect_or_start(Authentication::Unauthenticated)?,
             "/game-status",
@@ -120,7 +121,7 @@ fn play_until_over(
 }
 
 fn wait_for_exit(mut child: Child, stop: &AtomicBool) -> Result<ExitStatus, Failure> {
-    let failed = |error: std::io::Error| Failure::failed(format!("the command: {error}"));
+    let failed = |error: std::io::Error| Failure::failed(format!("cannot wait for the command: {error}"));
     loop {
         if let Some(status) = child.try_wait().map_err(failed)? {
             return if stop.load(Ordering::Relaxed) { Err(Failure::signal(2)) } else { Ok(status) };

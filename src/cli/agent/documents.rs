@@ -1,4 +1,4 @@
-//! `novamind agent docs`: the page and the documents that an agent receives.
+//! `novamind agent docs`: prints or writes the instructions and reference documents for an agent.
 
 use std::path::Path;
 
@@ -8,7 +8,8 @@ use crate::server::{PageContext, agent_page, write_documents};
 use crate::session::{Access, Session};
 use crate::tools::ParameterNumbers;
 
-/// Prints the page or writes it with the documents, for the named run or for a standard run.
+/// Prints the agent's instructions, or writes them to a folder together with the reference documents. Without a named
+/// run, the instructions describe a run with the bundled parameters.
 pub fn print_or_write(named: Option<&str>, out: Option<&Path>, context: &Context) -> Result<(), Failure> {
     match named {
         Some(_) => write_run_documents(&AgentRun::find(named, context)?, out),
@@ -25,7 +26,7 @@ pub fn print_or_write(named: Option<&str>, out: Option<&Path>, context: &Context
     }
 }
 
-/// Writes the documents of a run.
+/// Writes the instructions and reference documents for a run's agent.
 pub fn write_run_documents(agent_run: &AgentRun, out: Option<&Path>) -> Result<(), Failure> {
     let session = Session::open(&agent_run.folder, Access::Read, false)?;
     let manifest = session.manifest();

@@ -5,13 +5,13 @@ use serde_json::Value;
 use crate::cli::Failure;
 use crate::server::ServerResponse;
 
-/// A call, a statement or a week was rejected; nothing changed.
+/// Exit code if a tool call, an SQL statement or a week was rejected. The run is unchanged.
 const REJECTED: u8 = 5;
-/// Rejected because the run is over.
+/// Exit code if the request was rejected because the run is over.
 const RUN_OVER: u8 = 6;
-/// A week is being simulated, or the server has too many connections.
+/// Exit code if a week is being simulated or the server has too many connections.
 const BUSY: u8 = 7;
-/// The server does not respond.
+/// Exit code if the server does not respond.
 const UNREACHABLE: u8 = 8;
 
 /// Returns the failure for a server that does not respond.
@@ -28,7 +28,7 @@ pub fn unreachable_failure(error: &str) -> Failure {
 /// Returns an error if the response is a rejection.
 ///
 /// # Errors
-/// The response is a rejection. The message has the code, the argument and the reason.
+/// The response is a rejection. The message names the error code, the argument and the reason.
 pub fn check_response(reply: &ServerResponse) -> Result<(), Failure> {
     if reply.status == 200 && reply.body["success"] != Value::Bool(false) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! `novamind agent`: plays a run with single shell commands (docs/interfaces/agents.md).
+//! `novamind agent`: plays a run with one shell command per action (docs/interfaces/agents.md).
 
 mod arguments;
 mod batch;
@@ -22,7 +22,7 @@ use server::{AgentRun, Authentication};
 pub struct Options {
     #[command(subcommand)]
     command: AgentCommand,
-    /// Run [default: the one that `agent new` last created]
+    /// Run [default: the run that `agent new` last created]
     #[arg(id = "agent_run", long = "run", global = true, env = "NOVAMIND_RUN", value_name = "ID")]
     run: Option<String>,
     /// Request id for `call` and `next-week`: repeating the command with the same id runs the request only once
@@ -41,7 +41,8 @@ enum AgentCommand {
     /// Submit a rationale and forecasts, and simulate a week
     #[command(allow_negative_numbers = true)]
     NextWeek {
-        /// One JSON object, - to read it from standard input, or: RATIONALE and POINT LOWER UPPER for 1, 4, 12 and 26 weeks
+        /// One JSON object, - to read the object from standard input, or: RATIONALE and POINT LOWER UPPER for 1, 4, 12
+        /// and 26 weeks
         #[arg(required = true, value_name = "WORD")]
         words: Vec<String>,
         /// Reject the week unless the run is on this day
@@ -50,14 +51,14 @@ enum AgentCommand {
     },
     /// Run one SQL statement
     Query {
-        /// Statement, or - to read it from standard input
+        /// SQL statement, or - to read the statement from standard input
         sql: String,
     },
     /// Call a tool
     Call {
-        /// Name of the tool; `novamind tools` lists them
+        /// Name of the tool; `novamind tools` lists all tools
         tool: String,
-        /// One JSON object, - to read it from standard input, or --KEY VALUE for each argument
+        /// One JSON object, - to read the object from standard input, or --KEY VALUE for each argument
         #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "JSON|--KEY VALUE")]
         arguments: Vec<String>,
     },
@@ -80,7 +81,7 @@ enum AgentCommand {
 }
 
 impl Options {
-    /// Passes `--code` to the called tool. Without a study it cannot be the code of an experimenter.
+    /// Passes `--code` on to the called tool. Without a study, `--code` cannot be an experimenter's code.
     pub fn restore_code_argument(&mut self, code: String) {
         if let AgentCommand::Call { arguments, .. } = &mut self.command {
             arguments.splice(0..0, ["--code".to_owned(), code]);

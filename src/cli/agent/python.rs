@@ -8,7 +8,7 @@ use super::server::AgentRun;
 use crate::cli::Failure;
 use crate::server::RemoteServer;
 
-/// Runs python3 and passes its exit code on.
+/// Runs python3 and exits with the exit code of python3.
 pub fn run(words: &[String], agent_run: &AgentRun, remote: &RemoteServer) -> Result<(), Failure> {
     let client = agent_run.write_client()?;
     let mut command = Command::new("python3");

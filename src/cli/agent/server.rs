@@ -1,7 +1,7 @@
-//! The run of an agent and its server, which is found or started.
+//! Finds an agent's run, and finds or starts the server that plays the run.
 //!
-//! Concurrent commands take `server.lock` in the run folder while they look for a server or start one. A server is alive if its
-//! process holds the lock of the run.
+//! Concurrent commands lock `server.lock` in the run folder while they find or start a server. A server is alive if
+//! its process has locked the run.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -22,37 +22,37 @@ const LATEST_RUN_FILE: &str = "agent-run.txt";
 /// Time limit for stopping a server, which first finishes the week that it simulates.
 const STOP_DEADLINE: Duration = Duration::from_secs(120);
 
-/// Whether requests must carry a token.
+/// Whether requests must include a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Authentication {
     /// Requests need the token, which commands read from the run folder.
     Token,
-    /// Requests need no token, for clients that do not support one.
+    /// Requests need no token, for clients that do not support tokens.
     Unauthenticated,
 }
 
-/// The run of an agent.
+/// A run that an agent plays.
 #[derive(Debug, Clone)]
 pub struct AgentRun {
-    /// Run id.
+    /// Id of the agent's run.
     pub id: String,
     /// Absolute path of the run folder.
     pub folder: PathBuf,
 }
 
 impl AgentRun {
-    /// Creates a run.
+    /// Creates a run for an agent.
     ///
     /// # Errors
-    /// As `serve --new`.
+    /// The errors of `serve --new`.
     pub fn create(new: &NewRunOptions, context: &Context) -> Result<AgentRun, Failure> {
         let mut session = create_run(new, context)?;
         session.save()?;
         let folder = session.folder().map(Path::to_path_buf);
-        AgentRun::from_folder(&folder.ok_or_else(|| Failure::failed("the run was not kept"))?)
+        AgentRun::from_folder(&folder.ok_or_else(|| Failure::failed("the new run has no folder"))?)
     }
 
-    /// Finds the named run, or the last one that `agent new` created in this folder of runs.
+    /// Finds the named run, or the run that `agent new` last created in this folder of runs.
     ///
     /// # Errors
     /// There is no such run, or it belongs to a study.
@@ -61,9 +61,9 @@ impl AgentRun {
         let remembered =
             || std::fs::read_to_string(runs.join(LATEST_RUN_FILE)).ok().map(|id| id.trim().to_owned());
         let id = named.map(str::to_owned).or_else(remembered).ok_or_else(|| {
-            Failure::usage("there is no run of an agent here: create one with `novamind agent new`, or give one with --run or NOVAMIND_RUN")
+            Failure::usage("there is no agent run here: create a run with `novamind agent new`, or name a run with --run or NOVAMIND_RUN")
         })?;
-        // Usually the file answers without reading every run.
+        // If a folder has the name of the run id, the other runs need not be read.
         let path = run_folder(&runs, &id);
         let is_name = !id.is_empty() && id.chars().all(|letter| letter.is_ascii_alphanumeric());
         let folder = match is_name && path.join("run.toml").is_file() {
@@ -76,7 +76,7 @@ impl AgentRun {
 
     fn from_folder(folder: &Path) -> Result<AgentRun, Failure> {
         let folder = std::path::absolute(folder)
-            .map_err(|error| Failure::failed(format!("the working directory: {error}")))?;
+            .map_err(|error| Failure::failed(format!("cannot read the working directory: {error}")))?;
         let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         Ok(AgentRun { id, folder })
     }
@@ -104,7 +104,7 @@ impl AgentRun {
         }
     }
 
-    /// Stops the server. Returns whether one was running.
+    /// Stops the server of the run. Returns whether a server was running.
     ///
     /// # Errors
     /// The server does not stop in time.
@@ -137,7 +137,7 @@ impl AgentRun {
         Ok(client)
     }
 
-    /// Takes the lock for finding, starting or stopping a server.
+    /// Locks `server.lock` before a server is found, started or stopped.
     fn lock(&self) -> Result<File, Failure> {
         let path = self.folder.join("server.lock");
         let open = File::options().create(true).truncate(false).write(true).open(&path);
@@ -151,11 +151,11 @@ impl AgentRun {
         let runs = self.folder.parent().unwrap_or(&self.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command.arg("--runs-dir").arg(runs).args(["serve", "--run", &self.id]);
-        // The folder of runs is already that of the participant.
+        // `--runs-dir` already names the participant's folder.
         command.env_remove("NOVAMIND_PARTICIPANT").env_remove("NOVAMIND_RUNS");
         if secrecy == Authentication::Token {
             let token = self.folder.join("server.token");
-            // A process that was killed may have left it empty.
+            // A killed process may have left the token file empty.
             if std::fs::metadata(&token).is_ok_and(|file| file.len() == 0) {
                 std::fs::remove_file(&token).map_err(failed)?;
             }
@@ -163,7 +163,7 @@ impl AgentRun {
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped());
         command.stderr(File::create(&log).map_err(failed)?);
-        // A ctrl-c for the agent must not reach the server.
+        // Ctrl-c in the agent's terminal must not stop the server.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().map_err(failed)?;

@@ -1,4 +1,4 @@
-//! Benchmark cases of the console.
+//! Benchmarks of the console.
 
 use crate::console::app::Settings;
 use crate::console::benchmark;
@@ -8,7 +8,7 @@ use crate::lab::benchmark::{BenchContext, BenchError, BenchFigure, Case, Samples
 use crate::lab::play_opponents;
 use crate::tui::glyphs::Glyphs;
 
-/// Weeks whose keys are measured in each repetition: several hundred keys.
+/// Weeks per repetition in which key presses are timed, several hundred in total.
 const WEEKS: usize = 6;
 
 pub const CASES: &[Case] = &[

@@ -1,4 +1,4 @@
-//! Benchmark cases of the HTTP server, as a client experiences it.
+//! Benchmarks of the HTTP server, measured by a client.
 
 use std::sync::mpsc::channel;
 use std::time::Instant;

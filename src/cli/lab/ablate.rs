@@ -15,7 +15,7 @@ use crate::lab::experiment::{Experiment, ExperimentResults};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Policy, by name or path [default: a probe with shared development, and for the drain one with targeted development]
+    /// Policy, by name or path [default: a probe with shared development; for the drain, a probe with targeted development]
     #[arg(long, value_name = "NAME|FILE")]
     policy: Option<String>,
     /// Seed, or a range including both ends

@@ -19,13 +19,13 @@ pub struct Options {
     /// Seed, or a range including both ends
     #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
-    /// Another grid: the name of a bundled one, or the path of a file
+    /// Grid of policies: name of a bundled grid, or path of a file
     #[arg(long, default_value = PAPER_GRID, value_name = "NAME|FILE")]
     grid: String,
-    /// Scenario [default: that of the grid, otherwise default]
+    /// Scenario [default: the grid's scenario, otherwise `default`]
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Last day of the runs [default: that of the grid or scenario, otherwise 500]
+    /// Last day of the runs [default: the grid's or scenario's last day, otherwise 500]
     #[arg(long, value_name = "N")]
     days: Option<u32>,
     #[command(flatten)]
@@ -43,7 +43,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&baseline_report(&grid, is_of_the_paper, &results))
 }
 
-/// Plays the leaders first, because most other configurations turn out to be identical to one of them.
+/// Plays the leaders first, because most other configurations turn out to be identical to a leader.
 fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;

@@ -9,14 +9,14 @@ use crate::lab::behavior::{BehaviorRun, behavior_report};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Runs, or `latest` for the newest
+    /// Ids of runs, or `latest` for the newest run
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
     #[command(flatten)]
     output: OutputOptions,
 }
 
-/// Runs the command. The runs record only that they were read.
+/// Prints the behavior measures of runs. Each run records only that it was read.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let observed = map_runs(&options.runs, "behaviour", context, |session, trajectory| {
         BehaviorRun::from_session(session, &trajectory.lines)

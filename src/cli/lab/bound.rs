@@ -9,7 +9,7 @@ use crate::lab::bound::{BoundAccount, BoundAssumptions, bound_report, sensitivit
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Multiple of the minimum that is spent on targeted development: 1 to 4
+    /// Spending on targeted development, as a multiple of the minimum: 1 to 4
     #[arg(long, default_value = "3", value_name = "1..4", value_parser = parse_slack)]
     slack: u8,
     #[command(flatten)]

@@ -14,7 +14,7 @@ use crate::report::ranking::published_results;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Runs, or `latest` for the newest
+    /// Ids of runs, or `latest` for the newest run
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<String>,
     /// Print one JSON object, with the logbook of every run
@@ -23,15 +23,15 @@ pub struct Options {
     /// Print comma-separated values: one figure or day per row
     #[arg(long)]
     csv: bool,
-    /// Widest line of the text, in columns; runs are shown side by side if they fit [default: that of the terminal]
+    /// Maximum line width in columns; runs are shown side by side if they fit [default: the terminal's width]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(40..))]
     width: Option<u16>,
 }
 
-/// Columns of text that is not printed at a terminal.
+/// Line width in columns if standard output is not a terminal.
 const PAGE_WIDTH: usize = 160;
 
-/// Runs the command. Does not modify the runs.
+/// Prints a comparison of runs. Does not modify the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let compared = map_runs(&options.runs, "compare", context, |session, trajectory| {
         Logbook::new(session, &trajectory.lines, &[])

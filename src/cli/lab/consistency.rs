@@ -1,4 +1,4 @@
-//! `novamind lab consistency`: tests that policies on the same seed get the same random draws.
+//! `novamind lab consistency`: checks that policies on the same seed get the same random draws.
 
 use clap::Args;
 
@@ -13,10 +13,10 @@ pub struct Options {
     /// Seed, or a range including both ends: 1..4
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
-    /// A policy, by name or path; give two [default: two that differ in everything that is tested]
+    /// A policy, by name or path; give two [default: two policies that differ in everything that is tested]
     #[arg(long, value_name = "NAME|FILE")]
     policy: Vec<String>,
-    /// Scenario [default: as in the policies]
+    /// Scenario [default: the scenario of the policies]
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
     /// Stop after this day; the horizon does not change
@@ -50,7 +50,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     progress.finish_and_clear();
     if check.plays_alike {
         return Err(Failure::usage(
-            "the two policies make the same decisions, which tests nothing: give two that differ",
+            "the two policies make the same decisions, so nothing is tested: give two different policies",
         ));
     }
     options.output.show(&check.to_lab_report())?;

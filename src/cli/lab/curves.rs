@@ -10,7 +10,7 @@ use crate::world::identifiers::Group;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Only this group, with the variation among its customers
+    /// Draw only this group, with the variation among its customers
     #[arg(value_name = "GROUP")]
     group: Option<String>,
     #[command(flatten)]

@@ -12,13 +12,13 @@ use crate::session::Session;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// A debug run or a finished run
+    /// First run; a debug run or a finished run
     #[arg(value_name = "RUN_A")]
     one: String,
-    /// Another run
+    /// Second run; a debug run or a finished run
     #[arg(value_name = "RUN_B")]
     other: String,
-    /// Day to compare [default: the first day on which something differs]
+    /// Day to compare [default: the first day on which the runs differ]
     #[arg(value_name = "DAY")]
     day: Option<u32>,
     /// Print one JSON object
@@ -26,7 +26,7 @@ pub struct Options {
     json: bool,
 }
 
-/// Runs the command. The runs record only the inspection.
+/// Prints the differences between two runs. Only the inspection is recorded in the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs_folder()?;
     let open = |name: &str| -> Result<Session, Failure> {

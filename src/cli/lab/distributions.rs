@@ -9,7 +9,7 @@ use crate::lab::distributions::{DrawContext, WorldDraw, all_distributions_report
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Only this distribution, with its histogram
+    /// Show only this distribution, with its histogram
     #[arg(value_name = "NAME")]
     name: Option<String>,
     /// Group or R&D tier [default: the first]
@@ -41,7 +41,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn find_distribution(name: &str) -> Result<&'static WorldDraw, Failure> {
     WorldDraw::find(name).map_err(|near| {
         let help = match near.is_empty() {
-            true => "`novamind lab distributions` lists them".to_owned(),
+            true => "`novamind lab distributions` lists all distributions".to_owned(),
             false => format!("did you mean {}?", near.join(" or ")),
         };
         Failure::usage(format!("there is no distribution {name}; {help}"))
@@ -67,8 +67,8 @@ fn find_member(
         let names: Vec<&str> =
             members.iter().map(|(_, name)| name.as_str()).filter(|name| !name.is_empty()).collect();
         Failure::usage(match names.is_empty() {
-            true => format!("{} is the same for all: leave out --of", world_draw.name),
-            false => format!("--of takes one of {}", names.join(", ")),
+            true => format!("{} is the same for all groups and tiers: leave out --of", world_draw.name),
+            false => format!("--of must be one of {}", names.join(", ")),
         })
     })
 }

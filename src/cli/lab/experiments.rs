@@ -54,7 +54,7 @@ pub fn run_experiment_with_known(
     run_with_result_file(&path, experiment, &all, (options, context), add_known, every)
 }
 
-/// Conducts the numbered runs of an experiment, with results in a file.
+/// Conducts only the runs of an experiment with these numbers, and stores their results in a file.
 ///
 /// # Errors
 /// As [`run_experiment`].
@@ -104,7 +104,7 @@ pub fn stop_flag_on_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]
     for (signal, code) in [(signal_hook::consts::SIGINT, 130), (signal_hook::consts::SIGTERM, 143)] {
-        // Without a handler the signal ends the program; cached results stay.
+        // Without a handler, the signal ends the program. Cached results are kept.
         let _ = signal_hook::flag::register_conditional_shutdown(signal, code, Arc::clone(&stop));
         let _ = signal_hook::flag::register(signal, Arc::clone(&stop));
     }

@@ -16,16 +16,16 @@ use crate::session::ErrorBands;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Seeds of each policy
+    /// Seeds to play with each policy
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
-    /// Only this policy, by name or path; can be repeated [default: the bundled policies except the strong ones]
+    /// Play only this policy, by name or path; can be repeated [default: the bundled policies except the strong policies]
     #[arg(long, value_name = "NAME|FILE")]
     only: Vec<String>,
     /// Number of seeds to play in parallel
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
-    /// Measure new intervals and write them to this file, instead of testing the bundled ones
+    /// Measure new intervals and write them to this file, instead of testing the bundled intervals
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
 }
@@ -46,7 +46,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns every run, in the order of policies and seeds.
+/// Plays each policy on each seed. Returns the runs in the order of policies and seeds.
 fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
     let names: Vec<String> = match options.only.is_empty() {
         true => {
@@ -75,7 +75,7 @@ fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, F
     Ok(runs?)
 }
 
-/// Returns the coverage by policy and horizon.
+/// Returns a table of the coverage by policy and horizon.
 fn coverage_table(runs: &[PlayedWeeks], horizons: &[u32], bands: &ErrorBands) -> String {
     let row = |name: &str, policy: Option<&str>| {
         let cells = horizons.iter().map(|horizon| {

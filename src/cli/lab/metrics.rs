@@ -1,4 +1,4 @@
-//! `novamind lab metrics`: prints all figures of a run day by day, hidden ones included.
+//! `novamind lab metrics`: prints all figures of a run day by day, including hidden figures.
 
 use clap::Args;
 
@@ -10,12 +10,12 @@ use crate::record::folder::runs::find_run_to_read;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest` for the newest; must be a debug run or a finished run
+    /// Id of the run, or `latest` for the newest run; must be a debug run or a finished run
     #[arg(value_name = "RUN")]
     run: String,
 }
 
-/// Runs the command. The run records only the inspection.
+/// Prints the figures of a run. Only the inspection is recorded in the run.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     context.check_view_allowed(&folder)?;

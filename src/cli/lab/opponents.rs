@@ -1,4 +1,4 @@
-//! `novamind lab opponents`: plays the strong policies in the world of a run.
+//! `novamind lab opponents`: plays the strong policies with the seed and parameters of a run.
 
 use clap::Args;
 use serde_json::json;
@@ -14,7 +14,7 @@ use crate::session::Session;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Run, or `latest` for the newest; must be a debug run or a finished run
+    /// Id of the run, or `latest` for the newest run; must be a debug run or a finished run
     #[arg(value_name = "RUN")]
     run: String,
     /// Print as JSON
@@ -22,7 +22,7 @@ pub struct Options {
     json: bool,
 }
 
-/// Runs the command. Does not modify the run.
+/// Prints the scores of the policies next to the run. Does not modify the run.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     context.check_view_allowed(&folder)?;
@@ -42,14 +42,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     print(&to_text(&opponents, &run))
 }
 
-/// Formats the policies and the run itself, the best first.
+/// Formats the scores of the policies and of the run, highest first.
 fn to_text(opponents: &OpponentResults, run: &Session) -> String {
     let policy = |opponent_result: &OpponentResult| {
         (opponent_result.score(), opponent_result.policy.clone(), describe_opponent_end(opponent_result))
     };
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
-    // Cash on another day is not a score.
+    // Only cash after the last day is a score.
     let not_over = match run.score() {
         Some(score) => {
             places.push((score, name, describe_end(run.ended() == Some(RunEndReason::Bankruptcy), day)));
@@ -63,7 +63,7 @@ fn to_text(opponents: &OpponentResults, run: &Session) -> String {
     let row =
         |(score, name, ended): &(f64, String, String)| vec![name.clone(), dollars(*score), ended.clone()];
     let rows: Vec<Vec<String>> = places.iter().map(row).collect();
-    let headers = ["policy", "score", "how it ended"].map(str::to_owned);
+    let headers = ["policy", "score", "end of the run"].map(str::to_owned);
     format!("{}\n\n{}{not_over}", opponents.describe(), align_columns(&headers, &rows))
 }
 

@@ -25,18 +25,18 @@ pub struct OutputOptions {
     /// Also draw the graphs to this file
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Widest line of the text, in columns [default: that of the terminal, at most 100]
+    /// Maximum line width in columns [default: the terminal's width, at most 100]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(40..))]
     width: Option<u16>,
 }
 
 impl OutputOptions {
-    /// Returns whether rows are printed, for commands that print rows unless JSON or a drawing is chosen.
+    /// Returns whether to print rows, for commands that print rows unless JSON or a graph is requested.
     pub fn wants_rows(&self) -> bool {
         !self.json && self.svg.is_none()
     }
 
-    /// Rejects `--svg` for commands that draw nothing, before they play.
+    /// Rejects `--svg` for commands that draw no graph, before any run is played.
     ///
     /// # Errors
     /// `--svg` is given.
@@ -47,15 +47,15 @@ impl OutputOptions {
         }
     }
 
-    /// Returns the file for the graphs, if one is given.
+    /// Returns the path given with `--svg`.
     pub fn graph_file(&self) -> Option<&Path> {
         self.svg.as_deref()
     }
 
-    /// Writes a report in the chosen form.
+    /// Prints a report in the chosen output format.
     ///
     /// # Errors
-    /// There is no such table or no graph, or the file or standard output cannot be written.
+    /// The report does not have the requested table or graph, or the file or standard output cannot be written.
     pub fn show(&self, exhibit: &LabReport) -> Result<(), Failure> {
         if let Some(path) = &self.svg {
             let drawn = exhibit
@@ -75,7 +75,7 @@ impl OutputOptions {
         };
         let Some(table) = table else {
             let names: Vec<&str> = exhibit.tables.iter().map(|table| table.name.as_str()).collect();
-            return Err(Failure::usage(format!("--table takes one of {}", names.join(", "))));
+            return Err(Failure::usage(format!("--table must be one of {}", names.join(", "))));
         };
         print(&to_csv(&table.to_csv_rows())?)
     }
@@ -87,7 +87,7 @@ impl OutputOptions {
     }
 }
 
-/// Returns the columns of the terminal, or `None` if standard output is not one.
+/// Returns the width of the terminal in columns, or `None` if standard output is not a terminal.
 pub fn terminal_columns() -> Option<usize> {
     let size = std::io::stdout().is_terminal().then(crossterm::terminal::size)?;
     size.ok().map(|(columns, _)| usize::from(columns))

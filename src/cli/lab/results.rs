@@ -29,16 +29,16 @@ pub struct Options {
 /// The criterion by which runs are grouped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum GroupBy {
-    /// By participant; policies count under their names
+    /// Group by participant; a policy's runs are grouped under its name
     Participant,
-    /// By policy; runs of people are left out
+    /// Group by policy; runs of people are left out
     Policy,
 }
 
-/// Runs the command. Does not modify the runs.
+/// Prints the results table. Does not modify the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs_folder()?;
-    // A participant with a separate folder sees only that folder.
+    // If a participant is given, the table contains only runs in the participant's folder.
     let folders = match context.participant {
         Some(_) => vec![runs],
         None => all_run_folders(&runs),
@@ -54,11 +54,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let (mut results, mut closed, mut unreadable) = (Vec::new(), 0, Vec::new());
     for (folder, summary) in comparable {
         match context.check_view_allowed(folder) {
-            // A damaged run does not prevent the table of the others.
+            // A damaged run is reported below the table of the other runs.
             Ok(()) => match read_result(folder) {
                 Ok(None) => {}
                 Ok(Some(result)) => {
-                    // The list knows only the last weeks; someone may have played before the policy did.
+                    // The summary covers only the last weeks. A person may have played the weeks before the policy.
                     let run_summary = RunSummary { policy: result.policy.clone(), ..summary.clone() };
                     let obstacles = RankingCriteria::from_summary(&run_summary).obstacles();
                     if obstacles.is_empty() { results.push(result) } else { left_out.push(obstacles) }
@@ -80,7 +80,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if closed > 0 {
         exhibit.notes.push(format!("Left out because their study hides results: {closed}."));
     }
-    exhibit.notes.extend(unreadable.iter().map(|why| format!("Left out because it cannot be read: {why}.")));
+    exhibit
+        .notes
+        .extend(unreadable.iter().map(|why| format!("Left out because the run cannot be read: {why}.")));
     options.output.show(&exhibit)
 }
 
@@ -88,7 +90,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut finished = Vec::new();
     for folder in folders {
-        // A copied folder contains the same run again.
+        // Copies of a run are left out.
         let is_over = |run: &RunSummary| {
             run.problem.is_none()
                 && run.copy_of.is_none()

@@ -9,7 +9,7 @@ use crate::record::folder::runs::find_run_to_read;
 use crate::record::trajectory::Trajectory;
 use crate::session::Session;
 
-/// Reads each named run with `read`, and records with the run that it was read.
+/// Reads each named run with `read`. Each run records that it was read.
 ///
 /// # Errors
 /// A run is missing, damaged, not accessible, or named twice.

@@ -24,13 +24,14 @@ pub struct Options {
     /// Write a row for each run and day instead of each run
     #[arg(long)]
     daily: bool,
-    /// Play only this part, for example 2/4; all parts together are the study
+    /// Play only this shard, for example 2/4; all shards together are the study
     #[arg(long, value_name = "I/N", value_parser = parse_shard, requires = "out", conflicts_with_all = ["json", "csv", "svg"])]
     shard: Option<Shard>,
-    /// File for the rows; the terminal then shows the arms [default: standard output]. With --shard, the folder of all shards
+    /// File for the rows; the terminal then shows a summary of the arms [default: standard output]. With --shard,
+    /// folder of all shards
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
-    /// Show the runs that would be played, and play nothing
+    /// Show the runs that would be played, without playing them
     #[arg(long, conflicts_with_all = ["shard", "out", "json", "csv", "svg"])]
     check: bool,
     #[command(flatten)]
@@ -41,7 +42,7 @@ pub struct Options {
 
 #[derive(Debug, Args)]
 pub struct MergeOptions {
-    /// Shards of one study, or folders of them
+    /// Shards of one study, or folders that contain shards
     #[arg(required = true, value_name = "DIR|FILE")]
     shards: Vec<PathBuf>,
     /// File for the rows [default: standard output]
@@ -67,7 +68,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let digest = plan.digest(&context.configuration)?;
     let part = options.shard.unwrap_or(Shard { shard: 1, of: 1 });
     if let (Some(_), Some(folder)) = (options.shard, &options.out) {
-        // Report an unwritable folder before hours of play, not after them.
+        // Report an unwritable folder now rather than after hours of play.
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
     }
@@ -78,7 +79,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     for (number, result) in numbers.iter().zip(&results) {
         text += &to_csv(&rows(&plan, *number, result))?;
     }
-    let kept = "the finished runs are saved, and the same command continues";
+    let kept = "the finished runs are saved; repeat the command to continue";
     match (&options.out, options.shard) {
         (None, _) if options.output.wants_rows() => {
             warn(&equal_outcome_warnings(&plan, &results));
@@ -117,13 +118,14 @@ fn check_output_paths(options: &Options) -> Result<(), Failure> {
     }
     match (&options.out, graphs) {
         (Some(rows), Some(graphs)) if is_same_file(rows, graphs) => {
-            Err(Failure::usage("--out and --svg name the same file: one would overwrite the other"))
+            Err(Failure::usage("--out and --svg name the same file: give two different files"))
         }
         _ => Ok(()),
     }
 }
 
-/// Returns the file for results of a study or shard. Each program that may write at the same time has its own file.
+/// Returns the path of the file that caches the results of a study or shard. Programs that run at the same time on
+/// different shards use different files.
 fn results_file(
     context: &Context,
     plan: &StudyPlan,

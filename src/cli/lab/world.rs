@@ -1,4 +1,4 @@
-//! Parameters for commands that play nothing.
+//! Options that select parameters, for commands that do not play a run.
 
 use clap::Args;
 
@@ -19,10 +19,10 @@ pub struct WorldOptions {
 }
 
 impl WorldOptions {
-    /// Returns the parameters.
+    /// Returns the parameters of the scenario with the given overrides.
     ///
     /// # Errors
-    /// There is no such scenario, or a parameter is invalid.
+    /// The scenario does not exist, or a parameter is invalid.
     pub fn params(&self, context: &Context) -> Result<Params, Failure> {
         self.days_and_params(context).map(|(_, params)| params)
     }

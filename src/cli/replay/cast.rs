@@ -19,11 +19,11 @@ use crate::tui::asciicast::Asciicast;
 use crate::tui::glyphs::Glyphs;
 use crate::worker::request::RecordSource;
 
-/// Duration of the frame after an action and after a week, at speed 1.
+/// Display time of the frame after an action, at speed 1.
 const ACTION_FRAME_TIME: Duration = Duration::from_millis(700);
 const WEEK_FRAME_TIME: Duration = Duration::from_millis(2500);
 
-/// Options of a recording.
+/// Options of a recorded replay.
 #[derive(Debug, Args)]
 pub struct RecordingOptions {
     /// With --cast: speed factor from 0.1 to 100
@@ -42,7 +42,7 @@ fn parse_speed(text: &str) -> Result<f64, String> {
     speed.ok_or_else(|| "the speed must be from 0.1 to 100".to_owned())
 }
 
-/// Records the weeks of a replay to a file: one week, a range, or all.
+/// Records one week, a range of weeks, or all weeks of a replay to a file.
 pub fn record_cast(
     file: &Path,
     recorded: RecordSource,
@@ -73,7 +73,7 @@ pub fn record_cast(
     print(&format!("{}: {frames} frames\n", file.display()))
 }
 
-/// Returns the recording and its number of frames.
+/// Returns the recording and the number of frames in the recording.
 fn render_cast(
     console: &mut Headless,
     recorded: RecordSource,

@@ -16,7 +16,7 @@ use crate::report::transcript::{
 /// Format of an exported run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ExportFormat {
-    /// A sealed archive with everything, to be verified and imported
+    /// A sealed archive of the complete run, which can be verified and imported
     Archive,
     /// The decisions as a plain-mode script and as a Python program for the client: play.txt and play.py in a folder
     Script,
@@ -26,7 +26,7 @@ pub enum ExportFormat {
     Inspect,
 }
 
-/// Writes the run of a folder in a format. Never replaces an existing file.
+/// Exports the run in a folder. Never replaces an existing file.
 pub fn write_export(
     folder: &Path,
     format: ExportFormat,
@@ -91,7 +91,7 @@ fn has_extension(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
-/// Returns the page that the player of the run received.
+/// Returns the instructions and tools that the agent of the run received.
 #[cfg(feature = "server")]
 fn export_context(run: &Transcript) -> AgentContext {
     let of = crate::server::PageContext {
@@ -105,7 +105,7 @@ fn export_context(run: &Transcript) -> AgentContext {
     }
 }
 
-/// Returns only the list of tools, because the page is part of the server.
+/// Returns only the list of tools, because the instructions are compiled with the server.
 #[cfg(not(feature = "server"))]
 fn export_context(_: &Transcript) -> AgentContext {
     AgentContext { instructions: crate::tools::catalogue::list_by_module(), tools: Vec::new() }

@@ -27,11 +27,12 @@ use crate::session::{abandon_run, recover};
 pub struct Options {
     #[command(subcommand)]
     command: Option<RunsCommand>,
-    /// Only runs of this participant
+    /// List only runs of this participant
     #[arg(long, value_name = "LABEL")]
     participant: Option<String>,
     /// Print as JSON
-    // A separate name is needed because `play`, whose options may precede a command, has an option `json`, too.
+    // The argument needs a separate name, because options of `play` may precede a command, and `play` also has an
+    // option `json`.
     #[arg(id = "runs_json", long = "json", global = true)]
     json: bool,
 }
@@ -40,40 +41,40 @@ pub struct Options {
 enum RunsCommand {
     /// List the runs, the last played first; `runs` alone does the same
     List {
-        /// Only runs of this participant
+        /// List only runs of this participant
         #[arg(long, value_name = "LABEL")]
         participant: Option<String>,
     },
     /// Show the settings and the progress of a run
     Show {
-        /// Run, or `latest` for the newest
+        /// Id of the run, or `latest` for the newest run
         run: String,
     },
     /// Print the folder of a run
     Path {
-        /// Run, or `latest` for the newest
+        /// Id of the run, or `latest` for the newest run
         run: String,
     },
     /// End an unfinished run permanently
     End {
-        /// Run, or `latest` for the newest unfinished one
+        /// Id of the run, or `latest` for the newest unfinished run
         run: String,
     },
-    /// Recover the undamaged prefix of a run as a new branch; the run itself does not change
+    /// Recover the undamaged prefix of a run as a new branch; the damaged run does not change
     #[command(name = "recover", alias = "rescue")]
     Rescue {
-        /// Run
+        /// Damaged run
         run: String,
     },
     /// Delete a run with all its files
     Delete {
-        /// Run
+        /// Run to delete
         run: String,
         /// Confirm the deletion
         #[arg(long)]
         yes: bool,
     },
-    /// Export a run to a sealed archive, or all runs with tables of runs and weeks
+    /// Export a run to a sealed archive, or all runs together with tables of their data
     Export(transfer::Export),
     /// Import the run of an archive after verifying every byte, or play an external transcript
     Import(transfer::Import),
@@ -87,7 +88,7 @@ const SCHEMA: &str = include_str!("../../../assets/trajectory.schema.json");
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs_folder()?;
-    // With a label, only the runs of that participant; without one, all runs.
+    // With a label, list only the runs of that participant. Without a label, list all runs.
     let folders = match context.participant {
         Some(_) => vec![runs.clone()],
         None => all_run_folders(&runs),
@@ -133,7 +134,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Prints the summary of a run; as JSON with its score and the hash of its last recorded state.
+/// Prints the summary of a run. The JSON output also contains the score and the last recorded state hash.
 fn print_run(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
     let folder = find_run_in(folders, run)?;
     let text = read_manifest_text(&folder)?;
@@ -141,7 +142,7 @@ fn print_run(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> 
     let summary = list_all(folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
     if json {
         let mut shown = serde_json::to_value(&summary).unwrap_or_default();
-        // The summary reports the damage of a trajectory that cannot be read.
+        // If the trajectory cannot be read, the summary reports the damage.
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).ok();
         let lines = trajectory.iter().flat_map(|trajectory| trajectory.lines.iter().rev());
         let mut hashes = lines.filter_map(|line| match &line.record {
@@ -164,7 +165,7 @@ fn print_run(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> 
     ))
 }
 
-/// Returns every run of the folders, with its folder.
+/// Returns the folder and the summary of every run in the folders.
 pub(super) fn list_all(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut all = Vec::new();
     for folder in folders {
@@ -179,11 +180,11 @@ fn run_id(folder: &Path) -> String {
     folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Finds the folder of a run in several folders of runs.
+/// Searches several folders of runs for a run, and returns the folder of the run.
 pub(super) fn find_run_in(folders: &[PathBuf], run: &str) -> Result<PathBuf, Failure> {
     let mut found = folders.iter().map(|folder| find_run_to_read(folder, run));
     let first = found.next().ok_or_else(|| Failure::usage("there is no folder of runs"))?;
-    // The error for the first folder is the most useful one.
+    // If no folder contains the run, the error for the first folder is the most useful.
     first.or_else(|error| found.find_map(Result::ok).ok_or(error)).map_err(Failure::from)
 }
 

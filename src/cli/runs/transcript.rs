@@ -10,17 +10,19 @@ use crate::report::pluralize;
 use crate::server::ForeignTranscript;
 use crate::session::{NewRun, Session};
 
-/// Largest transcript in bytes; 500 days of an agent take a few megabytes.
+/// Maximum size of a transcript in bytes; a transcript of 500 days has a few megabytes.
 const MAX_TRANSCRIPT_BYTES: u64 = 512 << 20;
-/// Largest number of differing answers that are listed.
+/// Maximum number of listed tool results that differ from the transcript.
 const MAX_LISTED_MISMATCHES: usize = 10;
 
-/// Plays a transcript in a new run. The transcript supplies the settings that the options do not.
+/// Plays a transcript in a new run. Settings that the options leave out are read from the transcript.
 pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context) -> Result<(), Failure> {
     let named = |why: String| Failure::failed(format!("{}: {why}", file.display()));
     let length = std::fs::metadata(file).map_err(|error| named(error.to_string()))?.len();
     if length > MAX_TRANSCRIPT_BYTES {
-        return Err(named(format!("it has {length} bytes; a transcript has at most {MAX_TRANSCRIPT_BYTES}")));
+        return Err(named(format!(
+            "the file has {length} bytes; a transcript has at most {MAX_TRANSCRIPT_BYTES}"
+        )));
     }
     let bytes = std::fs::read(file).map_err(|error| named(error.to_string()))?;
     let read = ForeignTranscript::read(&bytes).map_err(named)?;
@@ -36,7 +38,7 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
         ..new_run
     };
     if new.seed.is_none() {
-        return Err(Failure::usage("the transcript has no seed: give it with --seed"));
+        return Err(Failure::usage("the transcript has no seed: give the seed with --seed"));
     }
     let mut session = Session::create(new, &context.configuration)?;
     let bar = progress_bar(read.calls.len() as u64, "calls");

@@ -28,20 +28,20 @@ use novamind_study::{FoundVisit, VISITS_FILE, read_visits};
 
 #[derive(Debug, Args)]
 pub struct Export {
-    /// Run, or `latest` for the newest
+    /// Id of the run, or `latest` for the newest run
     #[arg(required_unless_present = "all", conflicts_with = "all")]
     run: Option<String>,
     /// Export all runs, with tables of runs, weeks, forecasts, queries, events, answers and notes
     #[arg(long)]
     all: bool,
-    /// With --all: only runs of this participant
+    /// With --all: export only runs of this participant
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
-    /// Archive file, compressed if its name ends in .gz or .tgz; a folder with --all or --format script; a .json file or a folder with
-    /// --format inspect, which chooses the file name that Inspect expects
+    /// Archive file, compressed if the name ends in .gz or .tgz. A folder with --all or --format script. A .json file
+    /// or a folder with --format inspect; in a folder, the file gets the name that Inspect expects
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
-    /// Format: the sealed archive, or a format of other programs
+    /// Format: a sealed archive, or a format of another program
     #[arg(long, value_enum, default_value = "archive", conflicts_with_all = ["all", "lab_key"])]
     format: ExportFormat,
     /// Sign the archives with this lab key [default: lab.key in the folder of the study, if it exists]
@@ -55,11 +55,11 @@ pub struct Import {
     #[cfg_attr(feature = "server", arg(required_unless_present = "transcript"))]
     #[cfg_attr(not(feature = "server"), arg(required = true))]
     files: Vec<PathBuf>,
-    /// Import one archive under this name, next to another record of the same run
+    /// Import one archive under this name, next to an existing record of the same run
     #[arg(long, value_name = "NAME")]
     under: Option<String>,
-    /// Play an external transcript in a new run: a trajectory in the Agent Trajectory Interchange Format, an Inspect log (.eval or
-    /// .json), or JSON lines with a tool and its args
+    /// Play an external transcript in a new run: a trajectory in the Agent Trajectory Interchange Format, an Inspect
+    /// log (.eval or .json), or JSON lines with the keys tool and args
     #[cfg(feature = "server")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "under"])]
     transcript: Option<PathBuf>,
@@ -77,7 +77,7 @@ impl Export {
             return formats::write_export(&find_run_in(folders, run)?, self.format, &self.out, context);
         }
         remove_partial_files_on_signals();
-        // Checked before the run is simulated again.
+        // Report an unreadable key before the run is simulated again.
         let keys = (context.lab_key(self.lab_key.as_deref())?, context.seal_key()?);
         match &self.run {
             Some(run) => self.export_one(&find_run_in(folders, run)?, &keys, json),
@@ -88,7 +88,7 @@ impl Export {
     fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
         let parent = parent_folder(&self.out);
         if self.out.exists() {
-            // Reported before the run is simulated again, not after it.
+            // Report an existing file before the run is simulated again.
             let message = format!("{} already exists: choose another name, or remove it", self.out.display());
             return Err(Failure::failed(message));
         }
@@ -167,7 +167,7 @@ impl Export {
             None => Ok(()),
             Some(code) => {
                 let message = format!(
-                    "{} of {} runs could not be exported; the others are complete",
+                    "{} of {} runs could not be exported; all other runs are complete",
                     list.len() - good,
                     list.len()
                 );
@@ -176,7 +176,7 @@ impl Export {
         }
     }
 
-    /// Exports one of many runs. Replaces an older archive of it, because trajectories only grow.
+    /// Exports one run of many. Replaces an older archive of the run, because trajectories only grow.
     fn export_into(
         &self,
         folder: &Path,
@@ -190,7 +190,7 @@ impl Export {
     }
 }
 
-/// Returns the visit records in the folders of runs, of one label if given.
+/// Returns the visit records in the folders of runs. If a label is given, returns only the records of this label.
 fn find_visits(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
     let of_folder = |folder: &PathBuf| {
         let lines = read_visits(&folder.join(VISITS_FILE)).into_iter();
@@ -210,7 +210,7 @@ pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes incomplete archives when a signal ends the program, so that no hidden data is left on the target medium.
+/// Removes incomplete archives when a signal ends the program, because they may contain hidden data.
 pub fn remove_partial_files_on_signals() {
     #[cfg(unix)]
     {
@@ -226,7 +226,7 @@ pub fn remove_partial_files_on_signals() {
     }
 }
 
-/// Formats rows as comma-separated values. Texts are escaped so that no program reads them as formulas or commands.
+/// Formats rows as comma-separated values. Text is escaped so that spreadsheets do not interpret it as formulas or commands.
 pub fn to_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
     let wrong = |error: String| Failure::failed(format!("cannot write the table as CSV: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -239,7 +239,7 @@ pub fn to_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|error| wrong(error.to_string()))
 }
 
-/// Prints the meaning of every column.
+/// Prints the description of every exported column.
 pub fn explain_columns(json: bool) -> Result<(), Failure> {
     if json {
         let all: serde_json::Map<String, Value> =
@@ -280,7 +280,7 @@ fn export_to_json(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -
 }
 
 impl Import {
-    /// Imports the archives. A failure does not prevent the import of the others.
+    /// Imports the archives. If an archive fails, the remaining archives are still imported.
     pub fn run(&self, runs: &Path, json: bool, context: &Context) -> Result<(), Failure> {
         remove_partial_files_on_signals();
         #[cfg(feature = "server")]
@@ -334,7 +334,7 @@ impl Import {
         };
         let Some(log) = self.files.iter().find(is_log) else { return Ok(()) };
         Err(Failure::usage(format!(
-            "{} is not an archive of a run. To play the calls of a log or trajectory in a new run, use `novamind runs import --transcript {}`. \
+            "{} is not an archive of a run. To play the tool calls of a log or trajectory in a new run, use `novamind runs import --transcript {}`. \
              Nothing was imported",
             log.display(),
             shell_quoted(log)

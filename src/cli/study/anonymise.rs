@@ -20,14 +20,14 @@ pub struct Options {
     /// New folder for the anonymous tables
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// File with the secret that determines new names, created if it does not exist; the table of old and new names is written next
-    /// to it. Keep both
+    /// File with the secret that determines new names; a missing file is created. The table of old and new names is
+    /// written next to this file. Keep both files
     #[arg(long, value_name = "FILE")]
     secret: PathBuf,
-    /// Leave out the lengths of texts that people wrote
+    /// Leave out columns with the lengths of texts that people wrote
     #[arg(long)]
     mask: bool,
-    /// Further columns to leave out of every table, for example `seed,condition`
+    /// More columns to leave out of every table, for example `seed,condition`
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',')]
     without: Vec<String>,
 }
@@ -51,8 +51,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let failed =
         |path: &Path, error: &std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     if options.out.exists() {
-        let message =
-            format!("{} already exists: files in it could be given away by mistake", options.out.display());
+        let message = format!(
+            "{} already exists: its files could be published by mistake; give a new folder with --out",
+            options.out.display()
+        );
         return Err(Failure::failed(message));
     }
     std::fs::create_dir_all(&options.out).map_err(|error| failed(&options.out, &error))?;
@@ -73,7 +75,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         cells.map(Clone::clone).to_vec()
     }));
     let text = to_csv(&rows)?;
-    // It identifies participants, as the secret does.
+    // The table of old and new names identifies participants, as the secret does.
     let _ = std::fs::remove_file(&links_path);
     create_private_file(&links_path)
         .and_then(|mut file| file.write_all(text.as_bytes()))
@@ -101,7 +103,7 @@ fn read_table(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
     Ok((name.to_owned(), rows.collect::<Result<Vec<_>, Failure>>()?))
 }
 
-/// Reads the secret of a file, 64 hexadecimal digits, or creates it.
+/// Reads the secret of 64 hexadecimal digits from a file, or creates the file with a new secret.
 fn read_or_create_secret(path: &Path) -> Result<[u8; 32], Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     match std::fs::read_to_string(path) {

@@ -1,4 +1,4 @@
-//! `novamind study assign`: writes `assignment.csv`.
+//! `novamind study assign`: assigns participants to conditions and writes `assignment.csv`.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub struct Options {
     /// Prefix of the labels
     #[arg(long, value_name = "TEXT", default_value = "P")]
     prefix: String,
-    /// Seed of the randomization; equal seeds give equal assignments [default: that of study.toml, otherwise 1]
+    /// Seed of the randomization; equal seeds give equal assignments [default: the seed in study.toml, otherwise 1]
     #[arg(long, value_name = "N")]
     draw: Option<u64>,
 }
@@ -42,7 +42,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             )));
         }
         (Some(_), None) => {
-            return Err(Failure::usage("there is no assignment yet: create one with --participants N"));
+            return Err(Failure::usage(
+                "there is no assignment yet: create an assignment with --participants N",
+            ));
         }
         (add, there) => (there, add.or(options.participants).unwrap_or_default()),
     };
@@ -60,7 +62,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let csv = made.to_csv();
     Assignment::parse(&target.display().to_string(), csv.as_bytes()).map_err(RunError::from)?;
-    // The file is replaced atomically, because participants may start meanwhile.
+    // The file is replaced atomically, because participants may start a session at the same time.
     write_atomically(&target, csv.as_bytes())?;
     print(&format!(
         "{}: {} participants in blocks of {cells}, drawn with seed {draw}\n{}{}",
@@ -87,7 +89,7 @@ fn randomization_seed(options: &Options, protocol: &Protocol) -> Result<u64, Fai
     }
 }
 
-/// Returns the existing labels and `more` new ones with consecutive numbers.
+/// Returns the existing labels and `more` new labels with consecutive numbers.
 fn new_labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
     let known: Vec<String> =
         there.iter().flat_map(|assignment| assignment.rows.iter().map(|place| place.label.clone())).collect();

@@ -16,7 +16,7 @@ pub struct Options {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Folders of runs of its machines, or copies of them [default: that of this machine]
+    /// Folders of runs of the study's machines, or copies of these folders [default: this machine's folder of runs]
     #[arg(value_name = "RUNS")]
     machines: Vec<PathBuf>,
     /// Print one JSON object
@@ -24,7 +24,7 @@ pub struct Options {
     json: bool,
 }
 
-/// Runs the command. Fails with exit code 1 if there are findings.
+/// Prints the audit of a study. Fails with exit code 1 if the audit has findings.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = read_study(&options.folder)?;
     let machines = context.machine_folders(&options.machines)?;
@@ -32,7 +32,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     if options.json {
         print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;
     } else {
-        // Labels and records of others may contain control characters.
+        // Labels and records from other machines may contain control characters.
         print(&escape_control_characters(&describe_audit(&study, &audit)))?;
     }
     match audit.findings.len() {
@@ -69,7 +69,7 @@ fn finding_line(finding: &AuditFinding) -> String {
     format!("{place}{}\n  {}\n", finding.kind.title(), finding.words)
 }
 
-/// Returns the runs as a table.
+/// Returns a table with one row of facts per run.
 fn facts_table(runs: &[RunFacts]) -> QueryResult {
     let columns = [
         "participant",

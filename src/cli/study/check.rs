@@ -36,14 +36,16 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
     report_failures(&points)
 }
 
-/// Describes the keys of the study. A damaged key has already failed the reading of the study.
+/// Describes the keys of the study. Damaged keys need no check, because a study with a damaged key cannot be read.
 fn describe_keys(folder: &Path) -> &'static str {
     let is_here = |file: &str| folder.join(file).exists();
     match (is_here(SEAL_KEY_FILE), is_here(LAB_KEY_FILE)) {
         (true, false) => "seal.key seals snapshots",
-        (true, true) => "seal.key seals snapshots; lab.key is here: keep it off the machines of participants",
-        (false, true) => "no seal.key; lab.key is here: create the other with `novamind study key`",
-        (false, false) => "none: snapshots are sealed without a study key, archives are not signed",
+        (true, true) => {
+            "seal.key seals snapshots; lab.key is here: keep lab.key off the machines of participants"
+        }
+        (false, true) => "no seal.key; lab.key is here: create seal.key with `novamind study key`",
+        (false, false) => "no keys: snapshots are sealed without a study key, archives are not signed",
     }
 }
 

@@ -1,4 +1,4 @@
-//! `novamind study code`: prints the line that requires an experimenter's code.
+//! `novamind study code`: prints the line of study.toml that requires an experimenter's code.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 
@@ -10,7 +10,7 @@ use novamind_study::CodeDigest;
 
 const MIN_CODE_CHARACTERS: usize = 4;
 
-/// Reads a code and prints its digest. At a terminal, the code is typed twice and not shown.
+/// Reads a code and prints the digest of the code. At a terminal, the code is typed twice and not shown.
 pub fn run() -> Result<(), Failure> {
     let code = if io::stdin().is_terminal() { read_code_twice()? } else { read_first_line()? };
     let moment = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
@@ -42,7 +42,7 @@ fn read_code_twice() -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Reads a line at the terminal without showing it.
+/// Reads a line at the terminal without showing the typed characters.
 fn prompt_hidden(question: &str) -> Result<String, Failure> {
     let failed = |error: io::Error| Failure::failed(error.to_string());
     eprint!("{question}");
@@ -54,7 +54,7 @@ fn prompt_hidden(question: &str) -> Result<String, Failure> {
     typed.map_err(failed)?.ok_or_else(|| Failure::signal(2))
 }
 
-/// Returns the keys before Enter, or `None` after ctrl-c, ctrl-d or Escape.
+/// Returns the characters typed before Enter, or `None` after ctrl-c, ctrl-d or Escape.
 fn read_hidden_line() -> io::Result<Option<String>> {
     let mut line = String::new();
     loop {

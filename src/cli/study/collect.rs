@@ -17,7 +17,7 @@ use novamind_study::{CollectNote, load_lab_key, load_lab_public_key, load_seal_k
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folders of runs of the machines, copies of them, and archives; subfolders are searched, too
+    /// Folders of runs of the machines, copies of these folders, and archives; subfolders are searched, too
     #[arg(value_name = "FOLDER", required = true)]
     sources: Vec<PathBuf>,
     /// Folder for archives, tables and collect.log
@@ -26,7 +26,7 @@ pub struct Options {
     /// Study whose assignment lists the expected participants
     #[arg(long, value_name = "DIR")]
     protocol: Option<PathBuf>,
-    /// CSV with the columns run and participant: labels that replace those of the runs
+    /// CSV with the columns run and participant: labels that replace the labels of the runs
     #[arg(long, value_name = "FILE")]
     labels: Option<PathBuf>,
     /// Print one JSON object
@@ -34,7 +34,7 @@ pub struct Options {
     json: bool,
 }
 
-/// Runs the command. Fails with exit code 1 if notes need attention.
+/// Collects the runs of a study. Fails with exit code 1 if notes need attention.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     remove_partial_files_on_signals();
     let study = options.protocol.as_deref().map(read_study).transpose()?;
@@ -88,7 +88,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Reads new labels by run.
+/// Reads the CSV file of `--labels` and returns the new labels by run.
 fn read_labels(path: &Path) -> Result<BTreeMap<String, String>, Failure> {
     let wrong = |problem: String| Failure::usage(format!("{}: {problem}", path.display()));
     let mut reader = csv::Reader::from_path(path).map_err(|error| wrong(error.to_string()))?;

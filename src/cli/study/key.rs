@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::cli::{Failure, print};
 use novamind_study::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, make_keys};
 
-/// Creates the missing keys and explains them.
+/// Creates the missing keys and explains how to use each key.
 pub fn run(folder: &Path) -> Result<(), Failure> {
     Study::load(folder)?;
     let (public, written) = make_keys(folder)?;

@@ -1,4 +1,4 @@
-//! `novamind study`: commands of an experimenter.
+//! `novamind study`: commands for experimenters.
 
 mod anonymise;
 mod assign;
@@ -41,7 +41,7 @@ enum StudyCommand {
     /// Write the tables of a study without data that identifies participants
     #[command(name = "anonymize", alias = "anonymise")]
     Anonymise(anonymise::Options),
-    /// Collect the runs of all machines, each once and verified, with their tables
+    /// Collect the runs of all machines without duplicates, verify them, and write their tables
     Collect(collect::Options),
     /// Watch the sessions in progress
     Watch(watch::Options),
@@ -51,7 +51,7 @@ enum StudyCommand {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
-    /// Create the keys of a study: lab.key signs archives, lab.pub verifies signatures, seal.key seals snapshots
+    /// Create the keys of a study: lab.key signs archives, lab.pub verifies signatures, and seal.key seals snapshots
     Key {
         /// Folder of the study
         #[arg(value_name = "DIR")]

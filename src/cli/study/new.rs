@@ -13,10 +13,10 @@ static TEMPLATE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/assets/study");
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder to write
+    /// Folder to create
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Name of the study: letters, digits and hyphens [default: that of the folder]
+    /// Name of the study: letters, digits and hyphens [default: the name of the folder]
     #[arg(long)]
     name: Option<String>,
 }

@@ -24,10 +24,10 @@ pub struct Options {
     /// Folder of the study
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Folders of runs [default: that of this machine]
+    /// Folders of runs [default: this machine's folder of runs]
     #[arg(value_name = "RUNS")]
     machines: Vec<PathBuf>,
-    /// Print once and exit
+    /// Print the sessions once and exit
     #[arg(long)]
     once: bool,
     /// Print one JSON object per session and exit
@@ -38,7 +38,7 @@ pub struct Options {
     note: Option<Vec<String>>,
 }
 
-/// Time between two refreshes.
+/// Time between two refreshes of the display.
 const REFRESH_INTERVAL: Duration = Duration::from_secs(2);
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
@@ -59,7 +59,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return print(&escape_control_characters(&status_text(&study, &look(), &machines)));
     }
     loop {
-        // Only the text is replaced, so that scrolling and ctrl-c work as usual.
+        // The terminal stays in its normal mode, so that scrolling and ctrl-c work as usual.
         print(&format!(
             "\x1b[H\x1b[2J{}\nctrl-c stops watching\n",
             escape_control_characters(&status_text(&study, &look(), &machines))
@@ -68,7 +68,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Records a note next to the runs of the label.
+/// Records a note in the folder that contains the runs of the label.
 fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
     participant_folder(Path::new(""), label).map_err(Failure::usage)?;
     let last_played = machines.iter().filter_map(|runs| {
@@ -83,8 +83,7 @@ fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> R
     let place = with_runs.or_else(|| machines.iter().find(visited));
     let place = place.or_else(|| machines.first().filter(|_| is_assigned)).ok_or_else(|| {
         Failure::usage(format!(
-            "{label} is not a label of this study: it is not in the assignment, and these folders have no run or visit of it. \
-             Nothing was recorded"
+            "{label} is not a label of this study: it is not in the assignment, and no run or visit in these folders has it. Nothing was recorded"
         ))
     })?;
     write_remark(place, label, text)?;
@@ -114,7 +113,7 @@ fn status_text(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> St
     text
 }
 
-/// Returns the visits, including those in which no run started.
+/// Summarizes the visits, including visits in which no run started.
 fn visit_summary(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> VisitSummary {
     let with_runs = all.iter().map(|session_status| session_status.participant.as_str()).collect();
     VisitSummary::from_lines(&read_study_visits(study, machines), &with_runs)
@@ -153,7 +152,7 @@ fn describe_state(state: SessionState) -> &'static str {
     }
 }
 
-/// Formats the time since the last line.
+/// Formats the time since a session wrote its last record line.
 fn format_quiet_time(seconds: f64) -> String {
     match seconds as u64 {
         0..=59 => format!("{seconds:.0} s"),

@@ -1,5 +1,5 @@
 //! Recording of user activity: viewed screens, objects, dialogs and terms, edited texts, and presence. The session
-//! thread writes the events; nothing here blocks.
+//! thread writes the events, so recording does not block the console.
 
 use std::time::Duration;
 
@@ -50,7 +50,7 @@ impl App {
         }
     }
 
-    /// Records that the user leaves the run and everything open in it.
+    /// Records that the user leaves the run and all open views.
     pub(super) fn detach_from_run(&mut self) {
         self.save_drafts();
         self.close_layers();
@@ -103,8 +103,8 @@ impl App {
         }
     }
 
-    /// Records the end of a view: the screen was left, a week started or the clock stopped. The time under a dialog
-    /// counts for the screen; the dialog has its own event.
+    /// Records the end of a view: the screen was left, a week started or the clock stopped. Time during which a dialog
+    /// covers the screen counts for the screen. The dialog has a separate event.
     pub(super) fn record_view(&mut self) {
         let now = self.stopwatch.elapsed();
         let Stage::Run(run) = &mut self.stage else { return };
@@ -188,7 +188,7 @@ impl App {
         }
     }
 
-    /// Records selections, help terms and abandoned drafts that followed from the last message.
+    /// Records selections, help terms and abandoned drafts that resulted from the last message.
     pub(super) fn record_user_state(&mut self) {
         if !self.is_played() {
             return;
@@ -242,7 +242,7 @@ impl App {
         }
     }
 
-    /// Returns whether the place of a text is still visible.
+    /// Returns whether the place of an edited text is still visible.
     fn is_editing(&self, place: &str) -> bool {
         let Some(run) = self.run() else { return false };
         if NEXT_WEEK_DRAFTS.contains(&place) {

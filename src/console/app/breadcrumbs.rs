@@ -1,4 +1,4 @@
-//! Breadcrumbs: the places from which the current one was opened, and the way back.
+//! Breadcrumbs: the places from which the current place was opened, and navigation back to these places.
 
 use super::{App, Run, Stage};
 use crate::action::Action;
@@ -12,12 +12,12 @@ pub struct Breadcrumb {
     screen: ScreenId,
     pane: usize,
     open_item: Option<String>,
-    /// Escape depth of the next screen when it was opened.
+    /// Escape depth that the opened screen had when it was opened from this place.
     escape_depth: usize,
 }
 
 impl Run {
-    /// Returns the titles of the breadcrumbs, and of the open item if it covers its list.
+    /// Returns the titles of the breadcrumbs, and the title of the open item if that item covers its list.
     pub fn breadcrumb_titles(&self, context: &ScreenContext<'_>) -> Vec<String> {
         let mut path = Vec::new();
         for stop in &self.breadcrumbs {
@@ -42,7 +42,7 @@ impl Run {
 }
 
 impl App {
-    /// Shows a place on another screen that was opened from the current one.
+    /// Opens another screen and adds the current place to the breadcrumbs.
     pub(super) fn open_linked_screen(&mut self, screen: ScreenId, prepare: impl FnOnce(&mut Run)) {
         if self.reject_closed_screen(screen) {
             return;
@@ -59,7 +59,7 @@ impl App {
         };
         prepare(run);
         if stop.screen != screen {
-            // A place that is already among the breadcrumbs is returned to.
+            // If the target screen already has a breadcrumb, that breadcrumb and all later ones are removed.
             if let Some(at) = run.breadcrumbs.iter().position(|breadcrumb| breadcrumb.screen == screen) {
                 run.breadcrumbs.truncate(at);
             } else {
@@ -73,7 +73,7 @@ impl App {
         self.show_screen(screen);
     }
 
-    /// Returns to the last breadcrumb if escape has nothing to close here. Returns whether it did.
+    /// Goes back to the last breadcrumb if escape has nothing to close on this screen. Returns whether it went back.
     pub(super) fn go_back_to_breadcrumb(&mut self, action: Action) -> bool {
         let Stage::Run(run) = &mut self.stage else { return false };
         if action != Action::Close || run.screens.sql.is_running() {

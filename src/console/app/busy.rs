@@ -12,9 +12,10 @@ pub struct BusyState {
     pub label: &'static str,
     /// Progress in days, for simulations and seeking.
     pub progress: Option<SimulationProgress>,
-    /// When it started.
+    /// Time at which the work started.
     pub started_at: Instant,
-    /// The script is being stopped. The stop is repeated until it ends, because the script may only just be starting.
+    /// Whether the script is being stopped. The stop request is repeated until the script ends, because a script that
+    /// is starting may miss a request.
     pub is_stopping_script: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Drafts: unsent texts are saved with the run while they are edited, and offered when it is opened again.
+//! Drafts: unsent texts are saved with the run while the user edits them. They are offered when the run is opened again.
 
 use std::time::Duration;
 
@@ -11,11 +11,12 @@ const SAVE_INTERVAL: Duration = Duration::from_secs(3);
 
 #[derive(Default)]
 pub(super) struct DraftState {
-    /// The drafts as last saved, or `None` if unknown.
+    /// The drafts that were saved last, or `None` if unknown.
     saved: Option<DraftTexts>,
-    /// When they are compared again.
+    /// Time of the next check for changed drafts.
     due: Option<Duration>,
-    /// Drafts of an earlier session, until the user restores or discards them. Their file stays until then.
+    /// Drafts of an earlier session that the user has not restored or discarded yet. The draft file stays until the
+    /// user decides.
     offered_drafts: Option<Box<DraftTexts>>,
 }
 

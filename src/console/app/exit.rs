@@ -15,7 +15,7 @@ pub(super) enum ExitTarget {
     /// The start menu, or the participant's next page.
     Menu,
     Shell,
-    /// Exit because of a signal, with its number.
+    /// Exit because of the signal with this number.
     Signal(i32),
 }
 
@@ -37,9 +37,8 @@ impl ExitTarget {
     }
 }
 
-const DRAFTS_KEPT: &str = "A form, the notes, a post or the next-week dialog has unsent text. It is saved with the run and \
-                          offered when you open the run again.";
-/// Nothing can be sent after the run has ended.
+const DRAFTS_KEPT: &str = "Unsent text in a form, the notes, a post or the next-week dialog is saved with the run and offered when you open the run again.";
+/// Used after the run has ended, when drafts can no longer be sent.
 const DRAFTS_DISCARDED: &str = "The notes have unsaved text. The run has ended; the text will be lost.";
 const OFFERS_DISCARDED: &str = "Unsent offers in the inbox will be lost.";
 
@@ -75,7 +74,7 @@ impl App {
             return self.show_error(format!("run {id} is already open"));
         }
         if self.busy.is_some() {
-            return self.show_error("days are running; try again when they are done");
+            return self.show_error("days are being simulated; try again afterwards");
         }
         let open = Effect::Request(Request::Open(id.clone(), Access::Write));
         match self.draft_warning() {
@@ -130,8 +129,8 @@ impl App {
         let farewell = self.run().filter(|run| run.playback.is_none()).map(|run| {
             let company = &run.company.observation;
             let end = match company.ended {
-                Some(_) => "It has ended.".to_owned(),
-                None => format!("Resume it with `{}`.", self.resume_command),
+                Some(_) => "The run has ended.".to_owned(),
+                None => format!("Resume the run with `{}`.", self.resume_command),
             };
             format!("Run {} is saved at day {}. {end}", company.run, company.day)
         });

@@ -50,7 +50,7 @@ impl App {
         })]);
     }
 
-    /// Shows the tour, starting with the first step that is not done.
+    /// Shows the tour at its first unfinished step.
     pub(super) fn resume_tour(&mut self) {
         let of_practice = self.study.as_ref().is_some_and(StudyState::has_tour);
         if self.has_participant() && !of_practice {

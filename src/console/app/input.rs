@@ -54,7 +54,7 @@ impl App {
             return self.forward_key(&key);
         }
         let action = if typing && chord.is_text_input() {
-            // The bindings of the text field take precedence over those of the surrounding scopes.
+            // The bindings of the text field take precedence over the bindings of the surrounding scopes.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
             let text_action = self.keys.action(&texts, chord);
             let goes_on = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
@@ -74,7 +74,7 @@ impl App {
         }
     }
 
-    /// Returns whether a digit starts a number in the focused place. Playback has no editable cells.
+    /// Returns whether a digit starts a number in the focused place. A run in playback has no editable cells.
     fn accepts_digits(&self) -> bool {
         let run = self.run().filter(|run| self.layers.is_empty() && run.playback.is_none());
         run.is_some_and(|run| run.screens.get(run.screen).accepts_digits())
@@ -108,7 +108,7 @@ impl App {
         goes_before.then_some(global)
     }
 
-    /// Returns an action that is available even over a dialog: quitting and redrawing must always be possible.
+    /// Returns an action that works even while a dialog is open. Quitting and redrawing must always be possible.
     fn always_available_action(&self, chord: Chord) -> Option<Action> {
         let always = [Action::Quit, Action::Redraw, Action::TourSkip, Action::TourClose];
         let global = self.keys.action(&[Scope::Global], chord)?;
@@ -206,7 +206,7 @@ impl App {
             Action::Redraw => return self.orders.push(Order::Redraw),
             Action::TourSkip => return self.skip_tour_step(),
             Action::TourClose => return self.close_tour(),
-            // Available over questions too: participants can withdraw without answering them.
+            // Participants can withdraw without answering the open questions.
             Action::Withdraw if matches!(self.stage, Stage::Run(_)) => return self.leave_to_withdraw(),
             _ => {}
         }

@@ -1,4 +1,4 @@
-//! Open dialogs, the topmost last. Each records how long it was open and the time spent on its steps.
+//! Open dialogs, the topmost last. Each dialog records how long it was open and how much time the user spent on its steps.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use novamind_record::trajectory::record::{DialogOutcome, DialogStep, DialogUse};
 
 /// A dialog over the screen.
 pub enum Layer {
-    /// The next-week dialog; its drafts outlive it.
+    /// The next-week dialog. Its drafts are kept after the dialog closes.
     NextWeek,
     /// Any other dialog.
     Dialog(Box<dyn Dialog>),
@@ -24,12 +24,12 @@ struct OpenLayer {
     layer: Layer,
     record_name: String,
     opened_at: Duration,
-    /// Steps that were entered, and when.
+    /// Steps that the user entered, with the time of entry.
     steps: Vec<(&'static str, Duration)>,
 }
 
 impl Layers {
-    /// Opens a dialog on top.
+    /// Opens a dialog above all others.
     pub fn push(&mut self, layer: Layer, now: Duration) {
         let what = match &layer {
             Layer::NextWeek => "next week".to_owned(),
@@ -38,7 +38,7 @@ impl Layers {
         self.open.push(OpenLayer { layer, record_name: what, opened_at: now, steps: Vec::new() });
     }
 
-    /// Closes the top dialog and returns how it was used.
+    /// Closes the top dialog and returns its usage record.
     pub fn pop(&mut self, outcome: DialogOutcome, now: Duration) -> Option<DialogUse> {
         let OpenLayer { record_name: what, opened_at: since, steps, .. } = self.open.pop()?;
         let ends = steps.iter().skip(1).map(|(_, entered)| *entered).chain([now]);
@@ -50,7 +50,7 @@ impl Layers {
         Some(DialogUse { what, outcome, for_ms: millis(now.saturating_sub(since)), steps })
     }
 
-    /// Records that the top dialog is at a step.
+    /// Records that the user entered a step of the top dialog.
     pub fn enter_step(&mut self, step: &'static str, now: Duration) {
         if let Some(top) = self.open.last_mut()
             && top.steps.last().is_none_or(|(last, _)| *last != step)
@@ -74,12 +74,12 @@ impl Layers {
         self.open.last_mut().map(|open| &mut open.layer)
     }
 
-    /// Iterates over the dialogs, the topmost last.
+    /// Returns an iterator over the dialogs, the topmost last.
     pub fn iter(&self) -> impl Iterator<Item = &Layer> {
         self.open.iter().map(|open| &open.layer)
     }
 
-    /// Iterates over the dialogs mutably, the topmost last.
+    /// Returns a mutable iterator over the dialogs, the topmost last.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Layer> {
         self.open.iter_mut().map(|open| &mut open.layer)
     }

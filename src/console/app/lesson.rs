@@ -20,12 +20,12 @@ use novamind_worker::request::{LessonRequest, Request};
 const NO_RATIONALE: &str = "the lesson asks for none";
 const NO_LESSON: &str = "this run is not part of a lesson; the start menu lists lessons";
 
-/// State of the lesson of a run.
+/// Console state of the lesson that a run belongs to.
 #[derive(Default)]
 pub struct LessonState {
     /// Whether the side pane with the task is hidden.
     pub is_task_hidden: bool,
-    /// The debrief, after it was computed.
+    /// The debrief, once the worker has computed it.
     pub debrief: Option<Arc<Result<Debrief, Rejection>>>,
 }
 
@@ -45,7 +45,7 @@ impl App {
         self.run()?.company.lesson.as_ref()
     }
 
-    /// Shows or hides the task next to the screen; in a narrow window, opens it as a page.
+    /// Shows or hides the task next to the screen. In a narrow window, opens the task as a page.
     pub(super) fn toggle_lesson_task(&mut self) {
         if self.lesson_page().is_none() {
             return self.show_error(NO_LESSON);
@@ -65,7 +65,7 @@ impl App {
         }
     }
 
-    /// Opens the task of a new lesson in a narrow window, where it is not shown next to the screen.
+    /// Opens the task page of a new lesson in a narrow window, which has no space for the task next to the screen.
     pub(super) fn open_initial_lesson_page(&mut self) {
         let Some(page) = self.lesson_page() else { return };
         if page.is_finished {
@@ -77,7 +77,7 @@ impl App {
         }
     }
 
-    /// Handles the next-week key in a lesson. Returns false if the usual dialog should open.
+    /// Handles the next-week key in a lesson. Returns false if the next-week dialog should open.
     pub(super) fn handle_next_week_in_lesson(&mut self) -> bool {
         let Some(run) = self.run() else { return false };
         let Some(page) = run.company.running_lesson() else { return false };
@@ -108,8 +108,8 @@ impl App {
         true
     }
 
-    /// Runs a week of a lesson. Asks first if an accidental key press could do harm: at the start of a step without a
-    /// guess, and if waiting messages match the rules that were sent last.
+    /// Runs a week of a lesson. Asks for confirmation at the start of a step without a question. Also asks if
+    /// enterprises wait for answers and the rules that were sent last can answer them.
     fn confirm_or_run_week(&mut self, week: Effect) {
         let Some(run) = self.run() else { return };
         let Some(page) = run.company.running_lesson() else { return };
@@ -144,7 +144,8 @@ impl App {
         self.open_dialog(dialog.with_alternative(Action::SkipAnswers, vec![week]));
     }
 
-    /// Shows what changed in a lesson week that runs at once. Returns whether that replaces the weekly report.
+    /// Shows the changes of a lesson week that ran without the next-week dialog. Returns whether these changes replace
+    /// the weekly report.
     pub(super) fn show_lesson_week(&mut self, before: Option<&LessonStatus>) -> bool {
         let Some(page) = self.lesson_page().cloned() else { return false };
         let pitfalls = before.map_or(0, |before| before.pitfalls.len());
@@ -211,7 +212,7 @@ impl App {
         }
     }
 
-    /// Shows why a screen is closed in this lesson. Returns whether it is.
+    /// Shows why a screen is closed in this lesson. Returns whether the screen is closed.
     pub(super) fn reject_closed_screen(&mut self, screen: ScreenId) -> bool {
         let why = self.run().and_then(|run| closed_reason(screen, &run.company));
         why.map(|why| self.show_error(why)).is_some()

@@ -11,7 +11,7 @@ use novamind_worker::Job;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::request::Request;
 
-/// Days per week, in which lessons count the weeks before their start.
+/// Days per week, for the weeks that a lesson simulates before its start.
 const DAYS_PER_WEEK: u32 = 7;
 
 /// Returns the days that a lesson simulates before it starts.
@@ -22,7 +22,7 @@ fn days_of_start(request: &Request) -> Option<SimulationProgress> {
     (weeks > 0).then(|| SimulationProgress::new(0, weeks * DAYS_PER_WEEK))
 }
 
-/// Returns the last day that a request simulates unless it stops earlier.
+/// Returns the last day that a request simulates, unless the simulation stops earlier.
 fn last_day_of(request: &Request, company: &DisplayedCompany) -> u32 {
     match request {
         Request::RunDays(days) => {
@@ -73,7 +73,7 @@ impl App {
                 ))));
             }
             Effect::SendWords(_) if self.busy.is_some() => {
-                self.show_error("days are running; nothing was set, try again when they are done");
+                self.show_error("days are being simulated; no parameter was set, try again afterwards");
             }
             Effect::SendWords(words) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -121,7 +121,7 @@ impl App {
                     let company = run.company.clone();
                     effects = run.screens.tools.prefill(tool, &arguments, &company);
                 });
-                // The screen that shows the call requests its preview.
+                // The Tools screen requests a preview of the filled-in call.
                 self.follow(effects);
             }
             Effect::ShowThread(number) => self.open_linked_screen(ScreenId::Inbox, |run| {
@@ -162,7 +162,7 @@ impl App {
         }
     }
 
-    /// Sends a request to the session thread, unless it is rejected while a week runs.
+    /// Sends a request to the session thread. Some requests are rejected while a week or a script runs.
     pub(super) fn request(&mut self, request: Request) {
         if self.reject_for_participant(&request) {
             return;
@@ -172,7 +172,7 @@ impl App {
             && let Some(busy) = &self.busy
         {
             let what = if busy.is_script() { "a script is running" } else { "a week is running" };
-            return self.show_error(format!("{what}; nothing was sent, try again when it is done"));
+            return self.show_error(format!("{what}; no request was sent, try again afterwards"));
         }
         let leaves_run = matches!(request, Request::Open(..)) && matches!(self.stage, Stage::Run(_));
         if leaves_run || matches!(request, Request::Replay { .. }) {
@@ -182,11 +182,11 @@ impl App {
             let is_advance = request.simulates_days();
             if self.busy.is_some() {
                 return if is_advance {
-                    self.show_error("days are running already")
+                    self.show_error("days are already being simulated")
                 };
             }
             if is_advance {
-                // The drafts and the view belong to the week that ends.
+                // The drafts and the view of the screen are recorded in the week that ends.
                 self.record_sent_drafts(&request);
                 self.record_view();
                 if let Stage::Run(run) = &mut self.stage {
@@ -211,7 +211,7 @@ impl App {
 
     fn save_query(&mut self, query: [String; 3]) {
         if self.has_participant() {
-            // The query would be visible to the next participant.
+            // A saved query would be visible to the next participant.
             return self.show_participant_error();
         }
         match self.configuration.folder {

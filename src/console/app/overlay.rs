@@ -1,5 +1,5 @@
-//! True values on the Customers and Market screens. A key shows and hides them; showing a day is a recorded
-//! inspection.
+//! True values on the Customers and Market screens. A key shows and hides true values. Each displayed day is recorded
+//! as an inspection.
 
 use super::{App, Order, Run, Stage};
 use crate::context::ScreenId;
@@ -10,7 +10,7 @@ use novamind_worker::page_questions::HiddenValuesQuestion;
 use novamind_worker::question::Pending;
 use std::sync::Arc;
 
-/// Whether true values are shown, and which were requested.
+/// State of the display of true values: a flag whether true values are shown, the requested day, and the received values.
 #[derive(Default)]
 pub struct HiddenValuesOverlay {
     is_on: bool,
@@ -19,7 +19,7 @@ pub struct HiddenValuesOverlay {
 }
 
 impl Run {
-    /// Returns the company with the true values of its day if they are shown.
+    /// Returns the company. If true values are shown, the returned company contains the true values of its day.
     fn with_hidden_values(&self, company: Arc<DisplayedCompany>) -> Arc<DisplayedCompany> {
         let seen = self
             .overlay
@@ -50,7 +50,7 @@ impl App {
             return self.show_error("true values are available on the Customers and Market screens");
         }
         if run.company.observation.day == 0 {
-            return self.show_error("no day has run yet");
+            return self.show_error("no day has been simulated yet");
         }
         run.overlay.is_on = !run.overlay.is_on;
         if run.overlay.is_on {
@@ -60,7 +60,7 @@ impl App {
         self.show_status("true values hidden");
     }
 
-    /// Requests the true values of the current day if they are shown and unknown.
+    /// Requests the true values of the current day if true values are shown and the values of that day are missing.
     pub(super) fn request_hidden_values(&mut self) {
         let is_busy = self.busy.is_some();
         let Stage::Run(run) = &mut self.stage else { return };

@@ -23,7 +23,7 @@ impl App {
         self.follow(vec![Effect::Ask(ask)]);
     }
 
-    /// Opens the participation curve of a group, by default of the first known one.
+    /// Opens the participation curve of a group. The default is the first known group.
     pub(super) fn show_curve(&mut self, group: Option<Group>) {
         let known = self.run().and_then(|run| run.company.observation.known_groups.first().copied());
         if let Some(group) = group.or(known) {
@@ -35,8 +35,8 @@ impl App {
         self.open_asking(OpponentsPage::new(self.opponents));
     }
 
-    /// Opens the what-if page. It starts at the week shown in playback, at the last completed week of a running run,
-    /// and twelve weeks before the end of a finished run.
+    /// Opens the what-if page. The initial week is the displayed week of a playback, the last completed week of a
+    /// running run, or the week twelve weeks before the end of a finished run.
     pub(super) fn show_branches(&mut self) {
         let Some(run) = self.run() else { return };
         let seen = &run.company.observation;
@@ -94,7 +94,7 @@ mod tests {
     use novamind_worker::question::Question;
     use novamind_worker::readings::Reading;
 
-    /// A console in a run without a worker: the test answers the questions.
+    /// Returns a console with an open run and no worker. The test answers the questions.
     fn console() -> App {
         let mut app = App::new(settings("nowhere".as_ref()));
         app.window = (120, 40);
@@ -107,7 +107,7 @@ mod tests {
         app.handle_message(Message::Input(key_event(key).expect("a key")));
     }
 
-    /// Returns the questions of a type since the last call.
+    /// Removes and returns the collected questions of a type.
     fn take_questions<Q: Question>(app: &mut App) -> Vec<OutgoingQuestion> {
         let ask = |order| match order {
             Order::Ask(ask, _) => ask.question::<Q>().is_some().then_some(ask),
@@ -116,7 +116,7 @@ mod tests {
         app.take_orders().into_iter().filter_map(ask).collect()
     }
 
-    /// Answers a question, or drops its reply as a panicking thread does.
+    /// Answers a question. With `None`, drops the reply without an answer, as a panicking thread does.
     fn answer<Q: Question>(
         app: &mut App,
         ask: &OutgoingQuestion,

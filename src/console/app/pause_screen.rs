@@ -16,14 +16,14 @@ use novamind_worker::Job;
 
 /// The screen shown while the clock is stopped.
 pub struct PauseScreen {
-    /// The experimenter's code being typed, if starting the clock requires one.
+    /// The field for the experimenter's code, if the clock can be started only with a code.
     code: Option<TextField>,
     is_wrong_code: bool,
     by_limit: bool,
 }
 
 impl App {
-    /// Stops the clock; asks for a reason first if the study requires one.
+    /// Stops the clock. If the study requires a reason, asks for the reason first.
     pub(super) fn request_clock_stop(&mut self) {
         let asks = self.run().is_some_and(|run| run.company.rules.pause_reason);
         if self.is_playback() {
@@ -46,7 +46,7 @@ impl App {
         self.pending_chords.clear();
         let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| TextField::default());
         self.pause_screen = Some(PauseScreen { code, is_wrong_code: false, by_limit });
-        // The screen is hidden already; a failed write does not undo that.
+        // The pause screen stays even if the event cannot be written.
         self.record(move |session| drop(session.activity().stop_clock(reason.as_deref())));
     }
 

@@ -1,4 +1,4 @@
-//! Playback actions, and responses that change the playback.
+//! Actions of the playback, and worker responses that change the playback.
 
 use std::sync::atomic::Ordering;
 
@@ -29,7 +29,7 @@ const PLAYER_ACTIONS: [Action; 17] = [
     Action::SaveNotes,
     Action::FindGroup,
     Action::StudyGroup,
-    // Threads are marked for offers.
+    // Marking a thread prepares an offer.
     Action::Mark,
     Action::MarkAll,
 ];
@@ -82,9 +82,9 @@ impl App {
         self.show_error(format!("this is a replay; press {key} to take over"));
     }
 
-    /// Rejects actions that change the run. Returns whether it did.
+    /// Rejects an action that would change the run. Returns whether the action was rejected.
     pub(super) fn reject_in_playback(&mut self, action: Action) -> bool {
-        // In a finished run the same key shows the final page.
+        // In a finished run, the next-week key shows the final page.
         let shows_end = action == Action::NextWeek && self.run().is_some_and(|run| !run.company.is_running());
         let refused = self.is_playback() && PLAYER_ACTIONS.contains(&action) && !shows_end;
         if refused {
@@ -93,7 +93,7 @@ impl App {
         refused
     }
 
-    /// Returns whether the console was seeking.
+    /// Stops seeking. Returns whether the console was seeking.
     pub(super) fn stop_seeking(&mut self) -> bool {
         let goes = self.busy.is_some();
         match self.playback_mut() {
@@ -198,7 +198,7 @@ impl App {
         self.request_next_week();
     }
 
-    /// Requests the next week once the screen is complete.
+    /// Requests the next week once all data of the screen has arrived.
     pub(super) fn request_next_week(&mut self) {
         let waits = self.busy.is_some()
             || self.run().is_some_and(|run| run.requested_readings.values().any(Pending::is_waiting));

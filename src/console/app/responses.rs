@@ -1,4 +1,4 @@
-//! Responses of the worker.
+//! Handlers for the responses of the worker.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -153,7 +153,7 @@ impl App {
         });
     }
 
-    /// Updates screens and follows the effects that they return.
+    /// Updates screens and executes the effects that they return.
     fn update_screens(
         &mut self,
         tell: impl FnOnce(&mut Screens, ScreenId, &ScreenContext<'_>) -> Vec<Effect>,
@@ -163,7 +163,7 @@ impl App {
         let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
         let focus = run.screens.get(run.screen).focused_index();
         let effects = tell(&mut run.screens, run.screen, &context);
-        // A zoomed pane keeps the focus: it shows the answer.
+        // A zoomed pane keeps the focus, because it shows the answer.
         if run.zoomed && run.screens.get(run.screen).focused_index() != focus {
             run.screens.get_mut(run.screen).set_focus(focus);
         }
@@ -188,7 +188,7 @@ impl App {
         self.set_hidden_values();
     }
 
-    /// Hands query results to the screens. When a screen is complete, playback may request its next week.
+    /// Passes query results to the screens. Playback may request its next week when a screen has all its data.
     fn take_readings(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let answers: Vec<_> = run.requested_readings.values_mut().filter_map(Pending::try_take).collect();
@@ -270,7 +270,7 @@ impl App {
         self.open_initial_lesson_page();
     }
 
-    /// Shows the final page. Figures from the ledger follow when it was read.
+    /// Shows the final page. Figures from the ledger are added when the ledger has been read.
     pub(super) fn show_end(&mut self) {
         if self.show_lesson_end() {
             return;

@@ -10,20 +10,20 @@ use novamind_tui::theme::Theme;
 
 /// Appearance and locations of the console.
 pub struct Settings {
-    /// Colors.
+    /// Colors of the console.
     pub theme: Theme,
-    /// Keys.
+    /// Key bindings.
     pub keys: KeyBindings,
     /// Characters that charts are drawn with.
     pub glyphs: Glyphs,
-    /// Configuration of the user.
+    /// The user's configuration.
     pub configuration: Configuration,
-    /// Folder of the runs.
+    /// The folder that contains the runs.
     pub runs: PathBuf,
     /// The command that resumes the latest run.
     pub resume_command: String,
     /// Whether the start menu lists the runs of all participants.
     pub lists_all_participants: bool,
-    /// Plays the opponents of a run.
+    /// Function that plays the opponents of a run.
     pub opponents: PlayOpponentsFn,
 }

@@ -24,7 +24,7 @@ impl App {
         self.request(Request::Study(request));
     }
 
-    /// Rejects a request that participants must not send. Returns whether it did.
+    /// Rejects a request that participants must not send. Returns whether the request was rejected.
     pub(super) fn reject_for_participant(&mut self, request: &Request) -> bool {
         let kept = self.study.is_some() && request.is_forbidden_for_participants();
         if kept {
@@ -33,7 +33,7 @@ impl App {
         kept
     }
 
-    /// Returns whether a participant uses the console and only their session is reachable.
+    /// Returns whether a participant uses the console. Participants can open only their own session.
     pub(super) fn has_participant(&self) -> bool {
         self.study.is_some()
     }
@@ -136,7 +136,7 @@ impl App {
         self.exit_run(ExitTarget::Menu);
     }
 
-    /// Shows due questions once no dialog covers the run; leaves the run after it has ended.
+    /// Shows due questions once no dialog covers the run. Closes the run after the run has ended.
     pub(super) fn show_due_questions(&mut self) {
         let Some(visit) = &self.study else { return };
         let Stage::Run(run) = &self.stage else { return };
@@ -150,7 +150,7 @@ impl App {
         let over = !run.company.is_running();
         match QuestionPage::for_due_questions(&visit.due_questions) {
             Some((page, effect)) => {
-                // The status message refers to keys that do not work here.
+                // The status message may name keys that do not work on study pages.
                 self.status = None;
                 self.push_layer(Layer::Dialog(Box::new(page)));
                 self.follow(vec![effect]);

@@ -1,4 +1,4 @@
-//! Time limits: warns the user and does what the study requires when a limit is reached.
+//! Time limits: warns the user and applies the consequence that the study defines for a reached limit.
 
 use super::App;
 use crate::effect::Effect;
@@ -9,11 +9,11 @@ use novamind_worker::request::Request;
 
 #[derive(Default)]
 pub(super) struct TimeLimitState {
-    /// The limit to show above the screen until the week has run, and whether it was reached.
+    /// The time limit to show above the screen until the week has run, and whether the limit was reached.
     notice: Option<(LimitScope, bool)>,
-    /// The time for the week has ended: the week is submitted as soon as nothing blocks it.
+    /// Whether the time for the week has ended. The week is then submitted as soon as no work blocks it.
     files_week: bool,
-    /// What happened to a text that the user was writing when the week was submitted.
+    /// Notice about a draft that was not submitted when the time for the week ended.
     draft_notice: Option<String>,
 }
 
@@ -30,12 +30,12 @@ impl App {
         }
     }
 
-    /// Stops the clock again if a limit had stopped it when the run was last open.
+    /// Stops the clock if a limit had stopped the clock when the run was last open.
     pub(super) fn pause_for_limit(&mut self) {
         self.stop_clock(Some(TIME_LIMIT_RATIONALE.to_owned()), true);
     }
 
-    /// Returns the notice above the screen. It takes no keys, so the user can continue typing.
+    /// Returns the time limit notice above the screen. The notice handles no keys, so that the user can continue typing.
     pub fn limit_notice(&self) -> Option<String> {
         let (scope, reached) = self.time_limit.notice?;
         let run = self.run().filter(|run| run.company.is_running())?;
@@ -46,7 +46,7 @@ impl App {
         })
     }
 
-    /// Submits the week when its time has ended. Questions of the study are answered first.
+    /// Submits the week when the time for the week has ended. The participant must answer due questions of the study first.
     pub(super) fn enforce_week_limit(&mut self) {
         if !self.time_limit.files_week
             || self.has_due_questions()
@@ -75,10 +75,10 @@ impl App {
         self.end_next_week_drafts(TextEditOutcome::Left);
         let rationale = TIME_LIMIT_RATIONALE.to_owned();
         self.follow(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
-        self.show_status("time for this week is up; it was submitted with the projection");
+        self.show_status("time for this week is up; the week was submitted with the projection");
     }
 
-    /// Clears the notices of the week. Returns what happened to a draft that was not submitted.
+    /// Clears the notices of the week. Returns the notice about a draft that was not submitted.
     pub(super) fn take_week_draft_notice(&mut self) -> Option<String> {
         std::mem::take(&mut self.time_limit).draft_notice
     }
@@ -90,8 +90,8 @@ fn limit_notice_text(left: &TimeLeft, rules: &SessionRules) -> String {
 
 fn draft_retention_text(rules: &SessionRules) -> String {
     let kept = match rules.drafts {
-        _ if !rules.records_activity("draft") => "it is lost",
-        DraftsKept::None => "it is lost",
+        _ if !rules.records_activity("draft") => "its text is lost",
+        DraftsKept::None => "its text is lost",
         DraftsKept::Lengths => "the record keeps its length, not its text",
         DraftsKept::Text => "the record keeps it as a draft",
     };

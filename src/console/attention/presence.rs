@@ -6,7 +6,7 @@ use super::stopwatch::millis;
 use novamind_record::trajectory::record::PresenceEvent;
 use novamind_session::IDLE_TIMEOUT;
 
-/// A window size is recorded after it has been stable for this long.
+/// A new window size is recorded after the size has been stable for this long.
 const RESIZE_DELAY: Duration = Duration::from_secs(1);
 
 /// An event to record: its kind, milliseconds without input, and the window size.
@@ -18,7 +18,7 @@ pub struct PresenceWatch {
     last_key: Duration,
     idle: bool,
     unfocused: bool,
-    /// The new window size, and since when.
+    /// The new window size and the time of the change.
     resized: Option<((u16, u16), Duration)>,
 }
 
@@ -32,7 +32,7 @@ impl PresenceWatch {
     pub fn handle_input(&mut self, by_mouse: bool, now: Duration) -> Vec<PresenceRecord> {
         let idle = millis(now.saturating_sub(self.last_key));
         self.last_key = now;
-        // Some terminals do not report regained focus; key input implies it.
+        // Some terminals do not report regained focus, so key input counts as regained focus.
         let focus = if by_mouse { None } else { self.set_focus(true) };
         let active = std::mem::take(&mut self.idle).then_some((PresenceEvent::Active, Some(idle), None));
         focus.into_iter().chain(active).collect()
@@ -51,7 +51,7 @@ impl PresenceWatch {
         self.resized = Some((window, now));
     }
 
-    /// Returns the events that are due at a time.
+    /// Returns the presence events that are due at the given time.
     pub fn check_time(&mut self, now: Duration) -> Vec<PresenceRecord> {
         let mut noted = Vec::new();
         if let Some((window, _)) = self.resized.take_if(|(_, since)| now >= *since + RESIZE_DELAY) {
@@ -64,7 +64,7 @@ impl PresenceWatch {
         noted
     }
 
-    /// Returns when the next event is due without input.
+    /// Returns the time at which the next presence event is due if there is no input.
     pub fn next_deadline(&self) -> Option<Duration> {
         let idle = (!self.idle).then_some(self.last_key + IDLE_TIMEOUT);
         let resized = self.resized.map(|(_, since)| since + RESIZE_DELAY);

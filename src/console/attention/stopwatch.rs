@@ -1,14 +1,14 @@
-//! Active time: paused while the clock is stopped and while the program is suspended.
+//! A stopwatch for active time, which is paused while the clock is stopped and while the program is suspended.
 
 use std::time::Duration;
 
 use novamind_record::clock::monotonic_time;
 
-/// A stopwatch that can be paused. All recorded durations are measured with it.
+/// A stopwatch that can be paused. All recorded durations are measured with a stopwatch of this type.
 #[derive(Debug)]
 pub struct Stopwatch {
     started_at: Duration,
-    /// Time that passed before `since`.
+    /// Active time that passed before `since`.
     elapsed_before: Duration,
     halted: bool,
 }
@@ -20,7 +20,7 @@ impl Default for Stopwatch {
 }
 
 impl Stopwatch {
-    /// Returns the time that has passed while it was running.
+    /// Returns the time that has passed while the stopwatch was running.
     pub fn elapsed(&self) -> Duration {
         if self.halted {
             self.elapsed_before
@@ -29,24 +29,24 @@ impl Stopwatch {
         }
     }
 
-    /// Pauses it.
+    /// Pauses the stopwatch.
     pub fn halt(&mut self) {
         (self.elapsed_before, self.halted) = (self.elapsed(), true);
     }
 
-    /// Resumes it.
+    /// Resumes the stopwatch.
     pub fn resume(&mut self) {
         if self.halted {
             (self.started_at, self.halted) = (monotonic_time(), false);
         }
     }
 
-    /// Returns whether it is paused.
+    /// Returns whether the stopwatch is paused.
     pub fn is_halted(&self) -> bool {
         self.halted
     }
 
-    /// Advances it without waiting, for tests.
+    /// Advances the stopwatch without waiting, for tests.
     pub fn advance(&mut self, by: Duration) {
         if !self.halted {
             self.elapsed_before += by;

@@ -6,30 +6,30 @@ use std::time::Duration;
 use super::stopwatch::millis;
 use novamind_record::trajectory::record::{TextEdit, TextEditOutcome};
 
-/// Separates the cells of a form in a combined text; not counted as a character.
+/// Separator between the cells of a form in a combined text. The separator is not counted as a character.
 pub const CELL_SEPARATOR: &str = "\u{1f}";
 
-/// Minimum gap between two keys that counts as a pause.
+/// Minimum time between two key presses that counts as a pause.
 const MIN_PAUSE: Duration = Duration::from_secs(2);
 
 /// Source of a change of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EditSource {
-    /// A key.
+    /// A key press.
     Typed,
-    /// The clipboard.
+    /// Pasted text.
     Pasted,
-    /// The program.
+    /// Text that the program filled in.
     Filled,
 }
 
-/// Statistics of the texts that are being edited, by place.
+/// Typing statistics of the texts that are being edited, by place.
 #[derive(Debug, Default)]
 pub struct TypingLog {
     texts: BTreeMap<String, EditEpisode>,
 }
 
-/// Statistics of one text, from its first change until it is sent or left.
+/// Typing statistics of one text, from its first change until it is sent or abandoned.
 #[derive(Debug)]
 struct EditEpisode {
     text: String,
@@ -82,8 +82,8 @@ impl TypingLog {
         }
     }
 
-    /// Ends a draft and returns its statistics, or `None` if it was not edited. With `keep`, the text of a draft that
-    /// was left is included.
+    /// Ends a draft and returns its statistics, or `None` if the draft was not edited. With `keep`, the statistics
+    /// include the text of an abandoned draft.
     pub fn finish(&mut self, place: &str, outcome: TextEditOutcome, keep: bool) -> Option<TextEdit> {
         self.texts.remove(place).map(|episode| episode.into_draft(place, outcome, keep))
     }

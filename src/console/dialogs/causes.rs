@@ -21,7 +21,7 @@ const MAX_PAGE_WIDTH: u16 = 110;
 /// Minimum number of visible causes below a long text.
 const MIN_LISTED_CAUSES: usize = 4;
 
-/// The dialog.
+/// The dialog that shows the causes of a change.
 pub struct CausesDialog {
     /// The figure, with its source rows.
     figure: Figure,
@@ -51,13 +51,13 @@ impl CausesDialog {
     fn open_source(&self) -> DialogResponse {
         let Some(why) = self.causes() else { return DialogResponse::stay() };
         DialogResponse::confirm_with(match why.contributions.get(self.selected).map(|part| part.cause) {
-            // Closes a weekly report below.
+            // A weekly report may be open below this dialog and would cover the form.
             Some(Cause::Calls(tool)) => vec![Effect::CloseDialogs, Effect::ShowTool(tool)],
             _ => vec![Effect::ShowRows(self.figure.clone())],
         })
     }
 
-    /// Asks the same question for another week, if that week has a previous one.
+    /// Requests the causes for another week, if that week has a previous week.
     fn change_week(&self, week: u32, context: &ScreenContext<'_>) -> DialogResponse {
         let last = context.company.weeks.len() as u32;
         if !(2..=last).contains(&week) {
@@ -75,12 +75,12 @@ impl CausesDialog {
             None => "reading the record …".to_owned(),
             Some(CauseProgress::Replaying(day, last)) => format!("simulating day {day} of {last} …"),
             Some(CauseProgress::Simulated(done, all)) => {
-                format!("simulating the week without its causes: {done} of {all} …")
+                format!("simulating the week without each cause: {done} of {all} …")
             }
         }
     }
 
-    /// Formats a cause, its contribution and a bar, with differing inputs if they fit.
+    /// Formats a cause, its contribution and a bar. The differing inputs are added if they fit.
     fn line<'a>(
         canvas: &Canvas<'_>,
         cause: &CauseLine,
@@ -169,7 +169,7 @@ impl Dialog for CausesDialog {
         };
         let inside = canvas.draw_pane_frame(dialog_area, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // The list scrolls, the text does not.
+        // The list of causes scrolls, and the text stays in place.
         let listed = causes.len().min(MIN_LISTED_CAUSES);
         let shown = text.len().min((inside.height as usize).saturating_sub(listed + gap).max(1));
         for (row, line) in row_rects(inside).zip(text.iter().take(shown)) {

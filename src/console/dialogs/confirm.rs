@@ -11,7 +11,7 @@ use novamind_tui::canvas::{Canvas, Click, centered_rect};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
-/// A confirmation.
+/// A dialog that asks for confirmation.
 pub struct ConfirmDialog {
     title: String,
     text: String,
@@ -21,7 +21,7 @@ pub struct ConfirmDialog {
 }
 
 impl ConfirmDialog {
-    /// Asks whether to execute effects.
+    /// Returns a dialog that asks whether to execute effects.
     pub fn new(title: impl Into<String>, text: impl Into<String>, effects: Vec<Effect>) -> ConfirmDialog {
         ConfirmDialog { title: title.into(), text: text.into(), effects, alternative: None }
     }
@@ -56,7 +56,7 @@ impl Dialog for ConfirmDialog {
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match (action, &mut self.alternative) {
             (Action::Confirm, _) => DialogResponse::confirm_with(std::mem::take(&mut self.effects)),
-            // Tells a user who mistook the key that nothing happened.
+            // The status message informs a user who pressed a wrong key.
             (Action::Cancel, _) => {
                 let yes = context.keys.label(Action::Confirm).unwrap_or_default();
                 let text = format!("{}: cancelled; {yes} confirms", self.title);

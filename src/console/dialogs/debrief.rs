@@ -1,4 +1,4 @@
-//! The debrief of a lesson: cash compared with the good and the bad play, differing decisions, and guesses.
+//! The debrief of a lesson: cash compared with the reference play and the bad play, differing decisions, and guesses.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub struct DebriefPage {
 }
 
 impl DebriefPage {
-    /// Opens the page, with a debrief that was already computed if there is one.
+    /// Opens the page. If the debrief was already computed, the page shows it.
     pub fn new(found: Option<Arc<Result<Debrief, Rejection>>>) -> DebriefPage {
         DebriefPage { debrief: found, ..DebriefPage::default() }
     }
@@ -123,7 +123,13 @@ impl Dialog for DebriefPage {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints_in_context(context)));
         let debrief = match self.debrief.as_ref().map(|found| found.as_ref().as_ref()) {
-            None => return canvas.draw_text(inside, "simulating the good and the bad play …", Role::Warning),
+            None => {
+                return canvas.draw_text(
+                    inside,
+                    "simulating the reference and the bad play …",
+                    Role::Warning,
+                );
+            }
             Some(Err(refusal)) => return canvas.draw_text(inside, &refusal.message, Role::Bad),
             Some(Ok(debrief)) => debrief,
         };
@@ -172,7 +178,7 @@ fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     paragraphs.collect()
 }
 
-/// Draws the curves of the figure that decides the part.
+/// Draws the curves of the figure by which the part is judged.
 fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     let Some(judged) = &debrief.judged_by else { return draw_cash_curves(canvas, area, debrief) };
     let curve = |values: &[(u32, f64)], role, name| {

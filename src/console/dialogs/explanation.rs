@@ -35,7 +35,7 @@ impl Link {
 }
 
 struct ExplanationPage {
-    /// The explained term, as named by the glossary, a tool or a table.
+    /// The explained term: a glossary entry, a tool argument or a table column.
     term: String,
     title: String,
     note: String,
@@ -72,7 +72,7 @@ impl ExplanationPage {
 
 /// The explanation dialog.
 pub struct ExplainDialog {
-    /// The current page, and those before it.
+    /// The pages visited, with the current page last.
     pages: Vec<ExplanationPage>,
     has_source_rows: bool,
     /// Parameters that the texts mention.
@@ -80,7 +80,7 @@ pub struct ExplainDialog {
 }
 
 impl ExplainDialog {
-    /// Explains a subject.
+    /// Opens the dialog with the explanation of a subject.
     pub fn for_subject(subject: Subject, numbers: Arc<ParameterNumbers>) -> ExplainDialog {
         ExplainDialog {
             pages: vec![ExplanationPage::from_subject(subject, &numbers)],
@@ -89,7 +89,7 @@ impl ExplainDialog {
         }
     }
 
-    /// Explains the figure that is selected on a screen.
+    /// Opens the dialog with the explanation of the figure that is selected on a screen.
     pub fn for_figure(figure: &Figure, numbers: Arc<ParameterNumbers>) -> ExplainDialog {
         let mut page = match novamind_glossary::subject_by_name(figure.term) {
             Some(subject) => ExplanationPage::from_subject(subject, &numbers),
@@ -113,7 +113,7 @@ impl ExplainDialog {
         ExplainDialog { pages: vec![page], has_source_rows: figure.sql.is_some(), numbers }
     }
 
-    /// Explains a screen and lists its terms.
+    /// Opens the dialog with the explanation of a screen and a list of its terms.
     pub fn for_screen(screen: ScreenId, numbers: Arc<ParameterNumbers>) -> ExplainDialog {
         let entry = screen.action().entry();
         let help = "Select a figure or field to explain it, or choose a term of this screen.";
@@ -219,13 +219,13 @@ impl Dialog for ExplainDialog {
         let page = self.page();
         let width = area.width.saturating_sub(4).min(100);
         let text = lines_of(page, width.saturating_sub(4) as usize);
-        // Text takes precedence over links: at least three links stay visible, the rest scrolls.
+        // The text takes precedence over the links. At least three links stay visible, and the list of links scrolls.
         let links = (page.links.len() as u16).min(10);
         let least = links.min(3) + u16::from(links > 0);
         let room = area.height.saturating_sub(2);
         let for_text = (text.len() as u16).min(room.saturating_sub(least));
         let for_links = (links + u16::from(links > 0)).min(room - for_text);
-        // A picture takes the remaining rows.
+        // The chart of the term is drawn in the remaining rows.
         let for_picture = match (room - for_text - for_links).min(term_picture::MAX_ROWS) {
             rows if rows >= term_picture::MIN_ROWS && term_picture::has_picture(&page.term) => rows,
             _ => 0,
@@ -280,7 +280,7 @@ fn lines_of(page: &ExplanationPage, width: usize) -> Vec<(String, String)> {
     let column = if column > 0 { column + 2 } else { 0 };
     let mut lines = Vec::new();
     for (heading, text) in &page.parts {
-        // A section without a heading is the summary and takes the full width.
+        // A section without a heading is the summary, which uses the full width.
         let (left, room) =
             if heading.is_empty() { (0, width) } else { (column, width.saturating_sub(column)) };
         for (at, line) in wrap(text, room).into_iter().enumerate() {

@@ -43,7 +43,7 @@ fn hides_result(company: &DisplayedCompany) -> bool {
     company.rules.hides_result(company.observation.ended.is_some())
 }
 
-/// Opens a moment of the run in playback.
+/// Opens the run in playback at a position.
 fn open_replay(company: &DisplayedCompany, goal: SeekTarget) -> DialogResponse {
     match (&company.folder, company.is_playback) {
         (_, true) => DialogResponse::confirm_with(vec![Effect::Go(goal)]),
@@ -62,21 +62,21 @@ fn open_replay(company: &DisplayedCompany, goal: SeekTarget) -> DialogResponse {
     }
 }
 
-/// The final page.
+/// The page at the end of a run.
 pub struct FinalPage {
-    /// The run report, or `None` while the ledger is read.
+    /// The run report, or `None` while the ledger is being read.
     story: Option<Arc<RunReport>>,
-    /// Whether it leads a participant to the next page of a study.
+    /// Whether the page is followed by the next page of a study.
     is_study: bool,
 }
 
 impl FinalPage {
-    /// Opens the page of a finished run.
+    /// Opens the final page of a finished run.
     pub fn new(report: Option<Arc<RunReport>>) -> FinalPage {
         FinalPage { story: report, is_study: false }
     }
 
-    /// Makes it lead to the next page of a study.
+    /// Returns the page for a participant, followed by the next page of a study.
     pub fn for_participant(self) -> FinalPage {
         FinalPage { is_study: true, ..self }
     }
@@ -153,7 +153,7 @@ impl FinalPage {
         let dialog_area = centered_rect(area, 60, 6);
         let practice = context.company.study.as_ref().is_some_and(|study| study.practice);
         let (title, text) = match practice {
-            true => ("The practice has ended", "It does not count. The session comes next."),
+            true => ("The practice has ended", "The practice does not count. The session is next."),
             false => ("The run has ended", "This study does not show the result."),
         };
         let inside = canvas.draw_pane_frame(dialog_area, title, "", true);
@@ -185,7 +185,7 @@ impl FinalPage {
         let mut parts: Vec<Vec<TextLine<'a>>> = Vec::new();
         parts.extend(self.bankruptcy_lines(canvas, width, roomy));
         let standing = rank_score(company.observation.score, &company.observation);
-        // A bankruptcy is explained before it is ranked.
+        // The explanation of a bankruptcy is shown before the ranking.
         let best = match (roomy, company.observation.ended) {
             (_, Some(RunEndReason::Bankruptcy)) => usize::from(roomy),
             (true, _) => 8,
@@ -217,7 +217,7 @@ impl FinalPage {
         lines
     }
 
-    /// Explains a bankruptcy: the last turn, and the main costs.
+    /// Explains a bankruptcy: the turning point and the main costs.
     fn bankruptcy_lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -248,7 +248,7 @@ impl FinalPage {
         Some(lines)
     }
 
-    /// Draws the cash curve with the highlights below.
+    /// Draws the cash curve, and the highlights of the run below the curve.
     fn draw_curve_and_highlights(&self, canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany) {
         let highlights = self.story.as_ref().map_or(&[][..], |report| report.highlights.as_slice());
         let list = (highlights.len() as u16 + 2).min(area.height / 2);
@@ -320,12 +320,12 @@ fn ranking_lines<'a>(
                 lines.extend(caveat_lines.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
             }
             false if best > 0 => {
-                // The publication comes first; differences of this run are in the header.
+                // If space is short, only the first part of the caveat is shown, which describes the publication.
                 let first = caveat.split("; ").next().unwrap_or_default().to_owned();
                 let text = first_fitting([caveat.clone(), first], width as usize);
                 lines.push(TextLine::from(canvas.span(text, Role::Dim)));
             }
-            // A bankruptcy uses the space.
+            // After a bankruptcy, the explanation uses the space.
             false => {}
         }
     }
@@ -380,7 +380,7 @@ fn facts<'a>(
     lines
 }
 
-/// Formats coverage and typical error by horizon, shortened to fit.
+/// Formats the forecast coverage and the typical error by horizon, shortened to fit.
 fn calibration_text(scores: &[ForecastScore], room: usize) -> String {
     let scored = || scores.iter().filter(|score| score.scored > 0);
     let inside = |score: &ForecastScore| percent(f64::from(score.covered) / f64::from(score.scored), 0);
@@ -394,7 +394,7 @@ fn calibration_text(scores: &[ForecastScore], room: usize) -> String {
     });
     let long = long.collect::<Vec<_>>().join(" · ");
     if long.is_empty() {
-        return "none is due yet".to_owned();
+        return "no forecast is due yet".to_owned();
     }
     if long.width() <= room {
         return long;
@@ -403,7 +403,7 @@ fn calibration_text(scores: &[ForecastScore], room: usize) -> String {
     format!("in range: {}", short.collect::<Vec<_>>().join(" · "))
 }
 
-/// Describes the share of ads on the best channel, or why it is unknown; the longer wording first.
+/// Describes the share of ads on the best channel, or why the share is unknown. Returns the longer wording first.
 fn best_channel_texts(skill: &ChannelSkill) -> Vec<String> {
     let first = skill.groups.iter().find_map(|group| Some((group, group.best.as_ref()?)));
     match (skill.share, first) {
@@ -419,7 +419,7 @@ fn best_channel_texts(skill: &ChannelSkill) -> Vec<String> {
     }
 }
 
-/// Lists calls per week and the most used tools, as many as fit.
+/// Describes the calls per week and as many of the most used tools as fit.
 fn tools(measures: &BehaviorMeasures, room: usize) -> String {
     let mut text = format!("{:.1} calls per week", measures.tools.per_week);
     for (tool, calls) in &measures.tools.tools {

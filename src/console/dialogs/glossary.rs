@@ -23,7 +23,7 @@ pub struct GlossaryDialog {
 }
 
 const TEXT_ROWS: u16 = 6;
-/// Rows for a text with a picture: a rule and the picture.
+/// Additional rows if the term has a picture: a separator line and the picture.
 const PICTURE_ROWS: u16 = 1 + term_picture::MAX_ROWS;
 
 impl GlossaryDialog {
@@ -32,7 +32,7 @@ impl GlossaryDialog {
         let columns = vec![
             TableColumn::text("term").with_max_width(22),
             TableColumn::text("about").with_max_width(9),
-            TableColumn::text("what it is").with_max_width(160),
+            TableColumn::text("meaning").with_max_width(160),
         ];
         let row = |term: &Term| {
             // Synonyms are appended after the visible text, so that the filter finds them.
@@ -81,7 +81,7 @@ impl Dialog for GlossaryDialog {
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
-        // The wheel moves the selection.
+        // The mouse wheel moves the selection.
         let action = match action {
             Action::ScrollUp => Action::Up,
             Action::ScrollDown => Action::Down,

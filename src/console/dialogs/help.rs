@@ -1,4 +1,4 @@
-//! The help: keys of the focused pane, of the screen, and global keys.
+//! The help dialog lists the keys of the focused pane, the keys of the screen, and global keys.
 
 use ratatui::layout::Rect;
 
@@ -23,11 +23,11 @@ struct HelpSection {
     actions: Vec<Action>,
 }
 
-/// Actions that only lists support.
+/// Actions that lists support and forms do not.
 const FILTER_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
 
 impl HelpDialog {
-    /// Lists the keys of a screen with these panes, the focused one first.
+    /// Lists the keys of a screen. The keys of the focused pane are first.
     pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &KeyBindings) -> HelpDialog {
         let mut table = table_of(screen_sections(panes, replay), keys);
         if panes.first().is_some_and(|pane| pane.scopes.contains(&Scope::Editor)) {
@@ -40,7 +40,7 @@ impl HelpDialog {
         HelpDialog { title: format!("Keys: {title}"), table }
     }
 
-    /// Lists the keys of a dialog, without those of screens.
+    /// Lists the keys of a dialog, without the keys of screens.
     pub fn for_dialog(dialog: &dyn Dialog, keys: &KeyBindings) -> HelpDialog {
         let scopes = dialog.scopes();
         let hints = dialog.hints().into_iter();
@@ -67,7 +67,7 @@ impl HelpDialog {
     }
 }
 
-/// Builds a row for each action that has a key.
+/// Builds a table with a row for each action that has a working key or no binding.
 fn table_of(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) -> Table {
     let columns = vec![
         TableColumn::text("where").with_max_width(8),
@@ -109,7 +109,7 @@ fn row_of(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec
     ]
 }
 
-/// Orders the parts. List navigation is the same everywhere and comes late.
+/// Returns the sections in display order. List navigation is near the end, because it is the same in all lists.
 fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
     let with_global = |scopes: &[Scope]| {
         let replayed = replay && !scopes.first().is_some_and(|scope| scope.is_text());
@@ -129,7 +129,7 @@ fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
     let pane_scopes = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
     for (scope, name) in [(Scope::Playback, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
         if pane_scopes.contains(&scope) {
-            // A form moves like a list but cannot be filtered or sorted.
+            // A form has the navigation of a list but cannot be filtered or sorted.
             let idle =
                 |action: &Action| pane_scopes.contains(&Scope::Form) && FILTER_ACTIONS.contains(action);
             let actions = scope_actions(scope).filter(|action| !idle(action)).collect();
@@ -226,7 +226,7 @@ mod tests {
         titles.sort_unstable();
         titles.dedup();
         assert_eq!(titles.len(), rows.len(), "no action is listed twice");
-        // A key that an inner scope uses is not listed for an outer one.
+        // A key that an inner scope binds is not listed for an outer scope.
         let query = pane("Results", &[Scope::Result, Scope::List], &[]);
         let rows = HelpDialog::new(ScreenId::Sql, &[query], false, &keys).rows();
         assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the full value here");

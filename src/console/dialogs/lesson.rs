@@ -23,7 +23,7 @@ const MAX_PAGE_WIDTH: u16 = 84;
 pub struct LessonDialog {
     scroll: ScrollState,
     answer: Option<AnswerField>,
-    /// Whether it was opened only to answer the question.
+    /// Whether the page was opened only to answer the question.
     closes_after_answer: bool,
 }
 
@@ -35,7 +35,7 @@ struct AnswerField {
 }
 
 impl LessonDialog {
-    /// Opens only the question of the step.
+    /// Opens the page only to answer the question of the step.
     pub fn for_question() -> LessonDialog {
         LessonDialog {
             answer: Some(AnswerField::default()),
@@ -140,13 +140,13 @@ impl LessonDialog {
         let rows = choices.iter().map(|(_, lines)| lines.len()).sum::<usize>().max(1);
         let dialog_area = centered_rect(area, width, (text.len() + rows + 5) as u16);
         canvas.clear(dialog_area, Role::Text);
-        let inside = canvas.draw_pane_frame(dialog_area, "Your guess", "asked before the weeks run", true);
+        let inside = canvas.draw_pane_frame(dialog_area, "Your guess", "answer before the weeks run", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let mut rows = row_rects(inside);
         for (row, line) in rows.by_ref().zip(&text) {
             canvas.draw_text(row, line, Role::Strong);
         }
-        // `zip` has consumed one row more than there are lines: the gap.
+        // `zip` has already consumed the next row, which stays blank between the question and the choices.
         for (at, lines) in &choices {
             let here = *at == answer.choice;
             for (row, (number, line)) in rows.by_ref().take(lines.len()).zip(lines.iter().enumerate()) {
@@ -233,7 +233,7 @@ impl Dialog for LessonDialog {
             }
             Action::Debrief if offered => return DialogResponse::confirm_with(vec![Effect::ShowDebrief]),
             Action::Debrief => {
-                let text = "the debrief is available after this part of the lesson has ended".to_owned();
+                let text = "the debrief is available after the end of this part of the lesson".to_owned();
                 return DialogResponse::stay_with(vec![Effect::Complain(text)]);
             }
             Action::TryAgain => {

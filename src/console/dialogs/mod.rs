@@ -1,4 +1,4 @@
-//! Dialogs over a screen.
+//! Dialogs that are drawn over a screen.
 
 pub mod branches;
 pub mod causes;
@@ -39,11 +39,11 @@ use novamind_tui::canvas::Canvas;
 /// The outcome of an action in a dialog.
 #[derive(Debug, Default)]
 pub struct DialogResponse {
-    /// Effects to execute.
+    /// Effects that the application executes.
     pub effects: Vec<Effect>,
     /// Whether the dialog closes.
     pub closes: bool,
-    /// Whether it closes because the user completed it.
+    /// Whether the dialog closes because the user completed it.
     pub is_confirmed: bool,
 }
 
@@ -74,9 +74,9 @@ impl DialogResponse {
     }
 }
 
-/// A dialog.
+/// A dialog that is drawn over a screen and handles keys before the screen.
 pub trait Dialog {
-    /// Returns the name in the record.
+    /// Returns the name of the dialog in the record.
     fn record_name(&self) -> String;
 
     /// Returns the current step, if the dialog has steps.
@@ -84,17 +84,17 @@ pub trait Dialog {
         None
     }
 
-    /// Returns the term that it explains.
+    /// Returns the term that the dialog explains.
     fn term(&self) -> Option<String> {
         None
     }
 
-    /// Returns the recorded place and the content of the text that is being edited.
+    /// Returns the text that is being edited: its place, as in the record, and its content.
     fn edited_text(&self) -> Option<(String, String)> {
         None
     }
 
-    /// Returns the scopes, the innermost first.
+    /// Returns the scopes of the dialog's keys, the innermost first.
     fn scopes(&self) -> Vec<Scope>;
 
     /// Returns the actions to show in the footer.
@@ -110,29 +110,29 @@ pub trait Dialog {
         false
     }
 
-    /// Handles an action of its scopes.
+    /// Handles an action of the dialog's scopes.
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse;
 
-    /// Handles a key without an action.
+    /// Handles a key that is not bound to an action.
     fn handle_key(&mut self, _: &KeyEvent, _: &ScreenContext<'_>) -> DialogResponse {
         DialogResponse::stay()
     }
 
-    /// Handles pasted text.
+    /// Handles text that is pasted into the dialog.
     fn paste(&mut self, _: &str, _: &ScreenContext<'_>) -> DialogResponse {
         DialogResponse::stay()
     }
 
-    /// Takes the awaited answer if it has arrived.
+    /// Takes the answer of the worker if it has arrived.
     fn take_answers(&mut self) {}
 
-    /// Takes the run report.
+    /// Sets the run report, for dialogs that show it.
     fn set_story(&mut self, _: &Arc<RunReport>) {}
 
-    /// Takes the debrief of the lesson.
+    /// Sets the debrief of the lesson, for dialogs that show it.
     fn set_debrief(&mut self, _: &Arc<Result<Debrief, Rejection>>) {}
 
-    /// Handles a click on a row.
+    /// Handles a click on the row with an index.
     fn handle_click(&mut self, _: usize, _: &ScreenContext<'_>) -> DialogResponse {
         DialogResponse::stay()
     }
@@ -141,7 +141,7 @@ pub trait Dialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
 }
 
-/// Draws a dialog over an empty screen and returns the text.
+/// Draws a dialog over an empty screen and returns the drawn text.
 #[cfg(test)]
 fn dialog_text(
     dialog: &dyn Dialog,

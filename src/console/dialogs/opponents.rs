@@ -18,10 +18,10 @@ use novamind_worker::page_questions::OpponentsQuestion;
 use novamind_worker::question::{OutgoingQuestion, Pending};
 
 const PAGE_SIZE: (u16, u16) = (96, 16);
-/// Columns before the bars: mark, name, score.
+/// Width of the mark, the name and the score before the bars, in columns.
 const NAME_COLUMNS: usize = 38;
 
-/// The opponents page.
+/// The page that ranks a finished run among opponents.
 #[derive(Default)]
 pub struct OpponentsPage {
     result: Option<Result<OpponentResults, Rejection>>,
@@ -29,7 +29,7 @@ pub struct OpponentsPage {
 }
 
 impl OpponentsPage {
-    /// Requests the opponents, which `play` simulates.
+    /// Requests the results of the opponents, which `play` simulates.
     pub fn new(play: PlayOpponentsFn) -> (OpponentsPage, OutgoingQuestion) {
         let (pending, ask) = Pending::with_question(OpponentsQuestion(play));
         (OpponentsPage { result: None, asked: pending }, ask)
@@ -81,7 +81,7 @@ impl Dialog for OpponentsPage {
     }
 }
 
-/// Ranks the policies, and the run if it has a score.
+/// Ranks the policies, and the run if the run has a score.
 fn ranked<'a>(
     canvas: &Canvas<'_>,
     company: &DisplayedCompany,

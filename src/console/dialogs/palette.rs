@@ -24,7 +24,7 @@ const MAX_RECENT_TOOLS: usize = 5;
 
 struct PaletteEntry {
     kind: &'static str,
-    /// Code that selects the entry when typed completely; may be empty.
+    /// Code that selects the entry when the user types the complete code. Entries without a code have an empty text.
     code: &'static str,
     title: String,
     doc: String,
@@ -51,7 +51,7 @@ impl PaletteEntry {
         }
     }
 
-    /// Returns how well the typed text matches the name; less is better.
+    /// Returns how well the typed text matches the name. Lower ranks are better.
     fn match_rank(&self, typed: &str, in_title: bool) -> MatchRank {
         let typed = typed.to_lowercase();
         let title = self.title.to_lowercase();
@@ -66,7 +66,7 @@ impl PaletteEntry {
         }
     }
 
-    /// Ranks actions before queries, and queries before texts.
+    /// Returns the rank of the entry's kind: actions before queries, and queries before texts.
     fn kind_rank(&self) -> usize {
         ["tool", "command", "group", "query", "table", "term"]
             .iter()
@@ -92,13 +92,13 @@ pub struct CommandPalette {
     entries: Vec<PaletteEntry>,
     recent: Vec<ToolId>,
     field: TextField,
-    /// Matching entries, the best first, with the positions of matched letters.
+    /// Matching entries with the positions of the matched letters. The best match is first.
     matches: Vec<FuzzyMatch>,
     selected: usize,
 }
 
 impl CommandPalette {
-    /// Lists everything that can be chosen now.
+    /// Opens the palette with all entries that are available in the current state.
     pub fn new(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrary) -> CommandPalette {
         let mut palette = CommandPalette {
             entries: entries(keys, company, library),
@@ -111,7 +111,7 @@ impl CommandPalette {
         palette
     }
 
-    /// Restricts the palette to participants of a study, and adds withdrawal.
+    /// Removes entries that are closed to participants of a study, and adds the withdrawal.
     pub fn for_participant(mut self, has_tour: bool) -> CommandPalette {
         let kept = |action: Action| match action {
             Action::LeaveRun | Action::WriteReport => false,
@@ -149,8 +149,8 @@ impl CommandPalette {
         let named: Vec<FuzzyMatch> = named.map(|at| (at, Vec::new())).collect();
         self.matches.extend(named);
         // An exact code ranks first. Tools, commands and screens whose names contain the typed text as a word rank
-        // before queries and texts; scattered letters rank lower, words of a description last. Without input,
-        // recently used tools come first.
+        // before queries and texts. Scattered letters rank lower, and words of a description last. Without input,
+        // recently used tools are first.
         let entries = &self.entries;
         let recent = |at: usize| match typed.is_empty() {
             true => self.recent.iter().position(|tool| tool.name() == entries[at].title),
@@ -165,7 +165,7 @@ impl CommandPalette {
                 return (0, 0, MatchRank::Prefix);
             }
             let closeness = entry.match_rank(typed, !letters.is_empty());
-            // An exact name of a screen or a group ranks first.
+            // A tool, command or group whose name is exactly the typed text ranks before all other names.
             let whole = entry.kind_rank() < 3 && entry.title.eq_ignore_ascii_case(typed);
             let tier = match closeness {
                 _ if whole => 1,

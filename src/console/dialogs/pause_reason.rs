@@ -11,7 +11,7 @@ use novamind_tui::canvas::{Canvas, centered_rect};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 
-/// The dialog.
+/// The dialog that asks for the reason of a pause.
 #[derive(Default)]
 pub struct PauseReasonDialog {
     reason: TextField,
@@ -62,7 +62,7 @@ impl Dialog for PauseReasonDialog {
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Stop the clock", "", true);
         let row = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), height: 1, ..inside };
-        canvas.draw_text(row, "Why do you stop? The time counts until you answer.", Role::Text);
+        canvas.draw_text(row, "Why do you stop the clock? Time counts until you answer.", Role::Text);
         self.reason.draw(canvas, Rect { y: row.y + 1, ..row });
         if self.is_rejected_empty {
             canvas.draw_text(Rect { y: row.y + 2, ..row }, "! a reason is required", Role::Bad);

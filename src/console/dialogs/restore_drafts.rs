@@ -13,13 +13,13 @@ use novamind_tui::theme::Role;
 
 const MAX_PAGE_WIDTH: u16 = 76;
 
-/// The offer.
+/// The dialog that offers to restore drafts.
 pub struct RestoreDraftsDialog {
     texts: Vec<(String, String)>,
 }
 
 impl RestoreDraftsDialog {
-    /// Offers drafts with their places.
+    /// Opens the dialog with pairs of a place and the text of its draft.
     pub fn new(texts: Vec<(String, String)>) -> RestoreDraftsDialog {
         RestoreDraftsDialog { texts }
     }
@@ -66,7 +66,7 @@ impl Dialog for RestoreDraftsDialog {
     }
 }
 
-/// Returns the last lines of a text, where the user was writing.
+/// Returns the last lines of a text, because the user was probably writing at its end.
 fn last_lines(text: &str, width: usize, most: usize) -> Vec<String> {
     let lines: Vec<String> = wrap(text, width).into_iter().filter(|line| !line.trim().is_empty()).collect();
     let left_out = lines.len().saturating_sub(most);

@@ -1,4 +1,4 @@
-//! Confirmation for retrying a step of a lesson: the current one or an earlier one. The default is to cancel.
+//! Confirmation for retrying the current step or an earlier step of a lesson. The default is to cancel.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -12,22 +12,23 @@ use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_worker::request::{LessonRequest, Request};
 
-/// The dialog.
+/// The dialog that confirms a retry of a step.
 pub struct RetryStepDialog {
-    /// Counted from 0.
+    /// Index of the selected step, counted from 0.
     selected_step: usize,
     last_step: usize,
 }
 
 impl RetryStepDialog {
-    /// Asks for a step from the first to `last`, which is selected initially.
+    /// Opens the dialog for the steps from 0 to `last`. Initially, `last` is selected.
     pub fn new(last: usize) -> RetryStepDialog {
         RetryStepDialog { selected_step: last, last_step: last }
     }
 
     fn text(&self) -> String {
         let step = self.selected_step + 1;
-        let first = "in a new run. Tries are counted, your first guess counts, and this run does not change.";
+        let first =
+            "in a new run. Tries are counted, your first guess is kept, and this run does not change.";
         match self.last_step {
             0 => format!("Step {step} starts again {first}"),
             last => format!("Step {step} of {} starts again {first}", last + 1),

@@ -12,7 +12,7 @@ use novamind_tui::canvas::{Canvas, centered_rect};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 
-/// The dialog.
+/// The dialog that asks for a week.
 pub struct SeekWeekDialog {
     weeks: u32,
     field: TextField,
@@ -20,7 +20,7 @@ pub struct SeekWeekDialog {
 }
 
 impl SeekWeekDialog {
-    /// Opens it for a record of `weeks` weeks.
+    /// Opens the dialog for a record of `weeks` weeks.
     pub fn new(weeks: u32) -> SeekWeekDialog {
         SeekWeekDialog { weeks, field: TextField::default(), problem: None }
     }

@@ -21,7 +21,7 @@ use novamind_worker::question::{OutgoingQuestion, Pending};
 
 const MAX_QUERY_LINES: usize = 6;
 
-/// The dialog.
+/// The dialog that shows the source rows of a figure.
 pub struct SourceRowsDialog {
     title: String,
     sql: String,

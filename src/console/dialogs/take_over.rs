@@ -12,10 +12,10 @@ use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_worker::request::Request;
 
-/// A branch is never a baseline.
+/// A branch is never a baseline run.
 const BRANCH_MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];
 
-/// The dialog.
+/// The dialog that starts a new run from a position in a playback.
 pub struct TakeOverDialog {
     day: u32,
     week: u32,
@@ -23,7 +23,7 @@ pub struct TakeOverDialog {
 }
 
 impl TakeOverDialog {
-    /// Opens it for a branch at a day before a week.
+    /// Opens the dialog for a branch that starts at a day, which is before a week.
     pub fn new(day: u32, week: u32) -> TakeOverDialog {
         TakeOverDialog { day, week, selected: 0 }
     }

@@ -15,16 +15,16 @@ use novamind_tui::widgets::chart::{Band, Curve, Plot, PointLabel, XAxis, YAxis};
 use novamind_tui::widgets::scale::AxisUnit;
 use novamind_worker::company::DisplayedCompany;
 
-/// Minimum height, in rows.
+/// Minimum height of a picture, in rows.
 pub const MIN_ROWS: u16 = 7;
 const MIN_COLUMNS: u16 = 20;
-/// Maximum height, in rows.
+/// Maximum height of a picture, in rows.
 pub const MAX_ROWS: u16 = 11;
-/// Width next to a text, in columns.
+/// Width of a picture that is drawn next to a text, in columns.
 pub const SIDE_COLUMNS: u16 = 44;
 const MAX_CAPTION_ROWS: usize = 3;
 
-/// Draws the chart of a term, if it has one.
+/// Draws the chart of a term, if the term has a chart.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &DisplayedCompany) {
     let seen = VisibleFigures {
         weeks: &company.weeks,

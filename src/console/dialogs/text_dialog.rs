@@ -1,4 +1,4 @@
-//! A text viewer: the dashboard, a full cell value, the changes of the week.
+//! A text viewer for the dashboard, the full value of a cell, and the changes of the week.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -10,7 +10,7 @@ use novamind_tui::canvas::{Canvas, centered_rect};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
-/// A text with a title.
+/// A dialog that shows a text with a title.
 pub struct TextDialog {
     title: String,
     text: String,
@@ -18,7 +18,7 @@ pub struct TextDialog {
 }
 
 impl TextDialog {
-    /// Shows a text.
+    /// Opens the dialog with a title and a text.
     pub fn new(title: impl Into<String>, text: impl Into<String>) -> TextDialog {
         TextDialog { title: title.into(), text: text.into(), first_line: 0 }
     }

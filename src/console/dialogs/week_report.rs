@@ -24,14 +24,14 @@ use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
 const MAX_PAGE_WIDTH: u16 = 116;
-/// Minimum width for comments next to the figures; in narrower windows they are below.
+/// Minimum width for comments next to the figures. In narrower windows, comments are below the figures.
 const MIN_WIDTH_FOR_SIDE_TEXT: u16 = 100;
 const MOVES_SECTION: usize = 2;
 
-/// The report of the last week.
+/// The dialog that reports the last week.
 pub struct WeekReportDialog {
     remark: Option<String>,
-    /// The selected line: cash first, then the most unusual changes.
+    /// Index of the selected line: 0 is cash, followed by the most unusual changes.
     selected: usize,
 }
 
@@ -114,7 +114,7 @@ impl Dialog for WeekReportDialog {
             canvas.register_click(row, Click::Row(0, at));
         }
         let close = context.hint(Action::Cancel);
-        // The change of the first week has no explanation: there is no previous week.
+        // The change of the first week has no explanation, because there is no previous week.
         let why = match context.company.can_explain_causes() && context.company.weeks.len() > 1 {
             true => format!(" · {}", context.hint(Action::Why)),
             false => String::new(),
@@ -142,7 +142,7 @@ impl WeekReportDialog {
         let notices = &context.company.notices;
         let news = news_section(canvas, week_report, width, context);
         let decided = decisions_section(canvas, week_report, width, if height >= 26 { 6 } else { 2 });
-        // Headings and blank lines between five sections.
+        // `fixed` includes two headings and, in tall windows, four blank lines between five sections.
         let airy = height >= 24;
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = height.saturating_sub(fixed);
@@ -165,7 +165,7 @@ impl WeekReportDialog {
                 lines.push(Line::default());
             }
             if at == MOVES_SECTION {
-                // Below the heading.
+                // The heading is not selectable.
                 places.extend(starts.iter().map(|start| lines.len() + 1 + start));
             }
             lines.extend(part);
@@ -199,7 +199,7 @@ impl WeekReportDialog {
         let remark = self.remark.iter().flat_map(|remark| wrap(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         if week_report.was_filed_at_limit() {
-            let text = "The time for this week ran out: it was submitted with the projection.";
+            let text = "The time for this week ran out: the week was submitted with the projection.";
             let note_lines = wrap(text, width as usize).into_iter();
             lines.extend(note_lines.map(|line| Line::from(canvas.span(line, Role::Warning))));
         }
@@ -207,7 +207,7 @@ impl WeekReportDialog {
         lines.extend(
             due.map(|due| forecast_line(canvas, due, week_report.was_forecast_filed_at_limit(due), width)),
         );
-        // Forecasts that do not fit are counted; the journal lists them.
+        // A count replaces forecasts that do not fit. The journal lists all forecasts.
         let left_out = week_report.due_forecasts.len().saturating_sub(forecasts);
         if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
             last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
@@ -222,7 +222,7 @@ impl WeekReportDialog {
         if self.selected == line { Role::Selection } else { role }
     }
 
-    /// Returns the most unusual changes that fit, and the line at which each starts.
+    /// Returns the lines of the most unusual changes that fit, and the first line of each change.
     fn moves_section<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -246,7 +246,7 @@ impl WeekReportDialog {
     }
 }
 
-/// Names the reference of the changes if the two weeks differ in length.
+/// Returns the heading of the changes. The heading names the reference period if the two weeks differ in length.
 fn moves_heading(week_report: &WeekReport) -> String {
     match &week_report.short_week_note {
         Some(short) => format!("Most unusual changes · a week {short}"),
@@ -258,7 +258,7 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> S
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// Describes a due forecast and the actual value. With `of_limit`, the program submitted it when time ran out.
+/// Describes a due forecast and the actual value. With `of_limit`, the program submitted the forecast at the time limit.
 fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Line<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
@@ -279,7 +279,7 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
         None => ("open", Role::Dim),
     };
     let miss = due.describe_error().map_or(String::new(), |miss| format!(", forecast {miss}"));
-    // Rounded bounds could seem to contain the actual value: exact dollars are used if they fit.
+    // Rounded bounds could seem to contain the actual value, so exact amounts are used if they fit.
     let exact = format_forecast(dollars);
     let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
     let text = if fits { exact } else { format_forecast(short_dollars) };
@@ -311,7 +311,7 @@ fn decisions_section<'a>(
     found.into_iter().enumerate().map(line).collect()
 }
 
-/// Formats a change in one or two lines; the selected one is marked.
+/// Formats a change in one or two lines.
 fn move_lines<'a>(canvas: &Canvas<'_>, moved_figure: &MovedFigure, width: u16, name: Role) -> Section<'a> {
     let role = match moved_figure.is_favorable {
         Some(true) => Role::Good,
@@ -349,7 +349,7 @@ fn move_lines<'a>(canvas: &Canvas<'_>, moved_figure: &MovedFigure, width: u16, n
     vec![Line::from(line), Line::from(canvas.span(format!("      {below}"), Role::Dim))]
 }
 
-/// Lists what is new, with the keys of the screens.
+/// Lists the counts of new items, with the keys of the screens that show them.
 fn news_section<'a>(
     canvas: &Canvas<'_>,
     week_report: &WeekReport,
@@ -360,13 +360,13 @@ fn news_section<'a>(
         (week_report.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
         (week_report.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
         (week_report.customer_posts, "post", "posts", Some(ScreenId::Social)),
-        (week_report.comments, "comment on our posts", "comments on our posts", Some(ScreenId::Social)),
+        (week_report.comments, "comment on your posts", "comments on your posts", Some(ScreenId::Social)),
         (week_report.news_items, "news item", "news items", Some(ScreenId::Social)),
         (
             week_report.week.research_finished,
             "completed project or study",
             "completed projects and studies",
-            // The notices below name them; projects and studies are on different screens.
+            // Projects and studies are on different screens. The notifications below name each of them.
             None,
         ),
     ];
@@ -377,7 +377,7 @@ fn news_section<'a>(
         let dot = if at > 0 { " · " } else { "" };
         let text =
             format!("{dot}{} {}", grouped_number(f64::from(*count), 0), if *count == 1 { one } else { more });
-        // Consecutive items of a screen share its key.
+        // Consecutive items of one screen share the key of that screen.
         let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
         let key = screen
             .filter(|_| last)
@@ -398,7 +398,7 @@ fn news_section<'a>(
     lines.into_iter().map(Line::from).collect()
 }
 
-/// Lists the latest notices that fit; repeated ones are counted.
+/// Lists the latest notifications that fit. Repeated notifications are combined with a count.
 fn notices_section<'a>(
     canvas: &Canvas<'_>,
     company: &DisplayedCompany,
@@ -427,8 +427,7 @@ fn notices_section<'a>(
     distinct_notices.into_iter().rev().map(line).collect()
 }
 
-/// Lists action items in at most two rows each, and the key that continues. Suggestions are included if there is
-/// space.
+/// Lists action items in at most two rows each, and the key for the next step. Suggestions are included if there is space.
 fn next_steps_section<'a>(
     canvas: &Canvas<'_>,
     needs: &[ActionItem],

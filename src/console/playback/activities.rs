@@ -27,7 +27,7 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
         Activity::Draft(draft) => {
             let end = match draft.outcome {
                 TextEditOutcome::Sent => "sent",
-                TextEditOutcome::Left => "left unsent",
+                TextEditOutcome::Left => "not sent",
                 TextEditOutcome::Restored => "restored after a crash",
             };
             let pasted = match draft.pasted {
@@ -91,8 +91,8 @@ fn presence_summary(presence: &Presence) -> String {
         },
         PresenceEvent::Idle => format!("no input for {}", format_millis(presence.idle_ms.unwrap_or(0))),
         PresenceEvent::Active => format!("input after {}", format_millis(presence.idle_ms.unwrap_or(0))),
-        PresenceEvent::FocusLost => "window lost the focus".to_owned(),
-        PresenceEvent::FocusGained => "window regained the focus".to_owned(),
+        PresenceEvent::FocusLost => "window lost focus".to_owned(),
+        PresenceEvent::FocusGained => "window regained focus".to_owned(),
         PresenceEvent::Suspended => "suspended by the shell".to_owned(),
         PresenceEvent::Resumed => "resumed".to_owned(),
         PresenceEvent::Resized => match presence.window {
@@ -136,7 +136,7 @@ mod tests {
         let summarize = |activity: Activity| activity_summary(&activity).0;
         let words = summarize(Activity::Dialog(dialog));
         assert!(words.starts_with("next week: confirmed after ") && words.contains("rationale "), "{words}");
-        assert_eq!(summarize(Activity::Draft(draft)), "notes: 20 characters left unsent, 12 pasted");
+        assert_eq!(summarize(Activity::Draft(draft)), "notes: 20 characters not sent, 12 pasted");
         assert_eq!(summarize(Activity::Help(help)), "looked up churn in customers");
         assert_eq!(summarize(Activity::Select(select)), "used command fit S1");
         assert!(summarize(Activity::Clock(clock)).starts_with("started the clock after "));

@@ -12,13 +12,13 @@ use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
 const MIN_SCREEN_WIDTH: u16 = 80;
-/// Minimum and maximum columns of the pane.
+/// Minimum and maximum width of the pane, in columns.
 const DECISIONS_WIDTH: (u16, u16) = (40, 60);
 
 /// Which entries of the record the pane shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EntryFilter {
-    /// Everything that was done.
+    /// All recorded entries.
     All,
     /// Only decisions, for the projector view.
     Decisions,
@@ -31,7 +31,7 @@ impl EntryFilter {
 }
 
 impl PlaybackViewer {
-    /// Returns the columns of the pane, or 0 if it is hidden or does not fit.
+    /// Returns the width of the pane in columns, or 0 if the pane is hidden or does not fit.
     pub fn columns(&self, area: Rect) -> u16 {
         let room = area.width.saturating_sub(MIN_SCREEN_WIDTH);
         match self.shows_decisions && area.width >= PlaybackViewer::MIN_WIDTH_FOR_DECISIONS {
@@ -40,7 +40,7 @@ impl PlaybackViewer {
         }
     }
 
-    /// Draws the decisions; those after the current position are dimmed.
+    /// Draws the pane with the decisions. Decisions after the current position are dimmed.
     pub fn draw_decisions(
         &self,
         canvas: &mut Canvas<'_>,
@@ -53,7 +53,7 @@ impl PlaybackViewer {
         let inside = canvas.draw_pane_frame(area, &super::entry_text::chapter_title(chapter), &note, false);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let mut rows: Vec<(String, Role)> = Vec::new();
-        // The row of the next action.
+        // Row of the next action to replay.
         let mut next = None;
         for (at, entry) in
             chapter.entries.iter().enumerate().filter(|(_, entry)| entry_filter.includes(entry))
@@ -81,7 +81,7 @@ impl PlaybackViewer {
             }
         }
         if rows.is_empty() {
-            rows.push(("nothing recorded after this moment".to_owned(), Role::Dim));
+            rows.push(("no actions recorded after this point".to_owned(), Role::Dim));
         }
         let height = inside.height as usize;
         let last = rows.len().saturating_sub(height);
@@ -93,7 +93,7 @@ impl PlaybackViewer {
         }
         let [back, on, whole] = [Action::LineBack, Action::LineForward, Action::DecisionsInFull]
             .map(|action| context.keys.label(action).unwrap_or_default());
-        canvas.draw_pane_keys(area, &format!("{back} {on} single actions · {whole} in full"));
+        canvas.draw_pane_keys(area, &format!("{back} {on} step by action · {whole} in full"));
         canvas.register_click(area, Click::Command(Action::DecisionsInFull.into()));
     }
 }

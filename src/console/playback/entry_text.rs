@@ -1,4 +1,4 @@
-//! Descriptions of the decisions of a week: brief for the pane, complete for reading.
+//! Descriptions of the decisions of a week: short ones for the pane, and complete ones as a text.
 
 use super::activities;
 use crate::screens::journal::entries::format_arguments;
@@ -14,15 +14,15 @@ use novamind_session::{
 };
 use novamind_tui::theme::Role;
 
-/// Maximum length of JSON in one line, in bytes.
+/// Maximum length of JSON that is shown in one line, in bytes.
 const MAX_INLINE_JSON_BYTES: usize = 90;
 
-/// Returns the title of a chapter.
+/// Returns the title of a chapter: the decisions before one week.
 pub fn chapter_title(chapter: &Chapter) -> String {
-    format!("Decided before week {}", chapter.week)
+    format!("Decisions before week {}", chapter.week)
 }
 
-/// Describes a line of the record briefly, in styled lines.
+/// Returns a short description of an entry of the record, as styled lines.
 pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String, Role)> {
     let one = |text: String, role: Role| vec![(text, role)];
     match &entry.record {
@@ -37,7 +37,7 @@ pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String
         }
         Record::Activity(activity) => vec![activities::activity_summary(activity)],
         Record::Memo(Memo { length, .. }) | Record::Note(Note { length, .. }) => {
-            one(format!("saved notes ({} bytes)", grouped_number(*length as f64, 0)), Role::Text)
+            one(format!("notes saved ({} bytes)", grouped_number(*length as f64, 0)), Role::Text)
         }
         Record::Advance(filed) => {
             let mut lines = vec![(format!("“{}”", filed.rationale.trim()), Role::Strong)];
@@ -48,12 +48,12 @@ pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String
         }
         Record::Week(closing) | Record::Step(closing) => {
             let Closing { days_run, cash, .. } = closing;
-            one(format!("{days_run} days passed, cash {}", dollars(*cash)), Role::Header)
+            one(format!("{days_run} days simulated, cash {}", dollars(*cash)), Role::Header)
         }
         Record::Voice(voice_answer) => one(voice_summary(voice_answer), Role::Dim),
         Record::End(end) => one(format!("the run ended: {}", end.reason.id()), Role::Warning),
         Record::Branch(Branch { from: Some(parent) }) => {
-            one(format!("branched off run {} here", parent.run), Role::Warning)
+            one(format!("branch of run {} starts here", parent.run), Role::Warning)
         }
         other => one(other.kind().to_owned(), Role::Dim),
     }
@@ -118,7 +118,7 @@ fn forecast_summary(scored: &ScoredForecast, later: bool) -> (String, Role) {
 }
 
 fn outcome_verb(later: bool) -> &'static str {
-    if later { "later" } else { "came" }
+    if later { "later" } else { "actual" }
 }
 
 fn forecast_verdict(scored: &ScoredForecast) -> &'static str {
@@ -129,7 +129,7 @@ fn forecast_verdict(scored: &ScoredForecast) -> &'static str {
 pub fn decisions_text(place: &PlaybackPosition, names: &EnterpriseNames) -> String {
     let chapter = &place.chapter;
     let mut parts = vec![format!(
-        "Day {}, before week {}. Outcomes marked “later” come from later in the record and were unknown then.",
+        "Day {}, before week {}. Outcomes marked “later” were recorded later and were unknown on this day.",
         chapter.day, chapter.week
     )];
     for (at, entry) in chapter.entries.iter().enumerate() {
@@ -269,7 +269,7 @@ mod tests {
             );
         }
         let from = Some(Parent { run: "aa".to_owned(), seq: 3 });
-        assert_eq!(summary_text(Record::Branch(Branch { from })), ["branched off run aa here"]);
+        assert_eq!(summary_text(Record::Branch(Branch { from })), ["branch of run aa starts here"]);
         let end = End { reason: RunEndReason::Horizon, cash: 4.0, score: Some(4.0) };
         assert_eq!(summary_text(Record::End(end)), ["the run ended: horizon"]);
     }
@@ -277,8 +277,8 @@ mod tests {
     #[test]
     fn later_outcomes_are_marked() {
         for (outcome, later, words) in [
-            (Some(1.55e6), false, "came $1.55M inside"),
-            (Some(1.75e6), false, "came $1.75M OUTSIDE"),
+            (Some(1.55e6), false, "actual $1.55M inside"),
+            (Some(1.75e6), false, "actual $1.75M OUTSIDE"),
             (Some(1.55e6), true, "later $1.55M inside"),
             (None, true, "day 42 not recorded"),
         ] {

@@ -23,22 +23,22 @@ const SPEEDS: [(u64, &str); 6] = [
     (0, "full speed"),
 ];
 
-/// Playback in the console.
+/// The state of a playback in the console.
 pub struct PlaybackViewer {
-    /// The position.
+    /// The current position in the record.
     pub position: PlaybackPosition,
-    /// Whether it is playing.
+    /// Whether the playback is running, not paused.
     pub playing: bool,
     /// Whether the decisions are shown next to the screen if there is space.
     pub shows_decisions: bool,
-    /// Whether it is seeking.
+    /// Whether the playback is seeking a position.
     pub is_seeking: bool,
-    /// Stops seeking.
+    /// Flag that stops seeking when set.
     pub stop_flag: Arc<AtomicBool>,
     /// Whether the next week was requested.
     pub has_requested_week: bool,
     speed: usize,
-    /// Rows that the user has scrolled the decisions from the current position.
+    /// Number of rows by which the user has scrolled the decisions away from the current position.
     scroll: i32,
 }
 
@@ -60,7 +60,7 @@ impl PlaybackViewer {
         }
     }
 
-    /// Handles the arrival at a position.
+    /// Sets the position that the playback has reached.
     pub fn update_position(&mut self, place: PlaybackPosition, asked: bool) {
         if place.line != self.position.line {
             self.scroll = 0;
@@ -72,13 +72,13 @@ impl PlaybackViewer {
         }
     }
 
-    /// Changes the speed by one step.
+    /// Changes the playback speed by one step.
     pub fn change_speed(&mut self, faster: bool) {
         let speed = if faster { self.speed + 1 } else { self.speed.saturating_sub(1) };
         self.speed = speed.min(SPEEDS.len() - 1);
     }
 
-    /// Returns the label of the speed.
+    /// Returns the label of the playback speed.
     pub fn speed_label(&self) -> &'static str {
         SPEEDS[self.speed].1
     }
@@ -88,7 +88,7 @@ impl PlaybackViewer {
         Duration::from_millis(SPEEDS[self.speed].0)
     }
 
-    /// Scrolls the decisions.
+    /// Scrolls the pane with the decisions by a number of rows.
     pub fn scroll_by(&mut self, rows: i32) {
         self.scroll = (self.scroll + rows).clamp(-10_000, 10_000);
     }

@@ -1,4 +1,4 @@
-//! The playback bar below the screen: position and state.
+//! The playback bar below the screen, which shows the position and the state of the playback.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -46,7 +46,7 @@ impl PlaybackViewer {
                 break;
             }
             let area = Rect { width, ..left };
-            // The background of the line with the foreground of the role.
+            // The status line keeps its background and uses the foreground color of the role.
             let style = canvas.style(role);
             canvas.draw_text(area, &text, Role::InactiveSelection);
             if let Some(colour) = style.fg {
@@ -69,7 +69,7 @@ impl PlaybackViewer {
     }
 }
 
-/// Draws a position between the first and the last line: `━━━━●────`.
+/// Formats the position between the first and the last line of the record as a bar: `━━━━●────`.
 fn position_bar(line: usize, lines: usize, width: u16) -> String {
     let room = width.max(1) as usize - 1;
     let before = match lines {

@@ -1,5 +1,5 @@
-//! The screens of a run. Each screen keeps its own position and selection, converts actions to effects and
-//! draws itself. Drawing never changes state.
+//! The screens of a run. Each screen stores its position and selection, converts actions to effects, and has a draw
+//! method that never changes state.
 
 pub mod menu;
 pub mod panes;
@@ -30,7 +30,7 @@ macro_rules! screens {
                 match id { $(ScreenId::$Screen => &self.$room,)* }
             }
 
-            /// Returns a screen for changes.
+            /// Returns a mutable reference to a screen.
             pub fn get_mut(&mut self, id: ScreenId) -> &mut dyn Screen {
                 match id { $(ScreenId::$Screen => &mut self.$room,)* }
             }
@@ -43,7 +43,7 @@ screens! {
     Overview in overview,
     /// Income, costs and cash.
     Cash in cash,
-    /// Customer groups.
+    /// The customer groups.
     Customers in customers,
     /// Quality, capacity, issues and R&D.
     Product in product,
@@ -53,7 +53,7 @@ screens! {
     Inbox in inbox,
     /// Groups, market studies and the economy.
     Market in market,
-    /// Forms of all tools.
+    /// Forms for all tools.
     Tools in tools,
     /// SQL queries.
     Sql in sql,
@@ -63,18 +63,18 @@ screens! {
     Xray in xray,
 }
 
-/// State of a screen: receives news and the results of its readings.
+/// The state of a screen, which receives worker responses and query results.
 pub trait ScreenState {
     /// Returns the readings that the screen needs from the database.
     fn readings(&self) -> &'static [Reading] {
         &[]
     }
 
-    /// Stores the result of a reading.
+    /// Stores the query result of a reading.
     fn apply_rows(&mut self, _: Reading, _: &QueryResult, _: &ScreenContext<'_>) {}
 
-    /// Called when the screen becomes visible, or when the company changes while it is. Returns requests to
-    /// the run.
+    /// Called when the screen becomes visible, and when the company changes while the screen is visible. Returns
+    /// requests for missing data.
     fn request_data(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         Vec::new()
     }
@@ -82,12 +82,12 @@ pub trait ScreenState {
     /// Called after the company has changed.
     fn on_company_change(&mut self, _: &ScreenContext<'_>) {}
 
-    /// Handles news that concern the screen and returns the effects that follow.
+    /// Handles a worker response that concerns the screen. Returns the effects to execute.
     fn handle_response(&mut self, _: &Response, _: &ScreenContext<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
-    /// Collects answers that have arrived for the screen and returns the effects that follow.
+    /// Collects answers that have arrived for the screen. Returns the effects to execute.
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         Vec::new()
     }
@@ -95,32 +95,32 @@ pub trait ScreenState {
     /// Called when the screen becomes visible and when the user leaves it.
     fn mark_seen(&mut self) {}
 
-    /// Returns the number of unread items, for the badge.
+    /// Returns the number of unread items, which the tab shows as a badge.
     fn unseen_count(&self) -> usize {
         0
     }
 
-    /// Returns the name of the detail that is open next to a list or in its place: a group or a tool.
+    /// Returns the title of the open item, such as a group or a tool. The item is shown next to a list or replaces the list.
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         None
     }
 
-    /// Returns whether the open detail has replaced the list that led to it.
+    /// Returns whether the open item replaces the list from which it was opened.
     fn covers_list(&self) -> bool {
         false
     }
 
-    /// Returns the number of levels that esc closes on this screen, without those that every pane has.
+    /// Returns the number of levels that esc closes on this screen, without the levels that every pane has.
     fn own_escape_depth(&self) -> usize {
         0
     }
 
-    /// Returns the kind and name of the open object, as the record stores them.
+    /// Returns the kind and the name of the open object in the notation of the record.
     fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         None
     }
 
-    /// Returns the name of the text field being edited, as the record stores it, and its contents.
+    /// Returns the recorded name and the contents of the text field that is being edited.
     fn edited_text(&self) -> Option<(String, String)> {
         None
     }
@@ -131,19 +131,19 @@ pub trait ScreenState {
     }
 }
 
-/// A screen's behavior and appearance. Screens made of panes implement it through [`panes::PaneScreen`].
+/// The behavior and appearance of a screen. Screens that consist of panes implement this trait through [`panes::PaneScreen`].
 pub trait Screen: ScreenState {
-    /// Returns the scopes of the focused pane, innermost first; the caller adds the global scope. If the
-    /// first is a text scope, keys type characters.
+    /// Returns the scopes of the focused pane, the innermost first. The caller adds the global scope. If the first
+    /// scope is a text scope, keys type characters.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Returns whether a digit starts a number at the focus instead of switching screens.
+    /// Returns whether a digit starts a number in the focused cell instead of switching screens.
     fn accepts_digits(&self) -> bool;
 
-    /// Returns the actions for the footer.
+    /// Returns the actions to show in the footer.
     fn hints(&self) -> Vec<Action>;
 
-    /// Returns the keys of all panes, those of the focused pane first.
+    /// Returns the keys of all panes. The keys of the focused pane are first.
     fn pane_keys(&self, look: &ScreenContext<'_>) -> Vec<PaneKeys>;
 
     /// Returns the number of panes that can take the focus.
@@ -158,21 +158,21 @@ pub trait Screen: ScreenState {
     /// Returns the number of levels that esc closes on this screen.
     fn escape_depth(&self) -> usize;
 
-    /// Returns the selected figure.
+    /// Returns the selected figure, if a figure is selected.
     fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure>;
 
-    /// Runs an action of one of its scopes.
+    /// Handles an action of one of the screen's scopes.
     fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a key typed into a text field.
     fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect>;
 
-    /// Handles pasted text.
+    /// Handles text that is pasted into a field.
     fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a click on a row. Clicking the selected row opens it.
     fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect>;
 
-    /// Draws the screen.
+    /// Draws the screen into an area.
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
 }

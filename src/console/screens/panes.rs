@@ -1,7 +1,7 @@
-//! Screens made of panes: the pane trait, and the host that manages focus, borders, filters, clicks and zoom.
+//! Screens that consist of panes: the trait of panes, and the code that manages focus, borders, filters, clicks and zoom.
 //!
-//! The screen owns the state because its panes share it. Each pane is a type that defines the behavior and
-//! drawing of its part.
+//! The screen owns the state, because its panes share it. Each pane is a type without state that defines the behavior
+//! and the drawing of one area.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -16,40 +16,40 @@ use novamind_tui::widgets::{Table, TextField};
 /// Texts in the border of a pane.
 #[derive(Default)]
 pub struct PaneBorder {
-    /// Title, at the left.
+    /// Title of the pane, at the left of the upper border.
     pub title: String,
-    /// Status, at the right.
+    /// Short status, at the right of the upper border.
     pub note: String,
     /// Keys that work in the pane, shown in the lower border while it has the focus.
     pub keys: String,
-    /// Shows the keys even without the focus: they work from every pane or describe what the pane offers.
+    /// Whether the keys are shown even without the focus, for example because they work in every pane.
     pub shows_keys_always: bool,
 }
 
-/// Where and how a pane is drawn.
+/// Area, focus and index with which a pane is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct PanePlacement {
-    /// Its area, or the area inside its border.
+    /// Area of the pane. In [`Pane::draw`], the area inside the border.
     pub area: Rect,
-    /// Whether it has the focus.
+    /// Whether the pane has the focus.
     pub focused: bool,
-    /// Index on the screen, for clicks on its rows.
+    /// Index of the pane on the screen, for clicks on its rows.
     pub index: usize,
 }
 
 /// A pane of a screen `S`.
 pub trait Pane<S> {
-    /// Returns its table, if it has one; the host moves, filters and sorts it.
+    /// Returns the table of the pane, if any. The default methods navigate, filter and sort this table.
     fn table<'a>(&self, _: &'a S) -> Option<&'a Table> {
         None
     }
 
-    /// Returns its table for changes.
+    /// Returns a mutable reference to the table of the pane, if any.
     fn table_mut<'a>(&self, _: &'a mut S) -> Option<&'a mut Table> {
         None
     }
 
-    /// Returns the scopes while it has the focus, innermost first.
+    /// Returns the scopes that apply while the pane has the focus, the innermost first.
     fn scopes(&self, screen: &S) -> Vec<Scope> {
         match self.table(screen) {
             Some(table) if table.is_filter_open() => vec![Scope::Field, Scope::List],
@@ -57,22 +57,22 @@ pub trait Pane<S> {
         }
     }
 
-    /// Returns whether a digit starts a number here instead of switching screens.
+    /// Returns whether a digit starts a number in the pane instead of switching screens.
     fn accepts_digits(&self, _: &S) -> bool {
         false
     }
 
-    /// Returns the actions for the footer.
+    /// Returns the actions to show in the footer.
     fn hints(&self, _: &S) -> Vec<Action> {
         Vec::new()
     }
 
-    /// Returns the selected figure.
+    /// Returns the figure that is selected in the pane, if any.
     fn figure(&self, _: &S, _: &ScreenContext<'_>) -> Option<Figure> {
         None
     }
 
-    /// Runs an action.
+    /// Handles an action of one of the pane's scopes.
     fn handle_action(&self, screen: &mut S, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if let Some(table) = self.table_mut(screen) {
             table.handle_action(action, context.page_rows);
@@ -88,20 +88,20 @@ pub trait Pane<S> {
         Vec::new()
     }
 
-    /// Handles pasted text.
+    /// Handles text that is pasted into the pane.
     fn paste(&self, screen: &mut S, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
         self.edit_filter(screen, &mut |field| field.insert(text));
         Vec::new()
     }
 
-    /// Edits the filter.
+    /// Applies an edit to the text of the filter.
     fn edit_filter(&self, screen: &mut S, edit: &mut dyn FnMut(&mut TextField)) {
         if let Some(table) = self.table_mut(screen) {
             table.edit_filter(edit);
         }
     }
 
-    /// Handles a click on a row; a second click on the same row opens it.
+    /// Handles a click on a row. A second click on the same row opens it.
     fn handle_click(&self, screen: &mut S, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(table) = self.table_mut(screen) else { return Vec::new() };
         let before = table.selected();
@@ -113,12 +113,12 @@ pub trait Pane<S> {
         }
     }
 
-    /// Returns the texts of its border for an area.
+    /// Returns the texts in the border of the pane for an area.
     fn border(&self, _: &S, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
         PaneBorder::default()
     }
 
-    /// Draws the inside of the pane.
+    /// Draws the content of the pane inside its border.
     fn draw(
         &self,
         screen: &S,
@@ -142,7 +142,7 @@ pub trait Pane<S> {
 /// An area wide enough for complete titles.
 const TYPICAL_AREA: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
 
-/// Draws the border and the inside of a pane.
+/// Draws the border and the content of a pane.
 pub fn draw_framed<S>(
     pane: &(impl Pane<S> + ?Sized),
     screen: &S,
@@ -158,15 +158,15 @@ pub fn draw_framed<S>(
     pane.draw(screen, canvas, PanePlacement { area: inside, ..placement }, context);
 }
 
-/// A screen made of panes.
+/// A screen that consists of panes.
 pub trait PaneScreen: ScreenState + Sized + 'static {
-    /// Identifiers of its panes.
+    /// Type of the identifiers of the screen's panes.
     type PaneId: Copy + PartialEq + 'static;
 
-    /// Returns the panes that can take the focus now, in tab order.
+    /// Returns the panes that can currently take the focus, in tab order.
     fn panes(&self) -> &'static [Self::PaneId];
 
-    /// Returns the pane with this identifier.
+    /// Returns the pane with an identifier.
     fn pane(name: Self::PaneId) -> &'static dyn Pane<Self>;
 
     /// Returns the focused pane.
@@ -175,22 +175,22 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Moves the focus to a pane.
     fn set_focused_pane(&mut self, name: Self::PaneId);
 
-    /// Returns the overlay that temporarily covers the panes and takes every key. Clicks on its rows use the
-    /// number of panes as index.
+    /// Returns the overlay that temporarily covers the panes and receives all keys. Clicks on its rows have the number
+    /// of panes as their pane index.
     fn overlay(&self) -> Option<&'static dyn Pane<Self>> {
         None
     }
 
-    /// Runs an action that does not depend on the focused pane; returns `None` if it does.
+    /// Handles an action that does not depend on the focused pane. Returns `None` if the focused pane must handle the action.
     fn handle_screen_action(&mut self, _: Action, _: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         None
     }
 
-    /// Lays out the panes and draws each with [`draw_pane`].
+    /// Lays out the panes and draws each pane with [`draw_pane`].
     fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>);
 }
 
-/// Draws a pane and makes it clickable.
+/// Draws a pane with its border and registers the pane for clicks.
 pub fn draw_pane<S: PaneScreen>(
     screen: &S,
     name: S::PaneId,

@@ -1,4 +1,4 @@
-//! The draft of an answer to a study question.
+//! The draft of a participant's answer to a study question.
 
 use std::time::Duration;
 
@@ -11,37 +11,37 @@ use novamind_study::{AnswerFormat, DueQuestion};
 use novamind_tui::widgets::{TextEditor, TextField};
 use novamind_worker::request::GivenAnswer;
 
-/// The input so far.
+/// The answer that the participant has entered.
 #[derive(Debug, Clone)]
 pub enum AnswerInput {
-    /// A point of a scale or one of several options, by index.
+    /// Index of a point on a scale or of one option.
     Choice(Option<usize>),
-    /// Several options, and the option under the cursor.
+    /// Whether each option is marked, and the index of the option under the cursor.
     MultipleChoice(Vec<bool>, usize),
-    /// A number as typed.
+    /// Field with a typed number.
     Number(TextField),
-    /// A text.
+    /// Editor with a typed text.
     Text(Box<TextEditor>),
 }
 
-/// A question with the input so far.
+/// A question with the draft of its answer.
 pub struct AnswerDraft {
-    /// The question.
+    /// The question to answer.
     pub question: DueQuestion,
-    /// The input.
+    /// The answer that the participant has entered.
     pub input: AnswerInput,
-    /// Whether it was shown before.
+    /// Whether the question was shown before.
     pub was_shown: bool,
-    /// The last confirmed answer.
+    /// The answer that was confirmed last.
     confirmed_answer: Option<Value>,
     changes: u32,
-    /// Milliseconds on the screen in earlier views.
+    /// Time for which earlier views showed the question, in milliseconds.
     previous_ms: u64,
     shown_at: Duration,
 }
 
 impl AnswerDraft {
-    /// Returns an empty draft of a question that was not shown yet.
+    /// Returns an empty draft for a question that has not been shown yet.
     pub fn new(due: DueQuestion) -> AnswerDraft {
         let entered = match &due.question.form {
             AnswerFormat::Likert { .. }
@@ -91,7 +91,7 @@ impl AnswerDraft {
     /// Validates and accepts the input as the answer.
     ///
     /// # Errors
-    /// The input is invalid; the message says what is expected.
+    /// The input is invalid. The message describes the expected input.
     pub fn confirm(&mut self) -> Result<(), String> {
         let form = &self.question.question.form;
         let typed = self.typed_text();
@@ -103,7 +103,7 @@ impl AnswerDraft {
                     form.parse_answer("").err().unwrap_or_default()
                 ));
             }
-            false => form.parse_answer(&typed).map_err(|expected| format!("needed: {expected}"))?,
+            false => form.parse_answer(&typed).map_err(|expected| format!("expected: {expected}"))?,
         };
         let chosen_live = matches!(self.input, AnswerInput::Choice(_));
         let differs = self.confirmed_answer.as_ref().is_some_and(|before| *before != value);
@@ -112,7 +112,7 @@ impl AnswerDraft {
         Ok(())
     }
 
-    /// Returns the answer.
+    /// Returns the confirmed answer with its view time and changes.
     pub fn given_answer(&self) -> GivenAnswer {
         GivenAnswer {
             due: self.question.clone(),
@@ -126,14 +126,14 @@ impl AnswerDraft {
         self.question.question.form.options().len()
     }
 
-    /// Chooses an option, or toggles it if several can be marked.
+    /// Chooses an option. If the participant can mark several options, toggles the option.
     pub fn choose_option(&mut self, at: usize) {
         if at >= self.option_count() {
             return;
         }
         match &mut self.input {
             AnswerInput::Choice(chosen) => {
-                // The first choice is not a change.
+                // The first choice does not count as a change.
                 self.changes += u32::from(chosen.is_some_and(|before| before != at));
                 *chosen = Some(at);
             }
@@ -145,7 +145,7 @@ impl AnswerDraft {
         }
     }
 
-    /// Handles an action on the input.
+    /// Handles an action in the input of the answer.
     pub fn handle_action(&mut self, action: Action) {
         let last = self.option_count().saturating_sub(1);
         let step = |at: usize| match action {
@@ -179,7 +179,7 @@ impl AnswerDraft {
         }
     }
 
-    /// Handles a typed key. Returns why it was ignored if that is not obvious.
+    /// Handles a typed key. Returns the reason why the key was ignored, if the reason is not obvious.
     pub fn handle_key(&mut self, key: &KeyEvent) -> Option<String> {
         let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
         match (&mut self.input, key.code) {
@@ -198,7 +198,7 @@ impl AnswerDraft {
         None
     }
 
-    /// Handles pasted text.
+    /// Handles text that is pasted into the answer.
     pub fn paste(&mut self, text: &str) {
         match &mut self.input {
             AnswerInput::Number(field) => field.insert(text.trim()),

@@ -1,4 +1,4 @@
-//! Drawing of the study pages.
+//! Draws the study pages of a participant.
 
 use ratatui::layout::Rect;
 
@@ -13,7 +13,7 @@ use novamind_tui::theme::Role;
 const MAX_PAGE_WIDTH: u16 = 84;
 
 impl StudyPage {
-    /// Draws the page below the title of the study.
+    /// Draws the current page below the title of the study.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &KeyBindings) {
         let head = Rect { x: area.x + 2, width: area.width.saturating_sub(4), height: 1, ..area };
         canvas.draw_text(head, &self.title, Role::Title);
@@ -34,7 +34,7 @@ impl StudyPage {
             let texts = wrap(&text, width.saturating_sub(4) as usize);
             lines.extend(texts.into_iter().map(|line| (line, role)));
         }
-        // In small windows, blank lines are dropped first.
+        // In small windows, blank lines are omitted first.
         if lines.len() + 2 > body.height as usize {
             lines.retain(|(line, _)| !line.is_empty());
         }
@@ -76,32 +76,35 @@ impl StudyPage {
                 ("Label", vec![strong("Type the label that the experimenter gave you.".to_owned())])
             }
             StudyPageKind::Code(_) => ("Experimenter", vec![strong("The experimenter's code:".to_owned())]),
-            StudyPageKind::Loading | StudyPageKind::Consent(_) => ("", vec![text("One moment …")]),
+            StudyPageKind::Loading | StudyPageKind::Consent(_) => ("", vec![text("Loading …")]),
             StudyPageKind::Practice { resumed, may_pass } => {
                 let first = match resumed {
-                    false => "First comes a practice company, to learn the controls. It does not count.",
-                    true => "The practice continues where you left it. It does not count.",
+                    false => {
+                        "First, run a practice company to learn the controls. The practice does not count."
+                    }
+                    true => "The practice continues where you left off. The practice does not count.",
                 };
                 let mut paragraphs = vec![text(first)];
                 paragraphs.push(text(
-                    "It ends automatically after its last day. The session then starts with a new company.",
+                    "The practice ends automatically after its last day. The session then starts with a new company.",
                 ));
                 paragraphs.push(strong(format!("{go} starts the practice")));
                 if *may_pass {
                     let pass = key(Action::SkipPractice);
-                    paragraphs.push(strong(format!("{pass} skips it and continues with the session")));
+                    paragraphs
+                        .push(strong(format!("{pass} skips the practice and continues with the session")));
                 }
                 ("Practice", paragraphs)
             }
             StudyPageKind::Session { resumed } => {
                 let first = match resumed {
                     false => "The session starts now.",
-                    true => "The session continues where you left it.",
+                    true => "The session continues where you left off.",
                 };
                 let kept = "Everything you confirm is saved. You can leave at any time and continue later with your label.";
                 let palette = key(Action::Palette);
                 let withdraw = format!(
-                    "You can withdraw at any time ({palette} {}). That erases everything you did in this study.",
+                    "You can withdraw at any time ({palette} {}). This erases everything you did in this study.",
                     Action::Withdraw.entry().title
                 );
                 let pause = format!(

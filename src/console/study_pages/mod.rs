@@ -1,6 +1,7 @@
-//! The pages of a participant's session: label, consent, practice, session, questions, thanks.
+//! The pages of a participant's session: label, consent, practice, session, questions and thanks.
 //!
-//! No other part of the console is reachable meanwhile; the experimenter's code opens the rest.
+//! While a page is shown, the participant cannot reach other parts of the console. The experimenter's code opens the
+//! start menu.
 
 mod answer;
 mod draw;
@@ -15,13 +16,13 @@ use novamind_study::{DueQuestion, NextStep, Study};
 use novamind_tui::widgets::TextField;
 use novamind_worker::request::{Request, StudyRequest};
 
-/// Study state of the console, on pages and in runs.
+/// State of the console in a study, on study pages and in runs.
 pub struct StudyState {
-    /// Title of the study for participants.
+    /// Title of the study that participants see.
     pub title: String,
     /// Whether the practice includes the tour.
     has_practice_tour: bool,
-    /// Due questions without an answer.
+    /// Due questions that have no answer yet.
     pub due_questions: Vec<DueQuestion>,
     /// Whether the current run is the practice.
     pub is_practice: bool,
@@ -30,7 +31,7 @@ pub struct StudyState {
 }
 
 impl StudyState {
-    /// Returns the state before the first participant.
+    /// Returns the state of a study before the first participant starts.
     pub fn new(study: &Study) -> StudyState {
         StudyState {
             title: study.protocol.title.clone(),
@@ -47,7 +48,7 @@ impl StudyState {
     }
 }
 
-/// A page outside of a run.
+/// A study page that is shown while no run is open.
 pub struct StudyPage {
     title: String,
     kind: StudyPageKind,
@@ -57,27 +58,27 @@ pub struct StudyPage {
 }
 
 enum StudyPageKind {
-    /// The participant enters their label.
+    /// Page on which the participant enters a label.
     Label(TextField),
-    /// The experimenter enters the code.
+    /// Page on which the experimenter enters the code.
     Code(TextField),
-    /// Waiting for a response.
+    /// Page that is shown until a response arrives.
     Loading,
-    /// The participant agrees or declines.
+    /// Page on which the participant agrees to the consent text or declines.
     Consent(ConsentText),
-    /// The practice comes next.
+    /// Page before the practice.
     Practice { resumed: bool, may_pass: bool },
-    /// The session comes next.
+    /// Page before the session.
     Session { resumed: bool },
-    /// The participant has left a run that has not ended.
+    /// Page after the participant left a run that has not ended.
     Left,
-    /// The participant withdraws: confirmed once, then by typing a word.
+    /// Page on which the participant confirms a withdrawal, first with a key, then by typing a word.
     Withdraw(Option<TextField>),
-    /// The participant declined.
+    /// Page after the participant declined.
     Declined,
-    /// The participant has withdrawn; describes what is kept.
+    /// Page after a withdrawal, with a description of the data that is kept.
     Withdrawn(String),
-    /// The participant has finished.
+    /// Page after the participant finished the session.
     Thanks,
 }
 
@@ -93,17 +94,17 @@ impl StudyPage {
         StudyPage::new(title, StudyPageKind::Label(TextField::default()))
     }
 
-    /// Returns the page shown while waiting.
+    /// Returns the page that is shown until a response arrives.
     pub fn loading_page(title: &str) -> StudyPage {
         StudyPage::new(title, StudyPageKind::Loading)
     }
 
-    /// Returns the page after a run was left before its end.
+    /// Returns the page after the participant left a run before its end.
     pub fn left_page(title: &str) -> StudyPage {
         StudyPage::new(title, StudyPageKind::Left)
     }
 
-    /// Returns the withdrawal page.
+    /// Returns the page on which the participant confirms a withdrawal.
     pub fn withdraw_page(title: &str) -> StudyPage {
         StudyPage::new(title, StudyPageKind::Withdraw(None))
     }
@@ -113,7 +114,7 @@ impl StudyPage {
         StudyPage::new(title, StudyPageKind::Declined)
     }
 
-    /// Returns the page of the next step.
+    /// Returns the page of the participant's next step.
     pub fn from_step(title: &str, step: NextStep) -> StudyPage {
         let kind = match step {
             NextStep::Consent(text) => StudyPageKind::Consent(ConsentText::new(text.text)),
@@ -121,7 +122,7 @@ impl StudyPage {
                 StudyPageKind::Practice { resumed: unfinished.is_some(), may_pass }
             }
             NextStep::Session(unfinished) => StudyPageKind::Session { resumed: unfinished.is_some() },
-            // The run opens automatically, with the questions over it.
+            // The run opens automatically and shows the questions over the screen.
             NextStep::Questions(_) => StudyPageKind::Loading,
             NextStep::Thanks => StudyPageKind::Thanks,
             NextStep::Withdrawn(kept) => StudyPageKind::Withdrawn(kept),
@@ -129,19 +130,19 @@ impl StudyPage {
         StudyPage::new(title, kind)
     }
 
-    /// Shows why a label was rejected, and counts it.
+    /// Shows why a label was rejected, and counts the rejection.
     pub fn reject_label(&mut self, problem: String) {
         self.rejected_labels += 1;
         let field = TextField::default();
         (self.kind, self.problem) = (StudyPageKind::Label(field), Some(problem));
     }
 
-    /// Shows an error.
+    /// Shows an error message on the page.
     pub fn set_problem(&mut self, problem: String) {
         self.problem = Some(problem);
     }
 
-    /// Returns the scopes of the page.
+    /// Returns the scopes of the current page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.kind {
             StudyPageKind::Label(_) | StudyPageKind::Code(_) | StudyPageKind::Withdraw(Some(_)) => {
@@ -153,7 +154,7 @@ impl StudyPage {
         }
     }
 
-    /// Returns the actions for the footer, without the experimenter's action.
+    /// Returns the actions to show in the footer, without the action of the experimenter.
     pub fn hints(&self) -> Vec<Action> {
         match &self.kind {
             StudyPageKind::Label(_) => vec![Action::Continue],
@@ -176,7 +177,7 @@ impl StudyPage {
         }
     }
 
-    /// Handles an action.
+    /// Handles an action on the current page.
     pub fn handle_action(&mut self, action: Action) -> Vec<Effect> {
         let withdraws = action == Action::Withdraw && self.hints().contains(&action);
         match (&mut self.kind, action) {
@@ -239,7 +240,7 @@ impl StudyPage {
                 self.problem = Some(format!("nothing was erased: type {WITHDRAW}, or press esc to continue"));
                 Vec::new()
             }
-            // The next participant.
+            // The next participant can enter a label.
             StudyPageKind::Left
             | StudyPageKind::Declined
             | StudyPageKind::Withdrawn(_)
@@ -251,7 +252,7 @@ impl StudyPage {
         }
     }
 
-    /// Sends a request and shows the waiting page.
+    /// Sends a request and shows the loading page.
     fn send_request(&mut self, request: StudyRequest) -> Vec<Effect> {
         self.show_page(StudyPageKind::Loading);
         vec![Effect::Request(Request::Study(request))]
@@ -279,7 +280,7 @@ impl StudyPage {
         Vec::new()
     }
 
-    /// Handles pasted text.
+    /// Handles text that is pasted into the field of the page.
     pub fn paste(&mut self, text: &str) {
         if let Some(field) = self.field() {
             field.insert(text.trim());

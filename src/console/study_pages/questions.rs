@@ -1,4 +1,4 @@
-//! A page of questions, shown one by one; all answers are sent together.
+//! A page of questions that are shown one at a time. All answers are sent together.
 
 use std::cell::Cell;
 
@@ -22,19 +22,20 @@ use novamind_worker::request::{Request, StudyRequest};
 const MAX_TEXT_WIDTH: u16 = 92;
 const MORE_OPTIONS: &str = "  ↓ more";
 
-/// The questions of a questionnaire at one occasion.
+/// The due questions of one questionnaire.
 pub struct QuestionPage {
     drafts: Vec<AnswerDraft>,
     current: usize,
-    /// First visible line of the question, if it is longer than the window.
+    /// Index of the first visible line of the question, which may be longer than the window.
     first_line: usize,
-    /// Visible question lines of the last frame, and the last useful scroll position.
+    /// Number of visible question lines in the last frame, and the last useful scroll position.
     visible_lines: Cell<(usize, usize)>,
     problem: Option<String>,
 }
 
 impl QuestionPage {
-    /// Returns the first page of the due questions and the effect of showing it, or `None` if no question is due.
+    /// Returns the first page of the due questions and the effect that records its first question. Returns `None` if
+    /// no question is due.
     pub fn for_due_questions(due: &[DueQuestion]) -> Option<(QuestionPage, Effect)> {
         let first = due.first()?;
         let same = |one: &&DueQuestion| {
@@ -56,12 +57,12 @@ impl QuestionPage {
         &self.drafts[self.current]
     }
 
-    /// Returns whether the answer is chosen rather than typed.
+    /// Returns whether the participant chooses the answer to the current question rather than types it.
     fn is_choice(&self) -> bool {
         matches!(self.current_draft().input, AnswerInput::Choice(_) | AnswerInput::MultipleChoice(..))
     }
 
-    /// Shows a question. Returns the effect that records it, the first time.
+    /// Shows a question of the page. If the question is shown for the first time, returns the effect that records this.
     fn show_question(&mut self, at: usize) -> Option<Effect> {
         self.current = at.min(self.drafts.len().saturating_sub(1));
         (self.first_line, self.problem) = (0, None);
@@ -104,7 +105,7 @@ impl QuestionPage {
         DialogResponse::stay_with(self.show_question(before).into_iter().collect())
     }
 
-    /// Returns title, introduction and question as styled lines.
+    /// Returns the title, the introduction and the question as styled lines.
     fn prompt_lines(&self, width: usize) -> Vec<(String, Role)> {
         let due = &self.current_draft().question;
         let mut lines: Vec<(String, Role)> = Vec::new();
@@ -133,7 +134,7 @@ impl Dialog for QuestionPage {
 
     fn hints(&self) -> Vec<Action> {
         let mut hints = Vec::new();
-        // In a text answer the first key inserts a line break; the frame names the key that continues.
+        // In a text answer, enter inserts a line break. The border of the page names the key that continues.
         if !matches!(self.current_draft().input, AnswerInput::Text(_)) {
             hints.push(Action::Continue);
         }
@@ -207,7 +208,7 @@ impl Dialog for QuestionPage {
 }
 
 impl QuestionPage {
-    /// Splits the space into question, answer and a line below.
+    /// Splits the page into the areas of the question, the answer and a line below the answer.
     fn layout(&self, inside: Rect) -> [Rect; 3] {
         let wanted = self.prompt_lines(inside.width as usize).len() as u16;
         let rows = answer_rows(self.current_draft(), inside.width).min(inside.height / 2);
@@ -227,7 +228,7 @@ impl QuestionPage {
         let last = lines.len().saturating_sub(room);
         let from = self.first_line.min(last);
         let more = lines.len() - from > room;
-        // The last row may be used for the scroll hint.
+        // One row less is visible, because the last row may show the scroll hint.
         self.visible_lines.set((room.saturating_sub(1).max(1), last));
         for (at, (row, (line, role))) in row_rects(area).zip(lines.iter().skip(from)).enumerate() {
             match more && at + 1 == room {
@@ -241,7 +242,7 @@ impl QuestionPage {
         let key = |action| context.keys.label(action).unwrap_or_default();
         let last = self.current + 1 == self.drafts.len();
         let on = match self.current_draft().input {
-            // Enter inserts a line break.
+            // In a text answer, enter inserts a line break.
             AnswerInput::Text(_) => "tab".to_owned(),
             _ => key(Action::Continue),
         };
@@ -254,7 +255,7 @@ impl QuestionPage {
         words.join(" · ")
     }
 
-    /// Returns the key that leaves the page; not a letter while text is typed.
+    /// Returns the key that leaves the page. While the participant types a text, the key is not a letter.
     fn leave_hint(&self, keys: &KeyBindings) -> Option<String> {
         let works = |chords: &&[Chord]| {
             self.is_choice() || chords.first().is_some_and(|chord| !chord.is_text_input())
@@ -311,7 +312,7 @@ fn draw_answer(canvas: &mut Canvas<'_>, area: Rect, draft: &AnswerDraft) {
     }
 }
 
-/// Draws a scale with the labels of its ends.
+/// Draws the points of a scale and the labels of its two ends.
 fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option<usize>, ends: [&str; 2]) {
     let mut rows = row_rects(area);
     let Some(row) = rows.next() else { return };
@@ -337,7 +338,7 @@ fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option
     }
 }
 
-/// Returns the option lines with the index of their option.
+/// Returns the lines of all options. Each line has the index of its option.
 fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
     let sign = |at: usize| match &draft.input {
         AnswerInput::Choice(chosen) if *chosen == Some(at) => "(•)",
@@ -347,7 +348,7 @@ fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
     };
     let lines = |(at, option): (usize, String)| {
         let head = format!("{:>2} {} ", at + 1, sign(at));
-        // Space for the sign that more options follow.
+        // Space is reserved for the sign that more options follow.
         let room = (width as usize).saturating_sub(head.width() + MORE_OPTIONS.width()).max(1);
         let option_text = wrap(&option, room).into_iter().enumerate();
         option_text

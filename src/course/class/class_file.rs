@@ -22,48 +22,48 @@ const MAX_STUDENTS: u32 = 999;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Class {
-    /// Format of the file.
+    /// Format version of `class.toml`.
     pub format: u32,
     /// Version of the program that created the class.
     pub program: String,
     /// Name of the class: eight hexadecimal digits.
     pub class: String,
-    /// Creation time, RFC 3339.
+    /// Time at which the class was created, RFC 3339.
     pub created: String,
-    /// The lesson, if a lesson was handed out.
+    /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<ClassLesson>,
-    /// The run, if a run was handed out.
+    /// The run that was handed out; `None` if a lesson was handed out.
     pub run: Option<ClassSourceRun>,
-    /// The students.
+    /// The students of the class.
     #[serde(rename = "student")]
     pub students: Vec<ClassStudent>,
 }
 
-/// The lesson of a class.
+/// Name and digest of the lesson of a class.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassLesson {
     /// Name of the lesson.
     pub name: String,
-    /// Digest of its plan and texts.
+    /// Digest of the lesson's plan and texts.
     pub digest: String,
 }
 
-/// The run that every student continues.
+/// The instructor's run that every student continues.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassSourceRun {
-    /// Name of the run.
+    /// Name of the instructor's run.
     pub run: String,
-    /// Its last day.
+    /// Last day of the instructor's run.
     pub day: u32,
 }
 
-/// A student.
+/// A student of a class, with the handout of that student.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassStudent {
-    /// Label.
+    /// Label of the student.
     pub label: String,
     /// Name of the run that the handout creates.
     pub run: String,
@@ -71,12 +71,12 @@ pub struct ClassStudent {
     pub seal: String,
 }
 
-/// The content of a new class.
+/// The lesson or run that the instructor hands out to a new class.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HandoutSource {
-    /// A lesson.
+    /// A lesson that every student starts from the beginning.
     Lesson(Arc<Lesson>),
-    /// The run in a folder, up to the end of its last week.
+    /// The run in this folder, up to the end of its last week.
     Run(PathBuf),
 }
 
@@ -134,10 +134,10 @@ impl Class {
         Ok(class)
     }
 
-    /// Reads the class of a folder.
+    /// Reads `class.toml` from the folder of a class.
     ///
     /// # Errors
-    /// Returns an error if the folder contains no class, or if its file is damaged or has a later format.
+    /// Returns an error if the folder contains no class, or if `class.toml` is damaged or has a later format.
     pub fn read(folder: &Path) -> Result<Class, RunError> {
         let path = folder.join(CLASS_FILE);
         let text = match std::fs::read_to_string(&path) {
@@ -159,10 +159,11 @@ impl Class {
         Ok(class)
     }
 
-    /// Reads the copy of the lesson in the folder of the class. Returns `None` if a run was handed out.
+    /// Reads the copy of the lesson that is stored in the folder of the class. Returns `None` if a run was handed out.
     ///
     /// # Errors
-    /// Returns an error if its files are missing or invalid, or if they differ from the lesson that was handed out.
+    /// Returns an error if the files of the lesson are missing or invalid, or if they differ from the lesson that was
+    /// handed out.
     pub fn stored_lesson(&self, folder: &Path) -> Result<Option<Arc<Lesson>>, RunError> {
         let Some(class_lesson) = &self.lesson else { return Ok(None) };
         let lesson = Lesson::from_run(folder, &class_lesson.name)?;
@@ -177,12 +178,12 @@ impl Class {
         })
     }
 
-    /// Returns the student with a label.
+    /// Returns the student with this label.
     pub fn student(&self, label: &str) -> Option<&ClassStudent> {
         self.students.iter().find(|student| student.label == label)
     }
 
-    /// Returns the labels of handouts in the folder that differ from those that were handed out. Missing files are not listed.
+    /// Returns the labels of students whose handout file in the folder differs from the original. Missing files are not listed.
     pub(super) fn altered_handouts(&self, folder: &Path) -> Vec<String> {
         let is_altered = |student: &&ClassStudent| {
             let path = folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));

@@ -8,14 +8,14 @@ use super::collection::ClassCollection;
 use novamind_record::error::RunError;
 use novamind_record::lesson::Lesson;
 
-/// A class with its newest collection.
+/// A class with its lesson and its newest collection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CollectedClass {
-    /// The class.
+    /// The content of `class.toml`.
     pub class: Class,
-    /// The lesson, if a lesson was handed out.
+    /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<Arc<Lesson>>,
-    /// The newest collection.
+    /// The newest collection of submissions.
     pub collection: ClassCollection,
 }
 

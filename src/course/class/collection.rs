@@ -1,4 +1,5 @@
-//! Collection of a class: finds its runs in folders and archives, re-simulates them, and assigns them to students.
+//! Collects the submissions of a class: finds its runs in folders and archives, re-simulates them, and assigns them to
+//! students.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,37 +22,37 @@ use novamind_study::{CollectNote, FoundRun, collect_runs};
 
 const COLLECTED_FILE: &str = "collected.json";
 
-/// The submissions of a class.
+/// The submissions of a class, as collected from folders and archives.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassCollection {
-    /// Runs, sorted by label and start time.
+    /// Submitted runs, sorted by label and start time.
     pub runs: Vec<ClassRun>,
-    /// The reference play on the seeds of the runs.
+    /// Results of the reference play on the seeds of the submitted runs.
     pub references: Vec<ClassReference>,
-    /// Problems for the instructor.
+    /// Problems that the collection reports to the instructor.
     pub findings: Vec<ClassFinding>,
-    /// Number of records that were found again, or in an earlier state; the latest one counts.
+    /// Number of records that are duplicates or earlier states of a collected run. Only the latest record of a run counts.
     pub superseded: u32,
-    /// Number of runs that do not belong to the class.
+    /// Number of runs in the searched folders that do not belong to the class.
     pub others: u32,
 }
 
 /// The input of a collection.
 pub struct CollectionInput<'a> {
-    /// The class.
+    /// The class whose submissions are collected.
     pub class: &'a Class,
     /// Folder of the class.
     pub folder: &'a Path,
-    /// Folders of runs and archives, searched recursively.
+    /// Folders that are searched recursively for runs and archives.
     pub places: &'a [PathBuf],
 }
 
 impl ClassCollection {
-    /// Collects the submissions and stores them in the folder of the class. `progress` is called with the number of processed runs
-    /// and the number of all runs.
+    /// Collects the submissions of a class and stores them in its folder. `progress` is called with the number of
+    /// processed runs and the total number of runs.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be played.
+    /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be simulated.
     pub fn collect(
         sources: &CollectionInput<'_>,
         answers: RuleEvaluator,
@@ -109,10 +110,10 @@ impl ClassCollection {
         Ok(collection)
     }
 
-    /// Reads the newest collection.
+    /// Reads the newest collection from the folder of a class.
     ///
     /// # Errors
-    /// Returns an error if nothing was collected yet, or if the file is damaged.
+    /// Returns an error if no submissions have been collected, or if the file of the collection is damaged.
     pub fn read(folder: &Path) -> Result<ClassCollection, RunError> {
         let path = folder.join(COLLECTED_FILE);
         let collect = format!("`novamind class collect {} PLACES`", folder.display());
@@ -143,7 +144,7 @@ struct CollectionBuilder<'a> {
 }
 
 impl CollectionBuilder<'_> {
-    /// Returns the label of the student whom a path names: by a folder, or by the beginning of the file name.
+    /// Returns the label that a path contains, as the name of a folder or as the beginning of the file name.
     fn label_from_path(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
             part.strip_prefix(label)
@@ -158,7 +159,7 @@ impl CollectionBuilder<'_> {
         found.manifest.participant.clone().or_else(|| self.label_from_path(&found.source))
     }
 
-    /// Returns whether a record started from a handout of the class, or without a handout from its lesson.
+    /// Returns whether a record started from a handout of the class, or from its lesson without a handout.
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let has_class_handout = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
@@ -177,7 +178,8 @@ impl CollectionBuilder<'_> {
         self.runs.push(run);
     }
 
-    /// Adds records of one run that contradict each other. If several of them are valid, none counts, and each is reported.
+    /// Adds records of one run that contradict each other. If several records are valid, none of them counts, and each
+    /// one is reported.
     fn add_conflicting_records(&mut self, records: &[FoundRun]) {
         let found_runs: Vec<&FoundRun> =
             records.iter().filter(|found| self.belongs_to_class(&found.manifest)).collect();
@@ -200,7 +202,7 @@ impl CollectionBuilder<'_> {
         self.runs.extend(wrong);
     }
 
-    /// Examines a record and decides whether it counts.
+    /// Examines a record and decides whether it counts for the class.
     fn examine_run(&mut self, found: &FoundRun) -> ClassRun {
         let label = self.run_label(found).unwrap_or_default();
         let examined = examine_record(&found.folder, self.lesson);
@@ -231,7 +233,7 @@ impl CollectionBuilder<'_> {
         }
     }
 
-    /// Returns the reason why a valid record does not count: it does not match the handout of this student.
+    /// Returns the reason why a valid record does not count, if it does not match the handout of this student.
     fn find_mismatch(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());
@@ -259,7 +261,8 @@ impl CollectionBuilder<'_> {
         None
     }
 
-    /// Returns whether a run continues the past that was handed out. Returns `true` if the handout is no longer in the folder.
+    /// Returns whether a run continues the recorded past in the student's handout. Returns `true` if the handout is no
+    /// longer in the folder.
     fn starts_with_handout(&self, student: &ClassStudent, found: &FoundRun) -> bool {
         let path = self.sources.folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));
         let Ok(Handout { content: HandoutContent::Run(past), .. }) = Handout::read(&path) else {
@@ -303,7 +306,7 @@ impl ClassRun {
     }
 }
 
-/// Describes an error with the path where the record was found, not that of its copy.
+/// Describes an error with the path where the record was found instead of the path of its temporary copy.
 fn describe_problem(error: &RunError, found: &FoundRun) -> String {
     match error {
         RunError::Damaged { line, problem, .. } => {

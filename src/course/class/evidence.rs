@@ -1,4 +1,4 @@
-//! Evidence of a run of a class: re-simulates the run and compares its lesson events with the result.
+//! Evidence of a submitted run: re-simulates the run and compares its lesson events with the re-simulation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -13,50 +13,50 @@ use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Integrity, SealKey, Session, measure, read_origin, setting_values};
 
-/// The results of a run of a class.
+/// The results of a submitted run, from its re-simulation.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// The part of the lesson, counted from 1.
+    /// The part of the lesson that the student played, counted from 1.
     pub part: u32,
     /// Seed of the run.
     pub seed: u64,
-    /// Last day.
+    /// Last simulated day of the run.
     pub day: u32,
     /// Whether the run has ended.
     pub is_over: bool,
-    /// Number of tries: the maximum over its steps.
+    /// Highest number of tries of any step.
     pub tries: u32,
-    /// Number of hints taken.
+    /// Number of hints that the student used.
     pub hints: u32,
-    /// The steps of the part.
+    /// Results of the steps of the part.
     pub steps: Vec<StepEvidence>,
-    /// Names of the pitfalls, in the order in which they were met.
+    /// Names of the pitfalls, in the order in which the student triggered them.
     pub pitfalls: Vec<String>,
     /// Day and cash in dollars, on day 0 and after each week.
     pub cash: Vec<(u32, f64)>,
-    /// Mean of every setting over the weeks in which the student decided.
+    /// Mean of each setting over the weeks in which the student decided.
     pub decisions: BTreeMap<String, f64>,
-    /// Figures of the last week.
+    /// Weekly figures of the last week.
     pub figures: BTreeMap<String, f64>,
 }
 
-/// The results of a step.
+/// The results of a step of a lesson.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepEvidence {
-    /// The guess; for choices the number of the selected one, counted from 1.
+    /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
-    /// The outcome.
+    /// The actual value that the student had to guess.
     pub outcome: Option<f64>,
-    /// The goals; empty until the step has ended.
+    /// Results of the goals of the step; empty until the step has ended.
     pub goals: Vec<GoalEvidence>,
 }
 
-/// The result of a goal.
+/// The result of a goal of a lesson.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct GoalEvidence {
-    /// Measured value.
+    /// Measured value of the goal.
     pub value: Option<f64>,
-    /// Whether it was reached.
+    /// Whether the goal was reached.
     pub met: bool,
 }
 
@@ -69,7 +69,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
     let manifest = &origin.manifest;
     Integrity::read(folder, manifest, &SealKey::default()).check(&origin.path, &trajectory)?;
     let stamp = manifest.lesson.as_ref();
-    // This lesson's goals cannot be measured in a run of another lesson.
+    // The goals of this lesson cannot be measured in a run of a different lesson.
     let lesson = lesson.filter(|lesson| stamp.is_some_and(|stamp| stamp.digest == lesson.digest));
     let part = stamp.map_or(0, |stamp| (stamp.part as usize).wrapping_sub(1));
     if let Some(lesson) = lesson.filter(|lesson| part >= lesson.plan.parts.len()) {
@@ -88,7 +88,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
     Ok(Evidence { is_over: trajectory.end_line().is_some(), ..replay.into_evidence(&session, manifest.seed) })
 }
 
-/// State of a re-simulation.
+/// Results that are gathered while a run is re-simulated.
 struct EvidenceReplay {
     standing: Option<LessonProgress>,
     decisions: BTreeMap<String, f64>,
@@ -120,7 +120,8 @@ impl EvidenceReplay {
         }
     }
 
-    /// Describes how the recorded result of a goal or a guess differs from the re-simulation. Returns `None` if they match.
+    /// Describes how the recorded result of a goal or a guess differs from the re-simulated result. Returns `None` if
+    /// both results match.
     fn note_mismatch(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
@@ -205,42 +206,42 @@ fn last_week_figures(session: &Session) -> BTreeMap<String, f64> {
 /// A submitted run with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassRun {
-    /// Label in its first event, otherwise the label that its path names, otherwise empty.
+    /// Label in the first event of the run, otherwise the label in its path, otherwise empty.
     pub label: String,
     /// Name of the run.
     pub run: String,
-    /// Start time, RFC 3339.
+    /// Time at which the run started, RFC 3339.
     pub created: String,
     /// Path where the run was found.
     pub source: PathBuf,
-    /// Whether the run counts.
+    /// Decision on whether the run counts.
     pub verdict: RunVerdict,
-    /// The results; empty except for part and seed if the run was altered.
+    /// Results of the run. The results of an altered run contain only its part and seed.
     pub evidence: Evidence,
 }
 
-/// Whether a run of a class counts.
+/// Decision on whether a submitted run counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunVerdict {
     /// The run has ended and matches the re-simulation.
     Finished,
-    /// The run is valid and has not ended.
+    /// The run is valid but has not ended.
     NotFinished,
-    /// The events do not match the re-simulation.
+    /// The events of the run do not match the re-simulation.
     Altered,
     /// Several valid records of the run contradict each other.
     Conflicting,
-    /// The run used another lesson, or another version of it.
+    /// The run used a different lesson, or a different version of the lesson.
     OtherLesson,
-    /// The run started from another student's handout, or from a past that was not handed out.
+    /// The run started from the handout of a different student, or its past differs from the one in the handout.
     OtherHandout,
     /// The run did not start from a handout of this class.
     Unknown,
 }
 
 impl RunVerdict {
-    /// Returns the name that tables use.
+    /// Returns the name of the verdict that tables show.
     pub fn label(self) -> &'static str {
         match self {
             RunVerdict::Finished => "finished",

@@ -1,86 +1,86 @@
-//! Problems of a collection that the instructor should know.
+//! Problems with submissions, reported to the instructor.
 
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-/// A problem of a collection.
+/// A problem with the submissions of a class.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ClassFinding {
     /// A file that cannot be read: damaged, altered, or not a run.
     Unreadable {
-        /// Label that the path names, if any.
+        /// Label of the student in the path, if any.
         label: Option<String>,
-        /// Path.
+        /// Path of the file.
         path: PathBuf,
-        /// Reason.
+        /// Reason why the file cannot be read.
         problem: String,
     },
     /// A run whose events do not match the re-simulation.
     Altered {
-        /// Label.
+        /// Label of the student.
         label: String,
-        /// Run.
+        /// Name of the run.
         run: String,
         /// The first event that does not match.
         problem: String,
     },
     /// Records of one run that contradict each other.
     Conflicting {
-        /// Label.
+        /// Label of the student.
         label: String,
-        /// Run.
+        /// Name of the run.
         run: String,
-        /// Their paths.
+        /// Paths of the records.
         paths: Vec<PathBuf>,
     },
-    /// A run of another lesson, or of another version of it.
+    /// A run of a different lesson, or of a different version of the lesson.
     OtherLesson {
-        /// Label.
+        /// Label of the student.
         label: String,
-        /// Run.
+        /// Name of the run.
         run: String,
     },
     /// A run that did not start from this student's handout.
     OtherHandout {
-        /// Label.
+        /// Label of the student.
         label: String,
-        /// Run.
+        /// Name of the run.
         run: String,
-        /// Label of the handout's student; `None` if only the past differs.
+        /// Label of the student who received the handout; `None` if only the past of the run differs.
         of: Option<String>,
     },
     /// A run of the lesson that did not start from a handout of this class.
     Unknown {
-        /// Label in its first event.
+        /// Label in the first event of the run.
         label: Option<String>,
-        /// Run.
+        /// Name of the run.
         run: String,
-        /// Path.
+        /// Path of the run.
         path: PathBuf,
     },
     /// A student without a submission.
     Missing {
-        /// Label.
+        /// Label of the student.
         label: String,
     },
-    /// A student who has not finished every part.
+    /// A student who has not finished every part of the lesson.
     NotFinished {
-        /// Label.
+        /// Label of the student.
         label: String,
-        /// The parts, counted from 1.
+        /// Numbers of the unfinished parts, counted from 1.
         parts: Vec<u32>,
     },
     /// A handout in the folder of the class that was changed.
     AlteredHandout {
-        /// Label.
+        /// Label of the student.
         label: String,
     },
 }
 
 impl ClassFinding {
-    /// Returns the label of the student, if known.
+    /// Returns the label of the student, or `None` if the student is unknown.
     pub fn label(&self) -> Option<&str> {
         match self {
             ClassFinding::Unreadable { label, .. } | ClassFinding::Unknown { label, .. } => label.as_deref(),

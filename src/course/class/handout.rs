@@ -1,4 +1,4 @@
-//! Handouts: the file from which one student starts (docs/formats/class.md#handout).
+//! Handouts: files from which students start a lesson or continue a run (docs/formats/class.md#handout).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,33 +21,33 @@ pub(super) const HANDOUT_FORMAT: u32 = 1;
 
 pub(super) const HANDOUT_EXTENSION: &str = ".nm";
 
-/// The file from which one student starts.
+/// The file from which one student starts a lesson or continues a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Handout {
     /// Label of the student.
     pub label: String,
-    /// The class, and the run that the handout creates.
+    /// Stamp with the class and the run that the handout creates.
     pub stamp: HandoutStamp,
-    /// The lesson or run.
+    /// The lesson or run that was handed out.
     pub content: HandoutContent,
 }
 
 /// The content of a handout.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HandoutContent {
-    /// A lesson, starting with its first part.
+    /// A lesson, which starts with its first part.
     Lesson(Arc<Lesson>),
-    /// The files of a run with a past.
+    /// The files of a run that the student continues.
     Run(HandoutRunFiles),
 }
 
-/// The files of a run with a past.
+/// The files of a run that a student continues.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandoutRunFiles {
-    /// `run.toml`.
+    /// Content of `run.toml`.
     pub manifest: String,
-    /// `trajectory.jsonl`.
+    /// Content of `trajectory.jsonl`.
     pub trajectory: String,
 }
 
@@ -59,7 +59,7 @@ struct HandoutFile {
     class: String,
     label: String,
     run: String,
-    /// Hash of the file with this field empty.
+    /// Hash of the handout file, computed with this field empty.
     seal: String,
     lesson: Option<HandoutLesson>,
     past: Option<HandoutRunFiles>,
@@ -85,7 +85,7 @@ impl HandoutFile {
 }
 
 impl Handout {
-    /// Reads a handout.
+    /// Reads a handout from a file.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read, was altered after it was handed out, or has a later format.
@@ -135,7 +135,7 @@ impl Handout {
         Ok(Handout { label: file.label, stamp, content })
     }
 
-    /// Writes the file into a folder and returns its seal.
+    /// Writes the handout to a folder and returns the seal of the file.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be written.
@@ -172,8 +172,8 @@ impl Handout {
         toml::from_str::<HandoutFile>(&std::fs::read_to_string(path).ok()?).ok().map(|file| file.seal)
     }
 
-    /// Creates the run of this handout below the folder of all runs, unless it exists. Returns the name of the run to continue:
-    /// the newest unfinished run of the handout, otherwise its newest run.
+    /// Creates the run of this handout in the folder of all runs if it does not exist. Returns the name of the run to
+    /// continue: the newest unfinished run of the handout, otherwise its newest run.
     ///
     /// # Errors
     /// Returns an error if a run of this name exists that did not start from this handout, or if the run cannot be created.
@@ -183,7 +183,7 @@ impl Handout {
             return Ok(run);
         }
         let folder = runs.join(&self.stamp.run);
-        // A program that ended before the first event leaves a folder without these files, which can be reused.
+        // If the program ended before it wrote the first event, the folder contains none of these files and can be reused.
         if ["run.toml", "trajectory.jsonl"].iter().any(|file| folder.join(file).exists()) {
             return Err(RunError::AlreadyExists(format!(
                 "{} exists but does not belong to this handout. Nothing was changed. Move the folder away and open the handout \

@@ -1,4 +1,4 @@
-//! A run that is handed out: every student gets a branch after its last week, with a separate label and name.
+//! A run that is handed out. Every student receives a branch from the end of its last week, with a separate label and name.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(super) struct HandoutRun {
 }
 
 impl HandoutRun {
-    /// Reads and verifies a run.
+    /// Reads and verifies a run that is to be handed out.
     ///
     /// # Errors
     /// Returns an error if the run is damaged, is an unfinished baseline run, belongs to a study or a lesson, has no day left,
@@ -43,7 +43,7 @@ impl HandoutRun {
         }
         if manifest.voice.as_ref().is_some_and(|model| model.judge) {
             return refused(
-                "a language model judged its posts, and its scores for the posts of students could not be verified",
+                "a language model judged its posts, and judgments of students' posts could not be verified",
             );
         }
         let day = verify(folder)?.day;
@@ -80,7 +80,7 @@ impl HandoutRun {
             participant: Some(label.to_owned()),
             handout: Some(stamp.clone()),
             rules: Some(SessionRules::for_mode(mode)),
-            // The instructor's earlier runs and consent do not apply to the student.
+            // The record's earlier runs and consent belong to the instructor, so the student's copy omits them.
             earlier: Vec::new(),
             earlier_runs: 0,
             consent: None,

@@ -1,8 +1,8 @@
 //! Classes: handouts of an instructor, and the submissions of students (docs/lessons/classes.md).
 //!
-//! Every student has a separate handout: the lesson, or the past of a run, with a label and the name of the run that it
-//! creates. Runs that started from a handout carry the stamp of the class, so submissions from any number of machines can be
-//! assigned to students.
+//! Every student has a separate handout. It contains the lesson or the past of a run, the student's label, and the
+//! name of the run to create. The record of a run that started from a handout contains the stamp of the class.
+//! Submissions from any number of machines can therefore be assigned to students.
 
 pub(crate) mod class_file;
 pub(crate) mod collected_class;

@@ -10,17 +10,17 @@ use novamind_record::error::RunError;
 use novamind_record::lesson::{GoalBound, Lesson, LessonPart};
 use novamind_session::{PartPlay, RuleEvaluator, play_part};
 
-/// The reference play of a part on a seed.
+/// The result of the reference play for one part of the lesson and one seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClassReference {
-    /// Its results, including part and seed.
+    /// Results of the reference play, including part and seed.
     pub evidence: Evidence,
 }
 
-/// Plays the reference play for every part and seed of the valid runs.
+/// Simulates the reference play for every part and seed of the valid runs.
 ///
 /// # Errors
-/// Returns an error if a part cannot start or a call is rejected.
+/// Returns an error if a part of the lesson cannot start or a tool call is rejected.
 pub(super) fn play_references(
     lesson: &Arc<Lesson>,
     runs: &[ClassRun],
@@ -51,13 +51,14 @@ fn play_reference(
     Ok(ClassReference { evidence: session_evidence(&session, session.lesson(), seed) })
 }
 
-/// Returns step and goal by which a part is ranked: the last goal of the last step with goals. Both are counted from 0.
+/// Returns the step and the goal by which a part is ranked, counted from 0: the last goal of the last step with goals.
 pub fn ranked_goal(part: &LessonPart) -> Option<(usize, usize)> {
     let step = part.steps.iter().rposition(|step| !step.goals.is_empty())?;
     Some((step, part.steps[step].goals.len() - 1))
 }
 
-/// Returns a value as a share of the reference play's value; higher is better. The ratio is inverted if the bound is a maximum.
+/// Returns the ratio of a student's value to the reference play's value; higher is better. The ratio is inverted if
+/// the bound of the goal is a maximum.
 /// Returns `None` if the denominator or the reference value is not positive.
 pub fn share_of_reference(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
     let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };

@@ -1,4 +1,4 @@
-//! Actions of a student in a step besides playing: answering the question and taking hints.
+//! Actions of a student in a step of a lesson: answering the question and requesting hints.
 
 use super::runs::require_lesson;
 use novamind_record::lesson::{LessonProgress, Measurement};
@@ -6,7 +6,7 @@ use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_session::{Session, lesson_step, measure};
 use novamind_tools::Rejection;
 
-/// Answers the open question of the current step. `value` is a number, or the number of a choice counted from 1.
+/// Answers the open question of the current step. `value` is the guessed number, or the number of a choice, counted from 1.
 ///
 /// # Errors
 /// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice, `run_over`,
@@ -29,7 +29,7 @@ pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> 
     session.record_lesson_event(LessonNote { value: Some(value), ..about })
 }
 
-/// Returns the next hint of the step and records that it was taken.
+/// Returns the next hint of the current step and records that the student used it.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `no_hint` if the step has no further hint, `not_saved`.
@@ -43,17 +43,17 @@ pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
     Ok(text)
 }
 
-/// Returns the step, the number of hints taken in it, and the next hint.
+/// Returns the current step, the number of hints used in this step, and the text of the next hint.
 fn next_hint(session: &Session) -> Option<(usize, usize, String)> {
     let (standing, step) = (session.lesson()?, lesson_step(session)?);
     let given = standing.hint_count(step);
     Some((step, given, standing.lesson.fill_figures(standing.step(step)?.hints.get(given)?)))
 }
 
-/// Returns the value of a measurement over all weeks in which the student could decide, up to the current one.
+/// Evaluates a measurement over all weeks in which the student could decide, up to the current week.
 ///
 /// # Errors
-/// Returns an error if the statement is rejected or does not return one number.
+/// Returns an error if the SQL statement is rejected or does not return a single number.
 pub fn measure_over_part(measurement: &Measurement, session: &mut Session) -> Result<Option<f64>, String> {
     let own_part = session.lesson().map(LessonProgress::current_part);
     let from_week = own_part.map_or(0, |part| part.start_weeks);

@@ -1,7 +1,7 @@
 //! The debrief of a part of a lesson: compares the student's play with the reference play and the bad play.
 //!
-//! All plays start like the part and use the same interfaces, in memory. The student's play is re-simulated, too: decisions are
-//! compared only if it reproduces the recorded cash of every day.
+//! All plays start from the same state and are simulated in memory. The student's play is re-simulated as well.
+//! Decisions are compared only if its re-simulation reproduces the recorded cash of every day.
 
 use serde::{Serialize, Serializer};
 
@@ -44,36 +44,36 @@ pub struct Debrief {
     pub learning_goal: String,
     /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
-    /// Name of the run.
+    /// Name of the student's run.
     pub run: String,
     /// Label of the student, if known.
     pub participant: Option<String>,
-    /// Seed of the run.
+    /// Seed of the student's run.
     pub seed: u64,
-    /// How the run ended.
+    /// Reason why the run ended.
     pub ended: Option<RunEndReason>,
     /// First day on which the student decided.
     pub first_day: u32,
-    /// Cash at the end of each day in dollars, from day 0.
+    /// Cash of the student's run at the end of each day in dollars, from day 0.
     pub cash_by_day: Vec<f64>,
-    /// The reference play; `None` if it cannot be played.
+    /// Cash curve of the reference play; `None` if the play cannot be simulated.
     pub reference: Option<ReferenceCurve>,
-    /// The bad play; `None` if it cannot be played.
+    /// Cash curve of the bad play; `None` if the play cannot be simulated.
     pub bad_play: Option<ReferenceCurve>,
-    /// The figure by which the part is judged, if it is not cash.
+    /// The figure by which the part is judged; `None` if it is judged by cash.
     pub judged_by: Option<JudgedFigure>,
     /// First difference between the student's decisions and the reference play.
     pub comparison: DecisionComparison,
-    /// Questions and goals by step.
+    /// Questions, goals and results of each step.
     pub steps: Vec<DebriefStep>,
-    /// Day and text of each pitfall that was met.
+    /// Day and explanation of each pitfall that the student triggered.
     pub pitfalls: Vec<(u32, String)>,
-    /// Explanation of the mechanism in Markdown; `None` while a part of the lesson is still to come.
+    /// Explanation of the mechanism in Markdown; `None` unless this is the last part of the lesson.
     pub text: Option<String>,
 }
 
 impl Debrief {
-    /// Returns the names of enterprises, which depend only on the seed.
+    /// Returns the names of enterprises. The names depend only on the seed.
     pub fn company_names(&self) -> EnterpriseNames {
         EnterpriseNames::new(self.seed, &Params::bundled().personas.email)
     }
@@ -82,35 +82,35 @@ impl Debrief {
 /// The cash curve of the reference play or the bad play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferenceCurve {
-    /// Description of the play; `None` while a part of the lesson is still to come, because it would reveal the solution.
+    /// Description of the play; `None` before the last part of the lesson, because the text would reveal the solution.
     pub text: Option<String>,
     /// Cash at the end of each day in dollars, from day 0.
     pub cash_by_day: Vec<f64>,
 }
 
-/// The weekly figure by which a part is judged, from the first goal of its last step. Values are by day, at the end of each week.
+/// The weekly figure by which a part is judged. It is the figure of the first goal in the last step that has goals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedFigure {
-    /// The figure.
+    /// The weekly figure.
     pub figure: WeekFigure,
-    /// The student's play.
+    /// Values of the student's run: day and figure at the end of each week.
     pub actual: Vec<(u32, f64)>,
-    /// The reference play; `None` if it cannot be played.
+    /// Values of the reference play; `None` if the play cannot be simulated.
     pub reference: Option<Vec<(u32, f64)>>,
-    /// The bad play; `None` if it cannot be played.
+    /// Values of the bad play; `None` if the play cannot be simulated.
     pub bad_play: Option<Vec<(u32, f64)>>,
 }
 
-/// The comparison of the student's decisions with the reference play.
+/// Result of comparing the student's decisions with the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionComparison {
-    /// The decisions differ.
+    /// The decisions differ, first in this week.
     Different(FirstDifference),
     /// The decisions are the same in every week.
     Same,
-    /// The part requires no decision.
+    /// The part requires no decision of the student.
     NoDecisions,
-    /// One of the plays cannot be re-simulated, or the student's play has a different result.
+    /// One of the plays cannot be re-simulated, or the re-simulation of the student's play has a different result.
     NotComparable,
 }
 
@@ -119,27 +119,27 @@ pub enum DecisionComparison {
 pub struct FirstDifference {
     /// Week of the company, counted from 1.
     pub week: u32,
-    /// First day of the week.
+    /// First day of this week.
     pub day: u32,
-    /// The decisions that differ.
+    /// The decisions of this week that differ.
     pub decisions: Vec<DifferentDecision>,
-    /// Effect of these decisions of the reference play in the student's run.
+    /// Effect of using these decisions of the reference play in the student's run.
     pub effect: DecisionEffect,
 }
 
 /// The outcome of applying decisions of the reference play to the student's run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DecisionEffect {
-    /// The decisions were simulated.
+    /// The student's run was simulated with the decisions of the reference play.
     Simulated(ReferenceEffect),
-    /// The decisions are rejected in the student's run.
+    /// The decisions of the reference play are rejected in the student's run.
     Rejected,
-    /// Later calls name customers, which would have different numbers.
+    /// The effect was not simulated: later calls refer to customers by number, and those numbers would change.
     DifferentCustomers,
 }
 
 impl DecisionEffect {
-    /// Returns the effect, or `None` if it was not simulated.
+    /// Returns the simulated effect, or `None` if the decisions were not simulated.
     pub fn as_simulated(self) -> Option<ReferenceEffect> {
         match self {
             DecisionEffect::Simulated(effect) => Some(effect),
@@ -148,28 +148,28 @@ impl DecisionEffect {
     }
 }
 
-/// The result of the run with the decisions of the reference play in one week and all other decisions unchanged.
+/// Results of the student's run, as played and with the decisions of the reference play in one week.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReferenceEffect {
     /// Last day of both simulations.
     pub day: u32,
-    /// Cash of the run, dollars.
+    /// Cash with the student's decisions, dollars.
     pub own: f64,
-    /// Cash with the decisions of the reference play, dollars.
+    /// Cash with the decisions of the reference play in one week, dollars.
     pub with: f64,
-    /// Both values of the figure by which the part is judged, if it is not cash.
+    /// Both values of the figure by which the part is judged; `None` if it is judged by cash.
     #[serde(skip)]
     pub judged: Option<(f64, f64)>,
 }
 
-/// The questions, goals and results of a step.
+/// The question, goals and results of a step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DebriefStep {
     /// Title of the step.
     pub title: String,
-    /// Number of tries.
+    /// Number of tries of the step.
     pub tries: u32,
-    /// Number of hints taken, and of all hints.
+    /// Number of hints that were used, and number of all hints.
     #[serde(serialize_with = "serialize_hint_usage")]
     pub hints: (usize, usize),
     /// The question with guess and outcome.
@@ -185,7 +185,7 @@ fn serialize_hint_usage<S: Serializer>(
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
-/// Returns the student's calls by week, without those of the start and of the lesson itself.
+/// Returns the student's tool calls by week. Excludes the calls of the part's start and of the lesson itself.
 fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledCalls> {
     let part = standing.current_part();
     let of_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
@@ -206,7 +206,7 @@ fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledC
     calls.skip(starts).map(scheduled).collect()
 }
 
-/// Returns a figure at the end of each week that has a value.
+/// Returns the day and the value of a figure at the end of each week. Omits weeks without a value.
 fn figure_by_day(figure: WeekFigure, weeks: &[WeekFigures]) -> Vec<(u32, f64)> {
     weeks.iter().filter_map(|week| Some((week.day, figure.company_value(week)?))).collect()
 }
@@ -230,7 +230,7 @@ impl PlayedPart {
         };
         if lesson_step(session).is_some() {
             let message =
-                "the debrief is available when this part of the lesson has ended; lesson shows the task";
+                "the debrief is available after this part of the lesson has ended; `lesson` shows the task";
             return Err(Rejection::new("lesson_not_over", message));
         }
         let manifest = session.manifest();
@@ -247,7 +247,8 @@ impl PlayedPart {
         })
     }
 
-    /// Computes the debrief. Simulates the part up to four times in memory; `answers` answers enterprises in plays that use rules.
+    /// Computes the debrief of the part, which is simulated up to four times in memory. `answers` evaluates the rules
+    /// of plays that answer enterprises by rules.
     pub fn debrief(&self, answers: RuleEvaluator) -> Debrief {
         let plan = &self.standing.lesson.plan;
         let [good, bad, play_result] = thread::scope(|scope| {
@@ -300,7 +301,7 @@ impl PlayedPart {
         }
     }
 
-    /// Returns the figure of the first goal of the last step with goals, if it is a figure of the last week other than cash.
+    /// Returns the figure of the first goal in the last step with goals, if the goal is the last value of a weekly figure.
     fn judged_by(&self) -> Option<WeekFigure> {
         let steps = &self.standing.current_part().steps;
         let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
@@ -327,7 +328,7 @@ impl PlayedPart {
         Some(PlayResult { cash_by_day, figures, weeks })
     }
 
-    /// Compares the student's decisions with those of the reference play.
+    /// Compares the student's decisions with the decisions of the reference play.
     fn compare_decisions(
         &self,
         good: &PlayResult,
@@ -356,7 +357,7 @@ impl PlayedPart {
         DecisionComparison::Different(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
-    /// Returns whether calls of later weeks name customers, whose numbers depend on earlier decisions.
+    /// Returns whether tool calls of later weeks refer to customers by number. These numbers depend on earlier decisions.
     fn names_customers_after(&self, week: u32) -> bool {
         let later = self
             .calls
@@ -378,7 +379,7 @@ impl PlayedPart {
         Some(ReferenceEffect { day: played.cash_by_day.len() as u32 - 1, own: value, with, judged })
     }
 
-    /// Returns the student's calls, with the differing calls of one week replaced by those of the reference play.
+    /// Returns the student's tool calls with the differing calls of one week replaced by the calls of the reference play.
     fn calls_with_decisions(
         &self,
         week: u32,

@@ -8,35 +8,35 @@ use serde_json::{Map, Value};
 use novamind_session::{JournalEntry, Session};
 use novamind_tools::{ToolId, ToolKind};
 
-/// The settings in force in a week, and the one-time actions at its start.
+/// The settings in force in a week, and the one-time actions at the start of the week.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WeekDecisions {
-    /// Settings in force, by the tool that sets them.
+    /// Settings in force, by tool.
     settings: BTreeMap<ToolId, Map<String, Value>>,
-    /// One-time actions in order: tool and arguments.
+    /// Tool and arguments of each one-time action, in order.
     actions: Vec<(ToolId, Value)>,
 }
 
-/// A tool whose decisions differ from the reference play.
+/// A tool that the student used differently from the reference play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DifferentDecision {
-    /// The tool.
+    /// The tool with different settings or calls.
     pub tool: ToolId,
-    /// The difference.
+    /// The difference in settings or calls.
     #[serde(flatten)]
     pub difference: DecisionDifference,
 }
 
-/// The difference between two plays in the decisions of one tool.
+/// The difference between the student's play and the reference play for one tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DecisionDifference {
-    /// The settings differ.
+    /// The tool's settings differ.
     Settings {
         /// The settings that differ.
         settings: Vec<SettingDifference>,
     },
-    /// The calls differ.
+    /// The one-time calls of the tool differ.
     Calls {
         /// Arguments of the student's calls.
         own: Vec<Value>,
@@ -45,10 +45,10 @@ pub enum DecisionDifference {
     },
 }
 
-/// A setting that differs between two plays.
+/// A setting that differs between the student's play and the reference play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SettingDifference {
-    /// Name.
+    /// Name of the setting.
     pub name: String,
     /// Value in the student's play, or null.
     pub own: Value,
@@ -57,7 +57,7 @@ pub struct SettingDifference {
 }
 
 impl WeekDecisions {
-    /// Returns the decisions in force when the week starts.
+    /// Returns the session's settings and the one-time actions of its current day.
     pub(super) fn from_session(session: &Session) -> WeekDecisions {
         let setting = |tool: ToolId| {
             let current = tool.tool().current_arguments(session.settings());
@@ -81,14 +81,14 @@ impl WeekDecisions {
         self.actions.iter().filter(|(tool_id, _)| *tool_id == tool).map(|(_, args)| args.clone()).collect()
     }
 
-    /// Returns calls that reproduce the decisions of the selected tools.
+    /// Returns tool calls that reproduce the decisions of the selected tools.
     pub(super) fn calls_for(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
         let settings = self.settings.iter().map(|(tool, args)| (*tool, Value::Object(args.clone())));
         settings.chain(self.actions.iter().cloned()).filter(|(tool, _)| tools(tool)).collect()
     }
 }
 
-/// Returns the tools whose decisions differ from the reference play.
+/// Returns the tools that were used differently from the reference play.
 pub(super) fn different_decisions(
     week_decisions: &WeekDecisions,
     good: &WeekDecisions,

@@ -1,4 +1,5 @@
-//! The student's side of a lesson: page, answers and hints, further tries and parts, debrief.
+//! What a student does in a lesson: read the lesson page, answer questions, request hints, retry steps, start parts
+//! and read the debrief.
 
 pub(crate) mod answers;
 pub(crate) mod debrief;

@@ -1,4 +1,4 @@
-//! Further runs of a lesson: another try of a step, and another part.
+//! Starts further runs of a lesson: a new try of a step, or a different part.
 
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
@@ -15,7 +15,7 @@ pub(super) fn require_lesson(session: &Session) -> Result<&LessonProgress, Rejec
     session.lesson().ok_or_else(|| Rejection::new("not_in_a_lesson", "this run is not part of a lesson"))
 }
 
-/// Retries a step, counted from 0, from its beginning. Returns a separate run that counts the tries.
+/// Retries a step from its beginning in a new run, whose record contains the number of the try. Steps are counted from 0.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
@@ -39,7 +39,7 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
     Ok(again)
 }
 
-/// Starts another part of the run's lesson, counted from 0, in the same folder of runs.
+/// Starts a part of the lesson as a new run in the same folder of runs. Parts are counted from 0.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `part_unknown`, `not_saved`.

@@ -16,7 +16,7 @@ pub struct LessonStatus {
     pub title: String,
     /// Title of the part, if the lesson has several parts.
     pub part: Option<String>,
-    /// The current step, counted from 0; the last one if the part has ended.
+    /// The current step, counted from 0, or the last started step if the part has ended.
     pub step: usize,
     /// Number of steps of the part.
     pub steps: usize,
@@ -24,63 +24,63 @@ pub struct LessonStatus {
     pub step_title: String,
     /// Text of the step.
     pub text: String,
-    /// Completed weeks of the step, and its number of weeks.
+    /// Number of completed weeks and of all weeks of the step.
     pub weeks: (u32, u32),
-    /// Number of the try of the step, counted from 1.
+    /// Number of the current try of the step, counted from 1.
     pub try_number: u32,
-    /// The question of the step.
+    /// The question of the step, if any.
     pub question: Option<LessonQuestion>,
-    /// The goals of the step.
+    /// The goals of the step, with their current values.
     pub goals: Vec<GoalStatus>,
-    /// Hints that were taken.
+    /// Texts of the hints that the student used.
     pub hints: Vec<String>,
     /// Number of hints of the step.
     pub hint_count: usize,
-    /// Day and text of each pitfall that was met.
+    /// Day and explanation of each pitfall that the student triggered.
     pub pitfalls: Vec<(u32, String)>,
-    /// Results of the previous step, until a week of this one has passed.
+    /// Results of the previous step, until one week of the current step has been completed.
     pub previous_step: Option<DebriefStep>,
     /// Whether the part has ended.
     pub is_finished: bool,
-    /// Number of the next part, counted from 1, if this part has ended and is not the last one.
+    /// Number of the next part, counted from 1; `None` unless this part has ended and is not the last part.
     pub next_part: Option<u32>,
-    /// Whether opponents can play the same world from day 0: the lesson has ended, and its last part starts with an empty
-    /// company and sets no parameters.
+    /// Whether the student can compare the run with opponents that play the same seed from day 0. `true` if the lesson
+    /// has ended and its last part starts with an empty company and sets no parameters.
     pub has_opponents: bool,
     /// Names of the available screens besides the Overview; `None` for all screens.
     pub screens: Option<Vec<String>>,
-    /// The available tools; `None` for all tools.
+    /// Tools that the student can use; `None` for all tools.
     pub tools: Option<Vec<ToolId>>,
     /// Whether the student can run a week without entering forecasts or a rationale.
     pub skips_forecasts: bool,
 }
 
-/// The question of a step.
+/// The question of a step of a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LessonQuestion {
     /// Text of the question.
     pub text: String,
-    /// The choices; empty if the question asks for a number.
+    /// The possible answers; empty if the question asks for a number.
     pub choices: Vec<String>,
-    /// Unit of a number.
+    /// Unit of the number that the question asks for.
     pub unit: String,
-    /// The guess; for choices the number of the selected one, counted from 1.
+    /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
-    /// The outcome, if known.
+    /// The actual value; `None` before it is known.
     pub outcome: Option<f64>,
     /// Whether the outcome is shown at the end of the part instead of the step.
     #[serde(skip)]
     pub told_at_end: bool,
 }
 
-/// A goal and its current value.
+/// A goal of a step and its current value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GoalStatus {
     /// Text of the goal.
     pub text: String,
-    /// Current value; `None` if there is none yet.
+    /// Current value; `None` if the goal cannot be measured yet.
     pub value: Option<f64>,
-    /// Value to reach; `None` if it is relative to the reference play and not judged yet.
+    /// Value to reach; `None` if the goal is relative to the reference play and not judged yet.
     pub bound: Option<f64>,
     /// Whether `bound` is a maximum.
     #[serde(skip)]
@@ -96,7 +96,7 @@ pub struct GoalStatus {
 }
 
 impl LessonStatus {
-    /// Returns the page of a run, or `None` if the run does not belong to a lesson.
+    /// Returns the lesson page of a run, or `None` if the run does not belong to a lesson.
     pub fn from_session(session: &mut Session) -> Option<LessonStatus> {
         let standing = session.lesson()?.clone();
         let part = standing.current_part();
@@ -138,7 +138,7 @@ impl LessonStatus {
     }
 }
 
-/// Returns the goals of a step. Goals that are not judged yet have the value up to the current week.
+/// Returns the goals of a step. A goal that is not judged yet is measured up to the current week.
 fn goal_statuses(
     session: &mut Session,
     standing: &LessonProgress,
@@ -159,7 +159,7 @@ fn goal_statuses(
 }
 
 impl GoalStatus {
-    /// Creates the view of a goal, with its result if it is judged.
+    /// Creates the status of a goal, including the result of a judged goal.
     pub(super) fn new(
         standing: &LessonProgress,
         goal: &LessonGoal,

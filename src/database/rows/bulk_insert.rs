@@ -1,14 +1,14 @@
-//! Inserting many rows with few statements, because starting a statement costs as much as writing a row.
+//! Inserts many rows with few statements, because starting a statement takes as long as writing a row.
 
 use rusqlite::Transaction;
 use rusqlite::types::{ToSqlOutput, ValueRef};
 
-/// A value of a row.
+/// An SQL value of a row to insert.
 pub(crate) type Value<'a> = ToSqlOutput<'a>;
 
 const ROWS_PER_STATEMENT: usize = 24;
 
-/// NULL.
+/// SQL NULL.
 pub(crate) const NULL: Value<'static> = ToSqlOutput::Borrowed(ValueRef::Null);
 
 pub(crate) fn integer(number: impl Into<i64>) -> Value<'static> {
@@ -23,12 +23,12 @@ pub(crate) fn text(text: &str) -> Value<'_> {
     ToSqlOutput::Borrowed(ValueRef::Text(text.as_bytes()))
 }
 
-/// Returns a value, or NULL for `None`.
+/// Converts a value with `write`. Returns NULL for `None`.
 pub(super) fn or_null<'a, T>(value: Option<T>, write: impl FnOnce(T) -> Value<'a>) -> Value<'a> {
     value.map_or(NULL, write)
 }
 
-/// Inserts rows in order; `head` is the statement up to and including `VALUE_COLUMN`.
+/// Inserts rows in order. `head` is the statement up to and including `VALUES`.
 pub(crate) fn insert_rows<'a, const COLUMNS: usize>(
     transaction: &Transaction<'_>,
     head: &str,

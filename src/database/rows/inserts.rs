@@ -1,4 +1,4 @@
-//! Rows that are written immediately, because they do not change before the commit.
+//! Writes rows that do not change before the commit and therefore need not be held back.
 
 use rusqlite::{Transaction, params};
 
@@ -25,7 +25,7 @@ pub(super) fn insert_service(transaction: &Transaction<'_>, facts: &Facts) -> ru
 }
 
 pub(super) fn insert_research(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-    // Keep the position of a completed project: a replaced row would move to the end.
+    // Update the row of a completed project, because a replaced row would move to the end of the table.
     let mut write = transaction.prepare_cached(
         "INSERT INTO research_projects VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7) \
          ON CONFLICT (project_id) DO UPDATE SET status = excluded.status, \

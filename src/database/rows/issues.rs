@@ -1,4 +1,4 @@
-//! Issues of entries, by opening day, updated when they are resolved.
+//! Writes issues to the packed day on which they were opened, and updates them when they are resolved.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,20 +12,20 @@ use novamind_world::events::Facts;
 
 /// Collects issues until the next commit.
 pub(super) struct IssueWriter {
-    /// Committed days.
+    /// Packed days with issues, including all committed changes.
     days: Arc<Vec<Arc<PackedDay>>>,
-    /// Issue clock after each day.
+    /// Value of the issue clock after each day.
     clock: Vec<u32>,
-    /// First day whose clock is not written yet.
+    /// First day whose issue clock is not in the database yet.
     clock_from: usize,
-    /// First issue and day of each day with new issues.
+    /// For each day with new issues: number of the first issue, and the day.
     first_issues: Vec<(u32, u32)>,
-    /// Runs of changed days.
+    /// Runs of the days that changed since the last commit.
     touched: BTreeMap<u32, Vec<IssueRun>>,
 }
 
 impl IssueWriter {
-    /// Returns a writer that continues a store.
+    /// Returns a writer that continues the issues of a store.
     pub fn from_store(store: &BlockStore) -> IssueWriter {
         let clock = store.issue_clock.to_vec();
         let first = |day: &Arc<PackedDay>| Some((day.unpack_run::<IssueRun>(0)?.first, day.day));
@@ -38,7 +38,7 @@ impl IssueWriter {
         }
     }
 
-    /// Adds a day. Resolutions precede the tick of the clock, new issues follow it.
+    /// Adds the issues of a day. Issues are resolved before the issue clock advances, and new issues are opened afterwards.
     pub fn write(&mut self, facts: &Facts) {
         let worked_on =
             facts.issues_aged || !facts.issues_opened.is_empty() || !facts.issues_resolved.is_empty();
@@ -69,7 +69,7 @@ impl IssueWriter {
         }
     }
 
-    /// Writes the changed days and the clock.
+    /// Writes the changed days and the issue clock to the database.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO issue_blocks VALUES (?1, ?2)")?;
         for (day, runs) in &self.touched {
@@ -82,7 +82,7 @@ impl IssueWriter {
         Ok(())
     }
 
-    /// Adds the written days to the store.
+    /// Adds the written days to the store that queries read.
     pub fn publish(&mut self, store: &mut BlockStore) {
         if self.clock_from < self.clock.len() {
             self.clock_from = self.clock.len();

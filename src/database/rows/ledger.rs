@@ -1,4 +1,4 @@
-//! Ledger entries: lead costs, payments, then others. The numbers of a day follow this order.
+//! Writes ledger entries to packed days. The entries of a day are numbered in this order: lead costs, payments, other entries.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,10 +10,10 @@ use crate::packing::PackedRows;
 use novamind_world::events::{Category, Facts, LedgerNote};
 use novamind_world::params::Params;
 
-/// Collects the ledger until the next commit.
+/// Collects ledger entries until the next commit.
 pub(super) struct LedgerWriter {
     params: Arc<Params>,
-    /// Committed days.
+    /// Packed days of the ledger, including all committed entries.
     days: Arc<Vec<Arc<LedgerDay>>>,
     touched: BTreeMap<u32, LedgerDay>,
     /// Number of the next row.
@@ -27,12 +27,12 @@ impl LedgerWriter {
         LedgerWriter { params, days, touched: BTreeMap::new(), next }
     }
 
-    /// Uses other parameters from now on.
+    /// Replaces the parameters for later entries.
     pub fn set_params(&mut self, params: Arc<Params>) {
         self.params = params;
     }
 
-    /// Adds the ledger entries of a day or a call.
+    /// Adds the ledger entries of a simulated day or a tool call.
     pub fn write(&mut self, facts: &Facts) {
         if facts.arrivals.is_empty() && facts.payments.is_empty() && facts.ledger.is_empty() {
             return;
@@ -56,7 +56,7 @@ impl LedgerWriter {
         self.next += day.len() - before;
     }
 
-    /// Writes the changed days.
+    /// Writes the changed days of the ledger to the database.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO ledger_blocks VALUES (?1, ?2)")?;
         for day in self.touched.values() {
@@ -65,7 +65,7 @@ impl LedgerWriter {
         Ok(())
     }
 
-    /// Adds the written days to the ledger, and returns it if it changed.
+    /// Adds the written days to the ledger. Returns the ledger if it changed.
     pub fn publish(&mut self) -> Option<Arc<Vec<Arc<LedgerDay>>>> {
         let touched = std::mem::take(&mut self.touched);
         let first = *touched.keys().next()?;

@@ -1,4 +1,4 @@
-//! Conversion of facts to rows in the writer thread.
+//! Converts facts to database rows in the writer thread.
 
 mod bulk_insert;
 mod inserts;
@@ -32,45 +32,45 @@ use novamind_world::identifiers::Plan;
 use novamind_world::params::Params;
 use profile_words::ProfileWordWriter;
 
-/// The facts of a day or a call with their texts.
+/// The facts of a simulated day or a tool call, with the texts that belong to them.
 #[derive(Debug, Clone, Default)]
 pub struct ProjectionEntry {
-    /// Facts.
+    /// Facts of the day or tool call.
     pub facts: Arc<Facts>,
-    /// Text of each notice of the facts.
+    /// Text of each notice in the facts.
     pub notices: Vec<String>,
-    /// Description of each published reading of the facts.
+    /// Description of each PMI reading that the facts publish.
     pub readings: Vec<String>,
-    /// Text of each turn of the facts; empty for turns without text.
+    /// Text of each negotiation turn in the facts; empty for turns without text.
     pub turns: Vec<String>,
-    /// Text of each post of other authors among the facts.
+    /// Text of each post in the facts that another author than the player wrote.
     pub posts: Vec<String>,
-    /// Number and new text of reworded posts.
+    /// Number and new text of each reworded post.
     pub rewordings: Vec<(u32, String)>,
-    /// Address of each enterprise that is new or sent a message, by customer number.
+    /// E-mail address of each enterprise that is new or sent a message, by customer number.
     pub addresses: BTreeMap<u32, String>,
-    /// Row of the changed settings.
+    /// Settings of the new row of `config_history`, if settings changed.
     pub settings: Option<serde_json::Value>,
-    /// Submitted forecasts.
+    /// Forecasts that the player submitted.
     pub forecasts: Vec<ForecastRow>,
-    /// New parameters for later rows, if they change.
+    /// New parameters for later rows, if the parameters change.
     pub params: Option<Arc<Params>>,
 }
 
-/// A row of `predictions`.
+/// A row of the table `predictions`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForecastRow {
-    /// Day of submission.
+    /// Day on which the forecast was submitted.
     pub submit_day: u32,
-    /// Days ahead.
+    /// Days between the submission and the target day.
     pub horizon_days: u32,
-    /// Most likely value, dollars.
+    /// Predicted cash in dollars.
     pub point: f64,
-    /// Lower end of the interval, dollars.
+    /// Lower end of the interval, in dollars.
     pub lower: f64,
-    /// Upper end of the interval, dollars.
+    /// Upper end of the interval, in dollars.
     pub upper: f64,
-    /// Moment of submission, seconds since 1970.
+    /// Time of submission, in seconds since 1970.
     pub submitted_at: f64,
 }
 
@@ -89,7 +89,7 @@ struct SubscriptionRow {
     billed_once: bool,
 }
 
-/// Changes of a subscription by a deal, besides its terms.
+/// Changes that a deal makes to a subscription, except the terms.
 #[derive(Debug, Clone, Copy)]
 struct DealRow {
     /// Day on which the lead became a subscriber.
@@ -97,7 +97,7 @@ struct DealRow {
     contract_end_day: u32,
 }
 
-/// Collects changes until the next commit, so that several changes of a row need one write.
+/// Collects changes until the next commit, so that several changes to a row need only one write.
 pub(super) struct RowWriter {
     params: Arc<Params>,
     store: SharedStore,
@@ -115,7 +115,7 @@ pub(super) struct RowWriter {
 }
 
 impl RowWriter {
-    /// Returns a writer for a database with tables, whose days are in the store.
+    /// Returns a writer for an existing database whose packed days are loaded into the store.
     pub fn new(params: Arc<Params>, store: SharedStore) -> RowWriter {
         let kept = store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
         RowWriter {
@@ -135,7 +135,7 @@ impl RowWriter {
         }
     }
 
-    /// Writes an entry. Rows that can change before the commit are held back.
+    /// Writes the rows of an entry. Rows that can change before the commit are held back until [`RowWriter::flush`].
     pub fn write(&mut self, transaction: &Transaction<'_>, entry: &ProjectionEntry) -> rusqlite::Result<()> {
         if let Some(params) = &entry.params {
             self.params = params.clone();
@@ -218,7 +218,7 @@ impl RowWriter {
         }
     }
 
-    /// Collects deals. Their terms arrive as changed terms.
+    /// Collects deals until the next commit. The facts list the terms of the deals separately, as changed terms.
     fn write_deals(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
         threads::update_contract_starts(transaction, facts)?;
         for deal in &facts.deals {
@@ -351,7 +351,7 @@ impl RowWriter {
         Ok(())
     }
 
-    /// Adds new days to the store and removes old ones.
+    /// Adds the written days to the store that queries read, and removes expired days.
     pub fn publish(&mut self) {
         let mut store = self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner());
         if !self.new_usage.is_empty() {
@@ -393,10 +393,11 @@ fn subscription_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
     }
 }
 
-/// Packs one byte per axis, in the order of the `words` table. Enterprises and individuals use different axes.
+/// Packs a persona into an integer, one byte per axis in the order of the `words` table. Enterprises and individuals
+/// use different axes.
 fn pack_persona(company: bool, picks: PersonaPicks) -> i64 {
     let [a, b, c, d, e, f, g] = picks.0;
-    // industry, role, experience, work style, technical skill, size, decision, concern
+    // Axes: industry, role, experience, work style, technical skill, size, decision, concern.
     let axes = if company { [a, b, 0, e, c, d, f, g] } else { [a, b, c, d, e, 0, 0, 0] };
     i64::from_le_bytes(axes)
 }

@@ -1,4 +1,4 @@
-//! Notices of entries: days of the inbox, and repeated losses.
+//! Writes notices to the packed days of the inbox, and records repeated losses.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,13 +10,13 @@ use crate::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_index};
 use crate::packing::PackedRows;
 use novamind_world::events::{Facts, LossCause};
 
-/// Collects the inbox until the next commit.
+/// Collects notices until the next commit.
 pub(super) struct NoticeWriter {
-    /// Committed inbox.
+    /// Inbox including all committed notices.
     inbox: Inbox,
     /// Whether the loss of a customer is reported every day, by customer number.
     is_loss_repeated: Vec<bool>,
-    /// Changed days.
+    /// Days of the inbox that changed since the last commit.
     days: BTreeMap<u32, NoticeDay>,
     /// Number of the next notice.
     next: u64,
@@ -64,7 +64,8 @@ impl NoticeWriter {
         self.next += added;
     }
 
-    /// Returns the number of losses that a day repeats, if it repeats all of them, and stores the new ones.
+    /// Stores new repeated losses. Returns the number of losses that the day repeats, or `None` if the day does not
+    /// repeat all losses.
     fn count_repeats(&mut self, facts: &Facts) -> Option<u32> {
         let mut today = 0;
         for loss in facts.notices.iter().filter_map(RepeatedLoss::from_notice) {
@@ -77,7 +78,7 @@ impl NoticeWriter {
         (today == known).then_some(today as u32)
     }
 
-    /// Returns whether a customer has no repeated loss yet, and marks it.
+    /// Returns whether a customer has no repeated loss yet. Marks the customer.
     fn is_new_loss(&mut self, customer: u32) -> bool {
         let at = customer as usize;
         if self.is_loss_repeated.len() <= at {
@@ -86,14 +87,14 @@ impl NoticeWriter {
         !std::mem::replace(&mut self.is_loss_repeated[at], true)
     }
 
-    /// Returns the day with this number. Only the newest one can already exist.
+    /// Returns the inbox day with this number. Only the newest day can already exist.
     fn notice_day(&mut self, day: u32) -> &mut NoticeDay {
         let begun = self.inbox.days.last().filter(|last| last.day == day);
         let anew = || begun.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));
         self.days.entry(day).or_insert_with(anew)
     }
 
-    /// Writes the changed days and the new losses.
+    /// Writes the changed days and the new repeated losses to the database.
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO notice_blocks VALUES (?1, ?2)")?;
         for day in self.days.values().filter(|day| day.len() > 0) {
@@ -108,7 +109,7 @@ impl NoticeWriter {
         Ok(())
     }
 
-    /// Adds the written days to the inbox, and returns it if it changed.
+    /// Adds the written days to the inbox. Returns the inbox if it changed.
     pub fn publish(&mut self) -> Option<Inbox> {
         if self.days.is_empty() && self.new_losses.is_empty() {
             return None;

@@ -1,10 +1,10 @@
-//! Rows of public posts.
+//! Writes the rows of public posts.
 
 use rusqlite::{Transaction, params};
 
 use novamind_world::events::{Facts, PostSubject};
 
-/// Writes posts of other authors with their texts.
+/// Writes posts of authors other than the player, with their texts.
 pub(super) fn insert_posts(
     transaction: &Transaction<'_>,
     facts: &Facts,
@@ -22,7 +22,7 @@ pub(super) fn insert_posts(
     Ok(())
 }
 
-/// Writes new texts of posts of other authors.
+/// Writes the new texts of reworded posts.
 pub(super) fn update_post_texts(
     transaction: &Transaction<'_>,
     rewordings: &[(u32, String)],
@@ -38,7 +38,7 @@ pub(super) fn update_post_texts(
     Ok(())
 }
 
-/// Writes posts of the player, and later their views and comments.
+/// Writes the player's posts, and updates their views and comments.
 pub(super) fn insert_player_posts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(
         "INSERT OR REPLACE INTO agent_social_media_posts (agent_post_id, day, content, reply_to_post_id) \

@@ -1,5 +1,5 @@
-//! Words of customer profiles. Those of a group are written when it is discovered or has its first customer, so that the file
-//! reveals nothing about undiscovered groups.
+//! Writes the words of customer profiles. The words of a group are written when the group is discovered or has its
+//! first customer, so that the file reveals nothing about undiscovered groups.
 
 use rusqlite::{Transaction, params};
 
@@ -7,10 +7,10 @@ use novamind_world::events::Facts;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Writes the words of groups when they become known.
+/// Writes the profile words of a group when the group becomes known.
 #[derive(Default)]
 pub(super) struct ProfileWordWriter {
-    /// Groups whose words are certainly written.
+    /// Groups whose words this writer has written.
     written: [bool; Group::COUNT],
 }
 
@@ -35,7 +35,7 @@ impl ProfileWordWriter {
 }
 
 fn write_group(transaction: &Transaction<'_>, group: Group, params: &Params) -> rusqlite::Result<()> {
-    // A continued database already has some of them.
+    // A continued database already contains some of the words.
     let mut insert = transaction.prepare_cached("INSERT OR IGNORE INTO words VALUES (?1, ?2, ?3, ?4)")?;
     for (axis, words) in word_axes(group, params) {
         for (n, word) in (0u32..).zip(&words) {

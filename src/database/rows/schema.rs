@@ -1,11 +1,11 @@
-//! Creating a database: tables and the market observer.
+//! Creates the tables of a database.
 
 use rusqlite::Connection;
 
 use novamind_world::events::{Category, Source};
 
-/// Layout version of the database. A file with another version is rebuilt. Increase it with every change of `schema.sql` or
-/// of the written rows.
+/// Layout version of the database. A file with another version is rebuilt. Increase the version with every change of
+/// `schema.sql` or of the written rows.
 pub(crate) const LAYOUT_VERSION: u32 = 5;
 
 /// Creates the tables and row 1 of `customers`: the market observer.
@@ -21,7 +21,7 @@ pub(crate) fn create_tables(connection: &mut Connection) -> rusqlite::Result<()>
     transaction.commit()
 }
 
-/// All sources fit the CASE of the view `customers`.
+/// The CASE expression of the view `customers` lists all lead sources.
 const _: () = assert!(Source::Organic as u8 == 6);
-/// All categories fit the CASE of the view `ledger`.
+/// The CASE expression of the view `ledger` lists all categories.
 const _: () = assert!(Category::ResearchProject as u8 == 11);

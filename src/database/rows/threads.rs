@@ -1,4 +1,4 @@
-//! Rows of negotiations with enterprises.
+//! Writes the rows of negotiations with enterprises.
 
 use rusqlite::{Transaction, params};
 
@@ -33,7 +33,7 @@ pub(super) fn insert_turns(transaction: &Transaction<'_>, entry: &ProjectionEntr
     Ok(())
 }
 
-/// Writes the day of each deal to the row of its customer.
+/// Writes the contract start of each deal to the row of the customer.
 pub(super) fn update_contract_starts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut update = transaction
         .prepare_cached("UPDATE customer_rows SET contract_start_day = ?2 WHERE customer_id = ?1")?;
@@ -43,7 +43,7 @@ pub(super) fn update_contract_starts(transaction: &Transaction<'_>, facts: &Fact
     Ok(())
 }
 
-/// Returns why a thread ends with a turn; empty while it continues. Unanswered threads have no reason.
+/// Returns the reason why a thread ends with this turn. Returns an empty text if the thread continues or ends unanswered.
 fn close_reason(turn: &ThreadTurn) -> &'static str {
     match turn.content {
         TurnContent::Acceptance(_) | TurnContent::Closing(_) => "accepted",
@@ -52,7 +52,7 @@ fn close_reason(turn: &ThreadTurn) -> &'static str {
     }
 }
 
-/// Returns the offer of a turn as JSON with the spacing of the released simulator, because users search this text.
+/// Returns the offer of a turn as JSON. Spaces are the same as in the released simulator, because users search this text.
 fn offer_json(content: &TurnContent) -> String {
     match content {
         TurnContent::Offer(offerings) => {

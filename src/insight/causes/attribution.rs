@@ -1,4 +1,4 @@
-//! The causes of a change, with contributions from simulations without them.
+//! Explanations of a change: each cause with its contribution, computed from simulations without the cause.
 
 use super::CauseProgressFn;
 use super::cause::{Cause, CauseDetail};
@@ -9,59 +9,59 @@ use super::week_resimulation::{Candidate, ExcludedCauses, WeekResimulation};
 use novamind_record::figures::SimulatedWeek;
 use novamind_tools::Rejection;
 
-/// Maximum number of separate causes, which limits the number of simulations.
+/// Maximum number of separately evaluated causes. It limits the number of simulations.
 const MAX_VALUED_CAUSES: usize = 6;
 
-/// Why a figure changed in a week.
+/// An explanation of the change of a figure from one week to the next.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChangeExplanation {
-    /// The week.
+    /// Number of the explained week.
     pub week: u32,
-    /// The figure.
+    /// The explained figure.
     pub quantity: WeekQuantity,
-    /// Number of days of the week before and of the week; the last week of a run can be shorter.
+    /// Number of days in the previous week and in the explained week. The last week of a run can be shorter.
     pub days: [u32; 2],
-    /// Value in the week before.
+    /// Value of the figure in the previous week.
     pub before: f64,
-    /// Value in the week.
+    /// Value of the figure in the explained week.
     pub after: f64,
-    /// Contributions of causes, the largest first.
+    /// Contributions of the causes, in descending order of their absolute value.
     pub contributions: Vec<CauseContribution>,
-    /// Residual that no cause explains: composition and chance.
+    /// Residual of the change, which no cause explains.
     pub residual: f64,
-    /// Number of re-simulated weeks.
+    /// Number of weeks that were re-simulated for the explanation.
     pub simulation_count: usize,
 }
 
 impl ChangeExplanation {
-    /// Returns the change between the two weeks.
+    /// Returns the change of the figure between the two weeks.
     pub fn change(&self) -> f64 {
         self.after - self.before
     }
 }
 
-/// The contribution of a cause.
+/// The contribution of one cause to the change of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseContribution {
-    /// The cause.
+    /// The cause that contributed.
     pub cause: Cause,
-    /// Contribution to the change, in the unit of the figure.
+    /// Contribution of the cause to the change, in the unit of the figure.
     pub amount: f64,
-    /// Differences of the cause.
+    /// Settings and inputs of the cause that differ between the two weeks.
     pub details: Vec<CauseDetail>,
 }
 
-/// Causes that are evaluated together.
+/// A group of causes that are evaluated together.
 #[derive(Clone)]
 struct CauseGroup {
     cause: Cause,
-    /// Their indices in the laboratory, one bit for each.
+    /// Indices of the members among the calls or inputs, one bit for each.
     members: u32,
     details: Vec<CauseDetail>,
 }
 
 impl WeekResimulation {
-    /// Explains why a figure changed. Returns `None` if stopped.
+    /// Explains why a figure changed. Returns `None` if `progress` stopped the simulations.
     ///
     /// # Errors
     /// `no_value` if the figure has no value in one of the two weeks.
@@ -86,7 +86,7 @@ impl WeekResimulation {
             return Ok(None);
         };
         let all_calls = ExcludedCauses { calls: all_members(&calls), inputs: all_members(&inputs) };
-        // One-time payments of the week before do not recur in this week.
+        // One-time payments of the previous week do not recur in the explained week.
         let earlier = value_or_zero(quantity, &self.week_before().without_purchases()) - values.0;
         if earlier != 0.0 {
             let cause = Cause::EarlierPurchases;
@@ -109,7 +109,7 @@ impl WeekResimulation {
         }))
     }
 
-    /// Returns the inputs in the permitted level of detail.
+    /// Returns the world inputs in the level of detail that the player may see.
     fn input_groups(&self) -> Vec<CauseGroup> {
         let all = singleton_groups(&self.inputs);
         if self.visibility == InputVisibility::EveryInput {
@@ -121,7 +121,7 @@ impl WeekResimulation {
         (!hidden.is_empty()).then_some(market).into_iter().chain(service).collect()
     }
 
-    /// Joins the causes with the smallest contributions until the maximum number is reached.
+    /// Merges the causes with the smallest contributions until [`MAX_VALUED_CAUSES`] remain.
     fn merge_smallest_groups(
         &mut self,
         quantity: WeekQuantity,
@@ -164,7 +164,7 @@ impl WeekResimulation {
         progress: CauseProgressFn<'_>,
     ) -> Option<Vec<CauseContribution>> {
         let all_calls = all_members(calls);
-        // Sets contain the active causes; all others are removed.
+        // A bit is set for each active cause. The causes without a bit are removed.
         let of_calls = |acting: u32| ExcludedCauses { calls: excluded_members(calls, acting), inputs: 0 };
         let of_inputs =
             |acting: u32| ExcludedCauses { calls: all_calls, inputs: excluded_members(inputs, acting) };
@@ -186,7 +186,7 @@ impl WeekResimulation {
     }
 }
 
-/// Returns a figure of a simulated week; 0 instead of NaN, for example a share of zero.
+/// Returns the value of a figure in a simulated week, or 0 if the figure has no value.
 fn value_or_zero(quantity: WeekQuantity, week: &SimulatedWeek) -> f64 {
     let value = quantity.value_in(week);
     if value.is_nan() { 0.0 } else { value }
@@ -205,7 +205,7 @@ fn all_members(groups: &[CauseGroup]) -> u32 {
     groups.iter().fold(0, |all, group| all | group.members)
 }
 
-/// Returns the members of all groups that are not in a set.
+/// Returns the members of all groups without a bit in `acting`.
 fn excluded_members(groups: &[CauseGroup], acting: u32) -> u32 {
     let without = groups.iter().enumerate().filter(|(at, _)| acting & (1 << at) == 0);
     without.fold(0, |all, (_, group)| all | group.members)

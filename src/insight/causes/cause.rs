@@ -1,41 +1,41 @@
-//! Causes of a change, and their values in the two weeks.
+//! Causes of a change, with their values in the two weeks.
 
 use novamind_session::SettingChange;
 use novamind_tools::ToolId;
 
-/// A cause of a change.
+/// A cause of the change of a weekly figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// Calls of a tool.
+    /// Calls of one tool by the player.
     Calls(ToolId),
     /// Parameter changes of a debug run.
     Parameters,
-    /// Several tools with the smallest contributions.
+    /// The tools with the smallest contributions, merged into one cause.
     OtherCalls,
-    /// One-time purchases that were paid in the week before.
+    /// One-time purchases that were paid in the previous week.
     EarlierPurchases,
-    /// All market inputs that are hidden from the player.
+    /// All hidden market inputs, merged into one cause.
     Market,
-    /// Competitor moves.
+    /// Moves of competitors.
     Competitors,
     /// Drift of expectations and budgets.
     Drift,
-    /// Channel yields.
+    /// Changes of channel yields.
     Yields,
-    /// The economy.
+    /// Changes of the macroeconomic index.
     Economy,
-    /// Demand surges.
+    /// Demand surges of the market.
     Surges,
-    /// The day of the month.
+    /// The effect of the day of the month on leads.
     Calendar,
-    /// Utilization, and outage draws.
+    /// Utilization and random outages of the service.
     Service,
-    /// Several inputs with the smallest contributions.
+    /// The world inputs with the smallest contributions, merged into one cause.
     OtherInputs,
 }
 
 impl Cause {
-    /// Returns the display name.
+    /// Returns the display name of the cause.
     pub fn name(self) -> &'static str {
         match self {
             Cause::Calls(tool) => tool_call_name(tool),
@@ -84,26 +84,26 @@ fn tool_call_name(tool: ToolId) -> &'static str {
     }
 }
 
-/// A difference in a cause between the two weeks.
+/// A difference of a cause between the two weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CauseDetail {
-    /// A setting.
+    /// A setting with different values in the two weeks.
     Setting(SettingChange),
-    /// An input of the world.
+    /// A world input with different values in the two weeks.
     Input(InputDetail),
-    /// A number of occurrences, with the noun.
+    /// Number of occurrences and the noun for one occurrence, for example 3 and `call`.
     Occurred(usize, &'static str),
 }
 
-/// An input of the world in two weeks.
+/// The values of a world input in the two weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputDetail {
-    /// Name of the input.
+    /// Display name of the world input.
     pub name: &'static str,
-    /// Value in the week before.
+    /// Value of the input in the previous week.
     pub old: f64,
-    /// Value in the week.
+    /// Value of the input in the explained week.
     pub new: f64,
-    /// Whether the value is a share.
+    /// Whether the values are shares from 0 to 1.
     pub is_share: bool,
 }

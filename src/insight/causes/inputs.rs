@@ -1,4 +1,4 @@
-//! World inputs that differ between two weeks, and their fixed values.
+//! World inputs that differ between two weeks, and values at which a re-simulation fixes them.
 
 use super::cause::{Cause, CauseDetail, InputDetail};
 use crate::counterfactual::branch::BranchOutcome;
@@ -8,7 +8,7 @@ use novamind_world::fixed_inputs::FixedInputs;
 use novamind_world::market::surges::surge_factor;
 use novamind_world::product::service::FixedService;
 
-/// Two consecutive recorded weeks: the state between them, and the results of both.
+/// Two consecutive recorded weeks: the state between the weeks and the results of each week.
 pub(super) struct WeekPair<'a> {
     pub start: &'a MemorySnapshot,
     pub before: &'a BranchOutcome,
@@ -20,7 +20,7 @@ impl WeekPair<'_> {
         self.start.world.day + 1..=self.after.final_state.world.day
     }
 
-    /// Returns the demand surge factor on the days of the week and of the week before.
+    /// Returns the demand surge factors on the days of the explained week and of the previous week.
     fn surge_factors(&self) -> (Vec<f64>, Vec<f64>) {
         let start = self.start.params.fidelity.surge_start;
         let factor = |day, moment: &MemorySnapshot| surge_factor(day, &moment.world.market.surges, start);
@@ -29,7 +29,7 @@ impl WeekPair<'_> {
         (now, self.days().map(|day| factor(day - week, self.start)).collect())
     }
 
-    /// Returns the day-of-month factor on the days of the week and of the week before.
+    /// Returns the day-of-month factors on the days of the explained week and of the previous week.
     fn month_day_factors(&self) -> (Vec<f64>, Vec<f64>) {
         let calendar = &self.start.params.calendar.monthly;
         let factor = |day: u32| calendar[day as usize % calendar.len()];
@@ -71,7 +71,7 @@ impl WeekPair<'_> {
         found
     }
 
-    /// Fixes inputs at their values of the week before. Utilization is relative to days without the player's changes.
+    /// Fixes world inputs at their values of the previous week. Utilization is relative to days without the player's changes.
     pub(super) fn held_inputs(
         &self,
         causes: impl Iterator<Item = Cause>,
@@ -93,7 +93,7 @@ impl WeekPair<'_> {
         fixed_inputs
     }
 
-    /// Returns the utilization for the usage of the week before, with the random draws of that day.
+    /// Returns the utilization that the usage of the previous week would cause, with the random draws of the same weekday.
     fn held_service(&self, undone: &[DayFigures]) -> Vec<FixedService> {
         let week = self.start.params.run.days_per_week;
         let used = |days: &[DayFigures], wanted: u32| {

@@ -1,9 +1,11 @@
-//! Causes of a weekly change: re-simulates the week without each cause, with the same random draws.
+//! Causes of a weekly change. The week is re-simulated without each cause, with the same random draws.
 //!
-//! A cause is a difference from the week before: settings and calls of the player, by tool, and world inputs that the company does
-//! not control. The contribution of a cause is its Shapley value. Inputs are evaluated without the player's changes, and the
-//! player's changes in the recorded world. Therefore a single change contributes exactly the difference to a branch without it.
-//! The residual is composition and chance: other customers have their billing day, and every day has new random draws.
+//! A cause is a difference from the previous week. Causes are the settings and calls of the player, by tool, and the
+//! world inputs that the company does not control. The contribution of a cause is its Shapley value. World inputs are
+//! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs.
+//! The contribution of a single change is therefore exactly the difference to a branch without the change.
+//! The residual has two sources: other customers have their billing day in the explained week, and every day has new
+//! random draws.
 
 mod attribution;
 mod cause;
@@ -30,19 +32,19 @@ use novamind_tools::Rejection;
 pub(crate) use visibility::{InputVisibility, input_visibility};
 use week_resimulation::WeekResimulation;
 
-/// The progress of an answer.
+/// The progress of a [`CauseAnalysis`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CauseProgress {
-    /// Simulating days up to the week: the current day, and the last one.
+    /// Current day and last day of the simulation up to the explained week.
     Replaying(u32, u32),
-    /// Number of re-simulated weeks, and the minimum total.
+    /// Number of weeks re-simulated and the minimum total.
     Simulated(usize, usize),
 }
 
-/// Receives the progress. Can stop the work.
+/// A callback that receives the progress and can stop the analysis.
 pub type CauseProgressFn<'a> = &'a (dyn Fn(CauseProgress) -> ControlFlow<()> + Sync);
 
-/// Explains changes of weekly figures of a run. Caches simulations for the next question.
+/// Explains changes of weekly figures of a run. Caches the simulations for later questions.
 pub struct CauseAnalysis {
     run: RecordedRun,
     visibility: InputVisibility,
@@ -69,11 +71,13 @@ impl RecordAnalysis for CauseAnalysis {
 }
 
 impl CauseAnalysis {
-    /// Explains why a figure changed in a week, by default the last completed one. Returns `None` if stopped.
+    /// Explains why a figure changed in a week, by default the last completed week. Returns `None` if `progress`
+    /// stopped the analysis.
     ///
     /// # Errors
     /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not know;
-    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`; `no_value` if the figure
+    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`; `no_value`
+    /// if the figure
     /// has no value in one of the two weeks.
     pub fn explain(
         &mut self,
@@ -96,7 +100,7 @@ impl CauseAnalysis {
         }
     }
 
-    /// Returns the number of a week that can be explained.
+    /// Returns the requested week if it can be explained; by default, the last completed week.
     fn resolve_week(&self, week: Option<u32>) -> Result<u32, Rejection> {
         let days = self.run.days_per_week();
         let last = self.run.last_day().min(self.run.manifest.days).div_ceil(days);
@@ -118,7 +122,8 @@ impl CauseAnalysis {
     }
 }
 
-/// Prepares a question. Records an inspection first if the figure is hidden in unfinished runs. Returns the folder for
+/// Prepares the answer to a question. If the figure is hidden in unfinished runs, records an inspection first. Returns
+/// the folder for
 /// [`CauseAnalysis::explain`].
 ///
 /// # Errors
@@ -129,7 +134,7 @@ pub fn begin_cause_analysis(run: &mut Session, week_question: &WeekQuestion) -> 
     Ok(folder)
 }
 
-/// Records an inspection if the figure is hidden in unfinished runs.
+/// Records an inspection if the requested figure is hidden in unfinished runs.
 ///
 /// # Errors
 /// `not_in_this_mode`, `day_unknown`, `not_saved`.
@@ -149,7 +154,7 @@ fn session_visibility(run: &Session) -> Result<InputVisibility, Rejection> {
     input_visibility(run.manifest(), is_over)
 }
 
-/// Returns the folder of this run for [`CauseAnalysis::explain`].
+/// Returns the folder of the run for [`CauseAnalysis::explain`].
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, `not_possible` for a run in memory.

@@ -1,4 +1,4 @@
-//! A question: a figure of the company or of a group, and a week.
+//! Questions about a change: a figure of the company or of a group, and a week.
 
 use std::fmt;
 use std::str::FromStr;
@@ -17,12 +17,12 @@ pub struct WeekQuantity {
 }
 
 impl WeekQuantity {
-    /// Returns a figure of the company, or `None` if only groups have it.
+    /// Creates a figure of the company. Returns `None` if the figure exists only for groups.
     pub fn for_company(figure: WeekFigure) -> Option<WeekQuantity> {
         WeekQuantity::new(figure, None).ok()
     }
 
-    /// Returns a figure of a group, or `None` if only the company has it.
+    /// Creates a figure of a group. Returns `None` if the figure exists only for the company.
     pub fn for_group(figure: WeekFigure, group: Group) -> Option<WeekQuantity> {
         WeekQuantity::new(figure, Some(group)).ok()
     }
@@ -35,17 +35,17 @@ impl WeekQuantity {
         }
     }
 
-    /// The figure.
+    /// Returns the figure without its group.
     pub fn figure(&self) -> WeekFigure {
         self.figure
     }
 
-    /// Returns the group, or `None` for the company.
+    /// Returns the group of the figure, or `None` for the company.
     pub fn group(&self) -> Option<Group> {
         self.group
     }
 
-    /// Returns the name in sentences: `churn of S1`, `cash change`.
+    /// Returns the display name of the figure with its group: `churn of S1`, `cash change`.
     pub fn name(&self) -> String {
         match self.group {
             Some(group) => format!("{} of {group}", self.figure.name()),
@@ -53,7 +53,7 @@ impl WeekQuantity {
         }
     }
 
-    /// Returns the unit.
+    /// Returns the unit of the figure.
     pub fn unit(&self) -> FigureUnit {
         self.figure.unit()
     }
@@ -63,7 +63,7 @@ impl WeekQuantity {
         self.figure.is_hidden()
     }
 
-    /// Returns the value in a week, NaN if it has none.
+    /// Returns the value of the figure in a week, or NaN if the figure has no value.
     pub(super) fn value_in(&self, week: &SimulatedWeek) -> f64 {
         let value = match self.group {
             Some(group) => self.figure.group_reader().map(|read| read(&week.groups[group])),
@@ -73,7 +73,7 @@ impl WeekQuantity {
     }
 }
 
-/// Writes the identifier: `churn(S1)`, `cash_change`.
+/// Formats the identifier of the figure: `churn(S1)`, `cash_change`.
 impl fmt::Display for WeekQuantity {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let id = self.figure.id();
@@ -84,19 +84,21 @@ impl fmt::Display for WeekQuantity {
     }
 }
 
-/// A question: why a figure changed in a week.
+/// A question why a figure changed in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WeekQuestion {
-    /// The figure.
+    /// The figure to explain.
     pub quantity: WeekQuantity,
-    /// The week; `None` for the last one.
+    /// Number of the week to explain; `None` for the last completed week.
     pub week: Option<u32>,
 }
 
 impl FromStr for WeekQuestion {
     type Err = ConditionParseError;
 
-    /// Parses `churn(S1) 44` or `new subscribers`. Words of a name can be joined by spaces, dashes or underscores.
+    /// Parses a figure and an optional week, for example `churn(S1) 44` or `new subscribers`. The words of a figure
+    /// name can be joined by spaces, hyphens or
+    /// underscores.
     fn from_str(text: &str) -> Result<WeekQuestion, ConditionParseError> {
         let (name, rest) = text.split_at(name_length(text));
         let figure = parse_figure(name)?;
@@ -113,7 +115,8 @@ impl FromStr for WeekQuestion {
     }
 }
 
-/// Returns the end of a name: before a bracket, or before a last word that starts like a number.
+/// Returns the length of the figure name at the start of `text`. The name ends before a bracket or before a last word
+/// that starts with a digit.
 fn name_length(text: &str) -> usize {
     let week = || {
         let (name, last) = text.trim_end().rsplit_once(char::is_whitespace)?;

@@ -1,7 +1,8 @@
-//! Shapley values: the contribution of each of several causes to a value.
+//! Shapley values: the contributions of several causes to one value.
 
-/// Returns the Shapley value of each cause: the mean of its contributions over all orders of the causes. `value` returns the value
-/// of a set of causes, one bit for each. The Shapley values add up to the value of all causes minus the value of none.
+/// Returns the Shapley value of each cause, which is the mean contribution of the cause over all orders of the causes.
+/// `value` returns the result of a set of causes, given as a bit mask. The Shapley values add up to the result with
+/// all causes minus the result without causes.
 pub(super) fn shapley_values(causes: usize, value: impl Fn(u32) -> f64) -> Vec<f64> {
     let sets = 1u32 << causes;
     let values: Vec<f64> = (0..sets).map(value).collect();
@@ -19,12 +20,13 @@ pub(super) fn shapley_values(causes: usize, value: impl Fn(u32) -> f64) -> Vec<f
     (0..causes).map(share).collect()
 }
 
-/// Returns the share of all orders in which exactly a given set of `s` causes precedes a given cause: s! (n - s - 1)! / n!.
+/// Returns the weight of each set size `s`: s! (n - s - 1)! / n!. The weight is the share of all orders in which
+/// exactly the causes of the set precede a given cause.
 fn coalition_weights(causes: usize) -> Vec<f64> {
     let mut weights = Vec::with_capacity(causes);
     let mut choices = 1.0;
     for before in 0..causes {
-        // n times the number of sets of this size among the others.
+        // `causes` times the number of sets of this size that exclude the cause.
         weights.push(1.0 / (causes as f64 * choices));
         choices = choices * (causes - 1 - before) as f64 / (before + 1) as f64;
     }
@@ -48,7 +50,7 @@ mod tests {
     #[test]
     fn interaction_is_shared_and_values_sum_to_the_total() {
         assert_eq!(shapley_values(2, |set| if set == 0b11 { 8.0 } else { 0.0 }), [4.0, 4.0]);
-        // The glove game: one left glove, two right ones.
+        // The glove game: player 0 has a left glove, players 1 and 2 have a right glove.
         let pairs = |set: u32| if set & 1 != 0 && set & 0b110 != 0 { 1.0 } else { 0.0 };
         let shares = shapley_values(3, pairs);
         for (share, value) in shares.iter().zip([4.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0]) {

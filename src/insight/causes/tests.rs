@@ -1,4 +1,5 @@
-//! Known changes are found with the effect of a branch without them; contributions add up; hidden state stays hidden.
+//! Changed settings are found with the same effect as in a branch without them. Contributions add up. Hidden state
+//! stays hidden.
 
 use std::ops::ControlFlow;
 
@@ -37,7 +38,7 @@ fn explain(session: &Session, quantity: WeekQuantity) -> ChangeExplanation {
         .expect("it is not stopped")
 }
 
-/// Returns a week of a session, counted from 0, for comparison with re-simulations.
+/// Returns the recorded figures of week `at`, counted from 0, for comparison with re-simulations.
 fn simulated_week(session: &Session, at: usize) -> SimulatedWeek {
     let subscribers =
         |at: usize, group| session.company().group_weeks()[at][group].subscribers.0.iter().sum();
@@ -65,7 +66,7 @@ fn last_value(session: &Session, quantity: WeekQuantity) -> f64 {
     quantity.value_in(&simulated_week(session, session.weeks().len() - 1))
 }
 
-/// Returns every figure of the company and of some groups.
+/// Returns every figure of the company and the figures of some groups.
 fn all_quantities() -> Vec<WeekQuantity> {
     let of_company =
         WeekFigure::ALL.iter().filter(|figure| figure.has_company_value()).copied().map(company_quantity);
@@ -74,7 +75,7 @@ fn all_quantities() -> Vec<WeekQuantity> {
     of_company.chain(of_groups).collect()
 }
 
-/// Asserts that contributions and residual add up to the change.
+/// Asserts that the contributions and the residual add up to the change.
 fn assert_contributions_add_up(why: &ChangeExplanation) {
     let sum = why.contributions.iter().map(|part| part.amount).sum::<f64>() + why.residual;
     assert!((sum - why.change()).abs() < 1e-9 * why.change().abs().max(1.0), "{sum} of {}", why.change());
@@ -200,7 +201,7 @@ fn all_figures_of_a_week_share_its_simulations() {
 #[test]
 fn unchanged_settings_are_no_cause_and_figures_add_up() {
     let runs = tempfile::tempdir().expect("a folder");
-    // Setting the current value is not a change.
+    // Setting a price to its current value is not a change.
     let session = play_weeks(runs.path(), Mode::Debug, 5, Some(("set_prices", json!({"A": 12}))));
     let mut causes = open_causes(&session);
     let mut last_values = Vec::new();
@@ -217,7 +218,7 @@ fn unchanged_settings_are_no_cause_and_figures_add_up() {
             };
             assert_contributions_add_up(&why);
             let at = week as usize - 1;
-            // Satisfaction, reputation, issues and enterprises of a group have values only in consecutive weeks.
+            // For a group, satisfaction, reputation, issues and enterprises have values only in consecutive weeks.
             let is_told = quantity
                 .group()
                 .is_none_or(|group| !group.is_enterprise() && quantity.figure() != WeekFigure::OpenIssues);
@@ -294,7 +295,7 @@ fn hidden_figures_need_a_recorded_inspection() {
                 ("not_in_this_mode", Err("not_in_this_mode"))
             );
         }
-        // A group that is not discovered has no figures.
+        // An undiscovered group has no figures.
         let unknown = Group::all().find(|group| !group.is_initially_known()).expect("a group to find");
         let quantity = WeekQuantity::for_group(WeekFigure::Leads, unknown).expect("a figure");
         let refused = open_causes(&session)
@@ -392,7 +393,7 @@ fn incomparable_weeks_are_rejected_and_analysis_can_be_stopped() {
             _ => ControlFlow::Continue(()),
         };
         assert_eq!(causes.explain(usage, &stopping), Ok(None), "{stop:?}");
-        // A stopped question can be repeated.
+        // A stopped analysis can be repeated.
         assert!(causes.explain(usage, &continue_progress).expect("an answer").is_some());
     }
 }

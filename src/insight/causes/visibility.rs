@@ -1,4 +1,4 @@
-//! Permissions for causes, which reveal hidden state because it is part of their simulation.
+//! Permissions for explanations, which can reveal hidden state because they re-simulate the run.
 
 use super::question::WeekQuantity;
 use novamind_record::folder::manifest::Manifest;
@@ -6,16 +6,16 @@ use novamind_record::mode::Mode;
 use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
-/// The level of detail of world inputs.
+/// The level of detail in which world inputs are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum InputVisibility {
-    /// The market is a single cause, because its inputs are hidden.
+    /// All hidden market inputs are shown as a single cause.
     MarketAsOne,
-    /// Every input is a separate cause.
+    /// Every world input is shown as a separate cause.
     EveryInput,
 }
 
-/// Returns the level of detail that a run permits.
+/// Returns the level of detail of world inputs that a run permits.
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, and for a run whose study shows no results.
@@ -29,8 +29,7 @@ pub(crate) fn input_visibility(manifest: &Manifest, ended: bool) -> Result<Input
         (Mode::Sandbox | Mode::Lesson, false) => Ok(InputVisibility::MarketAsOne),
         (Mode::Baseline, false) => Err(Rejection::new(
             "not_in_this_mode",
-            "why and what-if simulate the company again, which agents cannot do either: not in an unfinished \
-             baseline run",
+            "why and what-if re-simulate the company, which agents cannot do: they are not available in an unfinished baseline run",
         )),
     }
 }
@@ -50,7 +49,7 @@ pub(super) fn check_figure_visible(quantity: WeekQuantity, sight: InputVisibilit
     Err(Rejection::for_field("figure", "not_in_this_mode", message))
 }
 
-/// Returns the rejection for a group that the player did not know.
+/// Returns the rejection for a group that the player had not discovered in a week.
 pub(super) fn unknown_group_rejection(group: Group, week: u32) -> Rejection {
     let message = format!("{group} was not discovered in week {week}; choose a discovered group");
     Rejection::for_field("figure", "unknown_group", message)

@@ -1,4 +1,4 @@
-//! Re-simulates a week repeatedly, each time without other causes.
+//! Re-simulations of a week, each without a different set of causes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -23,22 +23,22 @@ use novamind_world::events::DayFigures;
 use novamind_world::fixed_inputs::FixedInputs;
 use novamind_world::identifiers::{ByGroup, Group};
 
-/// A set of removed causes: one bit for each tool and each input, by index.
+/// Bit masks of the removed causes, by the index of the tool or input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ExcludedCauses {
     pub calls: u32,
     pub inputs: u32,
 }
 
-/// A cause that can be removed.
+/// A cause that can be removed from a week.
 pub(super) struct Candidate {
     pub cause: Cause,
     pub details: Vec<CauseDetail>,
-    /// Lines of its calls; empty for an input.
+    /// Lines of the cause's calls in the trajectory; empty for a world input.
     lines: BTreeSet<u64>,
 }
 
-/// A week, the week before, and the results of simulations.
+/// An explained week, the previous week, and the results of re-simulations.
 pub(super) struct WeekResimulation {
     week: u32,
     start: Arc<MemorySnapshot>,
@@ -47,16 +47,16 @@ pub(super) struct WeekResimulation {
     after: BranchOutcome,
     week_before: SimulatedWeek,
     pub(super) visibility: InputVisibility,
-    /// Tools that the player called.
+    /// Tools that the player called in the week.
     pub(super) calls: Vec<Candidate>,
     pub(super) inputs: Vec<Candidate>,
-    /// Days without any call; `None` until simulated.
+    /// Days of the week without any call; empty until simulated.
     days_without_calls: Vec<DayFigures>,
     simulated_weeks: BTreeMap<ExcludedCauses, SimulatedWeek>,
 }
 
 impl WeekResimulation {
-    /// Prepares a week of a run. Returns `None` if stopped.
+    /// Prepares the re-simulation of a week. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
     /// Returns an error if the simulation does not reproduce the recorded states.
@@ -107,7 +107,7 @@ impl WeekResimulation {
         self.week
     }
 
-    /// Returns the number of days of the week before and of the week.
+    /// Returns the number of days in the previous week and in the explained week.
     pub(super) fn days(&self) -> [u32; 2] {
         [&self.before, &self.after].map(|outcome| outcome.days.len() as u32)
     }
@@ -116,22 +116,23 @@ impl WeekResimulation {
         &self.week_before
     }
 
-    /// Returns whether a group was discovered at the end of the week.
+    /// Returns whether a group had been discovered by the end of the week.
     pub(super) fn is_group_known(&self, group: Group) -> bool {
         self.after.final_state.world.market.is_known(group)
     }
 
-    /// Returns the number of re-simulated weeks.
+    /// Returns how many weeks have been re-simulated.
     pub(super) fn simulation_count(&self) -> usize {
         self.simulated_weeks.len() - 1
     }
 
-    /// Returns the figures of the week without some causes, which must be simulated already.
+    /// Returns the figures of the week without the excluded causes, which must be simulated already.
     pub(super) fn week_without(&self, without: ExcludedCauses) -> &SimulatedWeek {
         &self.simulated_weeks[&without]
     }
 
-    /// Simulates the sets that have no result yet. Returns `None` if stopped.
+    /// Simulates the week for each set of causes without a cached result. Returns `None` if `progress` stopped the
+    /// simulation.
     pub(super) fn simulate_missing(
         &mut self,
         wanted: &[ExcludedCauses],
@@ -192,7 +193,7 @@ impl WeekResimulation {
         let edits = Edits { dropped_lines: dropped, held_inputs: fixed_inputs, ..Edits::default() };
         let outcome =
             simulate_branch(&self.start, &self.steps, &edits, self.after.final_state.world.day, go_on)?;
-        // The figures of a week that ends early cannot be compared with those of a complete week.
+        // The figures of a week that ended early cannot be compared with the figures of a complete week.
         outcome.lead_overflow.is_none().then_some(outcome)
     }
 }
@@ -201,7 +202,8 @@ fn selected_candidates(candidates: &[Candidate], set: u32) -> impl Iterator<Item
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, candidate)| candidate)
 }
 
-/// Returns the player's calls in the week by tool. A setting that returned to its first value counts only if days passed in between.
+/// Returns the player's calls in the week, one candidate per tool. A setting that returned to its initial value is
+/// included only if the week was simulated in several steps.
 fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchOutcome) -> Vec<Candidate> {
     let set = setting_changes(&eve.world.settings, &after.final_state.world.settings);
     let in_steps = moves.iter().filter(|step| matches!(step, RecordedStep::Days(_))).count() > 1;
@@ -229,7 +231,7 @@ fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchO
     by_tool
 }
 
-/// Returns the parameters that were set in the week or took effect in it.
+/// Returns the parameter changes that were made or took effect in the week, as one candidate.
 fn parameter_candidate(eve: &MemorySnapshot, moves: &[RecordedStep], end: u32) -> Option<Candidate> {
     let set = moves.iter().filter_map(|step| match step {
         RecordedStep::Parameter(setting) => Some(&setting.change),
@@ -248,7 +250,7 @@ fn as_accepted_call(step: &RecordedStep) -> Option<&RecordedCall> {
     }
 }
 
-/// Returns the last week of the days after a state, which are at most one week.
+/// Returns the figures of the last week in `outcome`, a simulation of at most one week after `before`.
 fn last_simulated_week(before: &MemorySnapshot, outcome: &BranchOutcome) -> SimulatedWeek {
     let measured = outcome.groups.last().copied().unwrap_or_default();
     SimulatedWeek {

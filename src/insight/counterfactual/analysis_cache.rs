@@ -1,10 +1,10 @@
-//! A cache for the analysis of the most recently used record, so that the next question reuses its simulations.
+//! A cache for the analysis of the most recently used record. The next question about the record reuses its simulations.
 
 use std::path::{Path, PathBuf};
 
 use novamind_tools::Rejection;
 
-/// An analysis of a record.
+/// An analysis of the record of a run.
 pub trait RecordAnalysis: Sized {
     /// Opens the current record of the run in a folder.
     ///
@@ -12,10 +12,10 @@ pub trait RecordAnalysis: Sized {
     /// Returns a rejection if the analysis is not permitted or the record cannot be read.
     fn open(folder: &Path) -> Result<Self, Rejection>;
 
-    /// Reads new events.
+    /// Reads events that were recorded since the last call.
     ///
     /// # Errors
-    /// As [`RecordAnalysis::open`].
+    /// Same errors as [`RecordAnalysis::open`].
     fn refresh(&mut self) -> Result<(), Rejection>;
 }
 
@@ -32,7 +32,7 @@ impl<T: RecordAnalysis> AnalysisCache<T> {
     /// Returns the analysis of the run in a folder with all recorded events.
     ///
     /// # Errors
-    /// As [`RecordAnalysis::open`]; the cache is then empty.
+    /// Same errors as [`RecordAnalysis::open`]; the cache is then empty.
     pub fn get_or_open(&mut self, folder: PathBuf) -> Result<&mut T, Rejection> {
         let kept = match self.0.take().filter(|(known, _)| *known == folder) {
             Some((folder, mut made)) => {

@@ -1,4 +1,4 @@
-//! Re-simulation of days with edits.
+//! Re-simulation of recorded days with edits.
 
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
@@ -24,46 +24,46 @@ use novamind_world::state::World;
 
 /// The results of a re-simulation.
 pub(crate) struct BranchOutcome {
-    /// Figures of the completed weeks.
+    /// Company figures of each completed week.
     pub weeks: Vec<WeekFigures>,
-    /// Figures of every day.
+    /// Figures of every simulated day.
     pub days: Vec<DayFigures>,
-    /// Mean satisfaction of individual subscribers at the end of each of these weeks; NaN without subscribers.
+    /// Mean satisfaction of individual subscribers at the end of each completed week; NaN without subscribers.
     pub satisfaction: Vec<f64>,
-    /// Figures of every group in each of these weeks.
+    /// Figures of every group in each completed week.
     pub groups: Vec<ByGroup<GroupFigures>>,
-    /// Day and hash of every state that the recorded steps name, if hashes are requested.
+    /// Day and hash of each state whose hash is in the recorded steps; empty unless hashes are requested.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
     pub states: Vec<(u32, StateHash)>,
-    /// Calls that the branch rejects.
+    /// Recorded or added calls that the branch rejects.
     pub rejected: Vec<RejectedCall>,
     /// Parameter changes that are invalid in the branch and therefore omitted: day, key, reason.
     pub rejected_parameters: Vec<(u32, String, Rejection)>,
-    /// Calls that the run rejected and the branch would accept; they are not made.
+    /// Calls that the run rejected and the branch would accept. The branch does not execute these calls.
     pub newly_accepted: Vec<RecordedCall>,
-    /// Calls that adjusted the capacity to usage.
+    /// Added calls that adjust the capacity to usage.
     pub capacity_calls: Vec<AddedCall>,
-    /// The reason if the simulation ended early because a day had too many leads.
+    /// Why the simulation ended early, if a day had too many leads.
     pub lead_overflow: Option<Rejection>,
-    /// Final state.
+    /// State of the company after the last simulated day.
     pub final_state: MemorySnapshot,
 }
 
-/// A call that is rejected in a re-simulation.
+/// A call that a re-simulation rejects.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RejectedCall {
-    /// Line in the run; `None` for an added call.
+    /// Line of the call in the trajectory of the run; `None` for an added call.
     pub seq: Option<u64>,
-    /// Decision day.
+    /// Decision day of the call.
     pub day: u32,
-    /// Tool.
+    /// Called tool.
     pub tool: ToolId,
-    /// Reason.
+    /// Why the call was rejected.
     pub rejection: Rejection,
 }
 
-/// Re-simulates the days after a state with edits of the recorded steps. Days after the last step keep the current settings.
-/// `progress` is called once per simulated day. Returns `None` if it stops the simulation.
+/// Re-simulates the days after a state with edited steps. Days after the last step keep the current settings.
+/// `progress` is called once per simulated day. Returns `None` if `progress` stops the simulation.
 pub(crate) fn simulate_branch(
     start: &MemorySnapshot,
     moves: &[RecordedStep],
@@ -76,7 +76,7 @@ pub(crate) fn simulate_branch(
     Some(branch.into_outcome())
 }
 
-/// Re-simulates days like [`simulate_branch`] and computes the hash of every state that the recorded steps name.
+/// Re-simulates days like [`simulate_branch`] and computes the hash of every state whose hash is recorded.
 #[cfg(test)]
 pub(crate) fn simulate_branch_with_hashes(
     start: &MemorySnapshot,
@@ -89,8 +89,9 @@ pub(crate) fn simulate_branch_with_hashes(
     Some(branch.into_outcome())
 }
 
-/// Returns the first day up to `until` at whose end two edits of the same steps have different states, or an inner `None` if there is
-/// none. Returns an outer `None` if `progress`, called once per simulated day, stops the simulation.
+/// Returns the first day, at most `until`, at whose end two edits of the same steps lead to different states. The
+/// inner `Option` is `None` if the states are equal on all days. The outer `Option` is `None` if `progress`, which is
+/// called once per simulated day, stops the simulation.
 pub(crate) fn first_different_day(
     start: &MemorySnapshot,
     moves: &[RecordedStep],
@@ -116,18 +117,18 @@ struct BranchSimulation<'a> {
     edits: &'a Edits,
     remaining_steps: &'a [RecordedStep],
     simulation: Simulation,
-    /// Discards all output.
+    /// A database that discards all output.
     projection: RunDatabase,
     week: WeekFigures,
-    /// Figures of the current week by group.
+    /// Figures of each group in the current week.
     group_week: ByGroup<GroupWeek>,
     /// Cash at the start of the week.
     cash_before: f64,
-    /// Ledger entries of calls since the last day.
+    /// Ledger entries of calls since the last simulated day.
     call_entries: Vec<LedgerEntry>,
-    /// Whether posts are worded and facts are hashed.
+    /// Whether the text of posts is generated and facts are hashed.
     processes_text: bool,
-    /// Whether this is still to be done for the last day.
+    /// Whether the text of the last day is still to be processed.
     has_unprocessed_text: bool,
     numbers: OnceLock<Arc<ParameterNumbers>>,
     weeks: Vec<WeekFigures>,
@@ -139,7 +140,7 @@ struct BranchSimulation<'a> {
     rejected_parameters: Vec<(u32, String, Rejection)>,
     newly_accepted: Vec<RecordedCall>,
     capacity_calls: Vec<AddedCall>,
-    /// Reason why no further day is simulated.
+    /// Why the simulation stopped, if a day had too many leads.
     lead_overflow: Option<Rejection>,
 }
 
@@ -183,20 +184,20 @@ impl<'a> BranchSimulation<'a> {
         branch
     }
 
-    /// Makes the calls that precede all steps.
+    /// Executes the calls that precede all steps.
     fn apply_initial_calls(&mut self) {
         for (tool, args) in &self.edits.initial_calls {
             self.apply_added_call(*tool, args);
         }
     }
 
-    /// Executes steps and simulates days up to the end of a day.
+    /// Executes steps and simulates days until the end of day `until`.
     fn advance(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
         while let [step, rest @ ..] = self.remaining_steps
             && !self.is_over()
         {
             match step {
-                // Decisions on the last day belong to the next day.
+                // Decisions that are made on day `until` take effect on the next day.
                 RecordedStep::Call(call) if call.day >= until => break,
                 RecordedStep::Parameter(setting) if setting.day >= until => break,
                 RecordedStep::Call(call) => self.replay_call(call),
@@ -217,7 +218,7 @@ impl<'a> BranchSimulation<'a> {
         self.simulate_days(until, progress)
     }
 
-    /// Makes a recorded call with its edits.
+    /// Executes a recorded call, unless it is dropped, with changed arguments if the edits contain any.
     fn replay_call(&mut self, call: &RecordedCall) {
         if self.edits.dropped_lines.contains(&call.seq) {
             return;
@@ -237,7 +238,7 @@ impl<'a> BranchSimulation<'a> {
         self.apply_call(None, tool, args, true);
     }
 
-    /// Returns a call with the customer numbers of the branch.
+    /// Translates the customer numbers of a call to the numbers of the branch.
     fn renumber_call(&self, tool: ToolId, args: &Value) -> RenumberedCall {
         match &self.edits.recorded_numbers {
             None => RenumberedCall { args: Some(args.clone()), missing_customers: Vec::new() },
@@ -245,7 +246,7 @@ impl<'a> BranchSimulation<'a> {
         }
     }
 
-    /// Plans a call. Only added calls are checked against argument bounds, because recorded ones were accepted before.
+    /// Plans a call. Argument bounds are checked only for new calls, because the run has already accepted the recorded calls.
     fn plan_call(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Rejection> {
         let Simulation { world, params, feed, .. } = &self.simulation;
         let numbers = || self.numbers.get_or_init(|| ParameterNumbers::for_params(params).into()).clone();
@@ -258,7 +259,7 @@ impl<'a> BranchSimulation<'a> {
         Ok(planned.command)
     }
 
-    /// Makes a call and records its rejections.
+    /// Executes a call and records its rejection, if any.
     fn apply_call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
         let RenumberedCall { args: here, missing_customers: absent } = self.renumber_call(tool, args);
         let is_renumbered = here.as_ref().is_some_and(|here| here != args);
@@ -284,7 +285,7 @@ impl<'a> BranchSimulation<'a> {
         Ok(())
     }
 
-    /// Sets a parameter. Omits a value that is invalid in the branch, including one for a later day.
+    /// Applies a parameter change. Records a rejection instead if the value is invalid in the branch, now or on a later day.
     fn apply_parameter_change(&mut self, change: ParameterChange) {
         let (day, key) = (self.simulation.world.day, change.key.clone());
         match self.simulation.overrides.add_change(&self.simulation.params, change) {
@@ -296,10 +297,10 @@ impl<'a> BranchSimulation<'a> {
         }
     }
 
-    /// Sets an added parameter.
+    /// Sets a parameter that was not set in the run.
     fn apply_added_setting(&mut self, setting: &AddedSetting) {
         let value = json_to_value(&setting.value);
-        // No event sets it, so it needs a number that no event has.
+        // The change has no event in the trajectory, so it gets a line number that no event has.
         let change =
             |value| ParameterChange { seq: u64::MAX, key: setting.key.clone(), value, from_day: None };
         value.map(change).into_iter().for_each(|change| self.apply_parameter_change(change));
@@ -324,7 +325,7 @@ impl<'a> BranchSimulation<'a> {
         self.lead_overflow.is_some() || self.simulation.world.is_over(&self.simulation.params)
     }
 
-    /// Applies the edits of this day: parameters, calls, capacity that follows usage, and redrawn random draws.
+    /// Applies the edits of the current day: parameters, calls, usage-based capacity and new random draws.
     fn apply_edits_of_day(&mut self) {
         let (day, edits) = (self.simulation.world.day, self.edits);
         edits

@@ -1,20 +1,20 @@
-//! Customers that recorded calls name, with their numbers in a branch.
+//! Translation of the customer numbers in recorded calls to the numbers of a branch.
 
 use serde_json::Value;
 
 use novamind_tools::{Rejection, ToolId, remap_customers};
 use novamind_world::customers::customer_numbers::CustomerNumbers;
 
-/// A recorded call with the customer numbers of a branch.
+/// A recorded call with translated customer numbers.
 pub(crate) struct RenumberedCall {
-    /// Arguments with the numbers of the branch; `None` if no named customer exists there.
+    /// Arguments with the customer numbers of the branch; `None` if none of the call's customers exists in the branch.
     pub args: Option<Value>,
-    /// A rejection for each named customer that does not exist in the branch.
+    /// A rejection for each customer of the call that does not exist in the branch.
     pub missing_customers: Vec<Rejection>,
 }
 
 impl RenumberedCall {
-    /// Translates the customer numbers of a recorded call to those of a branch with the same random draws.
+    /// Translates the customer numbers of a recorded call to the numbers of a branch with the same random draws.
     pub fn new(
         tool: ToolId,
         args: &Value,
@@ -23,7 +23,7 @@ impl RenumberedCall {
     ) -> RenumberedCall {
         let mut absent = Vec::new();
         let args = remap_customers(tool, args, &mut |customer| {
-            // A number that does not exist in the run stays.
+            // A customer number that does not exist in the run is kept.
             let Some((group, n)) = meant.find(customer) else { return Some(customer) };
             let number = here.customer_number(group, n);
             if number.is_none() {
@@ -38,7 +38,7 @@ impl RenumberedCall {
     }
 }
 
-/// Adds a note that the rejection uses the numbers of the branch.
+/// Adds a note that the customer numbers in the message are numbers of the branch.
 pub(crate) fn with_branch_number_note(refusal: Rejection) -> Rejection {
     let message = format!("{} (customer numbers of the branch)", refusal.message);
     Rejection { message, ..refusal }

@@ -1,4 +1,4 @@
-//! Changes to recorded days in a re-simulation.
+//! Edits of recorded days for a re-simulation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -12,67 +12,67 @@ use novamind_world::customers::customer_numbers::CustomerNumbers;
 use novamind_world::fixed_inputs::FixedInputs;
 use novamind_world::params::Params;
 
-/// Changes to the days of a run. Without changes, the re-simulation reproduces the recorded states.
+/// Changes to recorded days of a run. Without edits, the re-simulation reproduces the recorded states.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Edits {
-    /// Calls before all recorded steps.
+    /// Calls that are executed before all recorded steps.
     pub initial_calls: Vec<(ToolId, Value)>,
-    /// Lines of omitted calls and parameter changes.
+    /// Line numbers of the calls and parameter changes to omit.
     pub dropped_lines: BTreeSet<u64>,
-    /// Changed arguments of calls, by line.
+    /// New arguments of recorded calls, by line number.
     pub changed_arguments: BTreeMap<u64, Value>,
-    /// Added calls.
+    /// Calls that are not in the record.
     pub added_calls: Vec<AddedCall>,
-    /// Added parameter changes, made before the added calls.
+    /// Parameter changes that are not in the record. The changes are applied before the added calls.
     pub added_settings: Vec<AddedSetting>,
     /// Rule that adjusts the capacity to usage at the start of every week.
     pub capacity_rule: Option<UsageBasedCapacity>,
-    /// Usage of the previous week, for the first adjustment of the capacity.
+    /// Usage of the week before the re-simulation, for the first adjustment of the capacity.
     pub week_before: Option<WeekFigures>,
-    /// Customers by their numbers in the run; `None` if the numbers are equal in every branch.
+    /// Customer numbers of the run; `None` if every branch has the same numbers.
     pub recorded_numbers: Option<Arc<CustomerNumbers>>,
-    /// Fixed inputs of the world.
+    /// World inputs with fixed values.
     pub held_inputs: FixedInputs,
-    /// Replaced parameters.
+    /// Parameters that replace the parameters of the run.
     pub params: Option<Arc<Params>>,
-    /// Redrawn random draws.
+    /// New random draws from a later day on.
     pub redraw: Option<Redraw>,
 }
 
-/// A rule that adjusts the capacity to usage, with its first day.
+/// A rule that adjusts the capacity to usage from a given day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct UsageBasedCapacity {
     pub rule: UsageCapacityRule,
     pub from_day: u32,
 }
 
-/// New random draws after a day.
+/// New random draws that replace the draws of the run after a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Redraw {
-    /// Last day with the random draws of the run.
+    /// Last day that uses the random draws of the run.
     pub after_day: u32,
-    /// Salt; equal salts give equal draws.
+    /// Salt of the new draws. Equal salts give equal draws.
     pub salt: u64,
 }
 
-/// A call that was not made in the run.
+/// A call that is added to the recorded calls.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AddedCall {
     /// Decision day; the call follows the recorded calls of that day.
     pub day: u32,
-    /// Tool.
+    /// Called tool.
     pub tool: ToolId,
-    /// Arguments.
+    /// Arguments of the call.
     pub args: Value,
 }
 
-/// A parameter that was not set in the run.
+/// A parameter change that is added to the recorded changes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AddedSetting {
-    /// Decision day; the change follows the recorded calls of that day.
+    /// Decision day; the change is applied after the recorded calls of that day.
     pub day: u32,
-    /// Full key.
+    /// Full key of the parameter.
     pub key: String,
-    /// New value.
+    /// New value of the parameter.
     pub value: Value,
 }

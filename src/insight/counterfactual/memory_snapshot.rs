@@ -1,4 +1,4 @@
-//! The state of a run at the end of a day, in memory, from which simulation can continue.
+//! The in-memory state of a run at the end of a day, from which the simulation can continue.
 
 use std::sync::Arc;
 
@@ -12,17 +12,17 @@ use novamind_world::state::World;
 /// The state at the end of a day, before the decisions of that day.
 #[derive(Clone)]
 pub(crate) struct MemorySnapshot {
-    /// Parameters in force.
+    /// Parameters in force at the end of the day.
     pub params: Arc<Params>,
-    /// Parameter changes, including those for later days.
+    /// Parameter changes, including changes for later days.
     pub overrides: Overrides,
-    /// Random streams.
+    /// Random streams of the run.
     pub streams: Streams,
-    /// Names of enterprises.
+    /// Names of the enterprises.
     pub names: EnterpriseNames,
-    /// The company and its market.
+    /// State of the company and its market.
     pub world: World,
-    /// Texts of posts; empty unless a call needs them.
+    /// Texts of the social feed; empty unless a recorded call replies to a post.
     pub feed: Feed,
 }
 

@@ -1,8 +1,9 @@
 //! Counterfactuals: re-simulates days of a run in memory with edits and the same random draws.
 //!
-//! Random streams are keyed by their purpose, so an edit does not change the draws of other mechanisms. A re-simulation needs no
-//! database, trajectory or notices. Its input is a [`MemorySnapshot`](memory_snapshot::MemorySnapshot) of the run, the [`RecordedStep`](recorded_steps::RecordedStep)s that
-//! follow it, and [`Edits`](edits::Edits); its output are figures.
+//! Random streams are keyed by their purpose, so an edit does not change the draws of other mechanisms. A
+//! re-simulation needs no database, trajectory or notifications. The input is a
+//! [`MemorySnapshot`](memory_snapshot::MemorySnapshot) of the run, the [`RecordedStep`](recorded_steps::RecordedStep)s
+//! after the snapshot, and [`Edits`](edits::Edits). The output is a set of figures.
 
 pub(crate) mod analysis_cache;
 pub(crate) mod branch;

@@ -1,11 +1,11 @@
-//! Parallel simulations.
+//! Parallel execution of simulations.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::ThreadPoolBuilder;
 
-/// A flag that one simulation sets to stop all others.
+/// A flag with which one simulation stops all others.
 pub(crate) struct StopFlag(AtomicBool);
 
 impl StopFlag {
@@ -14,7 +14,7 @@ impl StopFlag {
     }
 }
 
-/// Breaks if the flag is set.
+/// Returns `Break` if the flag is set.
 pub fn continue_unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
     match stop.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
@@ -22,9 +22,10 @@ pub fn continue_unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
     }
 }
 
-/// Applies a function to tasks in parallel and returns the results in order. Returns `None` if a task is stopped, which stops all.
+/// Applies a function to tasks in parallel and returns the results in order. If one task is stopped, stops all tasks
+/// and returns `None`.
 ///
-/// One thread per processor takes tasks in turn, so memory contains at most one company per processor.
+/// Each processor runs one thread, so memory contains at most one company per processor.
 pub(crate) fn parallel_map<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T, &StopFlag) -> Option<R> + Sync,

@@ -14,24 +14,24 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::is_lesson_over;
 use novamind_session::{Origin, read_origin};
 
-/// Maximum number of states in memory besides day 0; each is as large as the company.
+/// Maximum number of states in memory besides day 0. Each state contains the complete company.
 const MAX_SNAPSHOTS: usize = 4;
 
-/// The recorded steps of a run, and states from which they can be repeated.
+/// The recorded steps of a run, with states from which the steps can be re-simulated.
 pub(crate) struct RecordedRun {
-    /// Trajectory file.
+    /// Path of the trajectory file.
     path: PathBuf,
-    /// Length of the file when it was read, bytes.
+    /// Length of the trajectory when it was read, in bytes.
     length_bytes: u64,
     pub(crate) manifest: Manifest,
     steps: Vec<RecordedStep>,
-    /// Whether the run and, if any, its lesson have ended.
+    /// Whether the run has ended, including the lesson to which it belongs.
     pub(crate) is_ended: bool,
     snapshots: BTreeMap<u32, Arc<MemorySnapshot>>,
 }
 
 impl RecordedRun {
-    /// Opens the run in a folder, or a trajectory file.
+    /// Opens a run for re-simulation. `path` is a run folder or a trajectory file.
     ///
     /// # Errors
     /// Returns an error if the record is missing, damaged or has another version.
@@ -50,10 +50,10 @@ impl RecordedRun {
         })
     }
 
-    /// Reads new events and keeps the states that are still valid.
+    /// Reads new events. Keeps the cached states that are still valid.
     ///
     /// # Errors
-    /// As [`RecordedRun::open`].
+    /// Same errors as [`RecordedRun::open`].
     pub(crate) fn refresh(&mut self) -> Result<(), RunError> {
         let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
         if length == self.length_bytes {
@@ -69,7 +69,7 @@ impl RecordedRun {
         Ok(())
     }
 
-    /// Returns the steps after one day up to another.
+    /// Returns the steps after day `from` up to day `until`.
     pub(crate) fn steps_between(&self, from: u32, until: u32) -> &[RecordedStep] {
         steps_between(&self.steps, from, until)
     }
@@ -82,13 +82,13 @@ impl RecordedRun {
         self.snapshots[&0].params.run.days_per_week
     }
 
-    /// Returns whether recorded days end on a day.
+    /// Returns whether the record contains the state hash of a day; true for day 0.
     pub(crate) fn has_boundary_on(&self, day: u32) -> bool {
         day == 0
             || self.steps.iter().any(|step| matches!(step, RecordedStep::Days(days) if days.until == day))
     }
 
-    /// Returns the last day up to another on which recorded days end.
+    /// Returns the last day, at most `until`, whose state hash is recorded.
     pub(crate) fn last_boundary(&self, until: u32) -> u32 {
         let ends = self.steps.iter().filter_map(|step| match step {
             RecordedStep::Days(days) => Some(days.until),
@@ -97,8 +97,9 @@ impl RecordedRun {
         ends.take_while(|day| *day <= until).last().unwrap_or(0)
     }
 
-    /// Returns the state at the end of a day on which recorded days end, simulated from the nearest stored state. `progress` is
-    /// called once per simulated day. Returns `None` if it stops the simulation.
+    /// Returns the state at the end of a day whose state hash is recorded. The state is simulated from the nearest
+    /// stored state. `progress` is
+    /// called once per simulated day. Returns `None` if `progress` stops the simulation.
     ///
     /// # Errors
     /// Returns an error if the simulation does not reproduce the recorded state.
@@ -128,7 +129,7 @@ impl RecordedRun {
     /// Compares a state with the recorded hash of its day.
     ///
     /// # Errors
-    /// Returns an error if they differ.
+    /// Returns an error if the state and the record differ.
     pub(crate) fn verify_state(&self, day: u32, reached: &MemorySnapshot) -> Result<(), RunError> {
         let recorded = self.steps.iter().find_map(|step| match step {
             RecordedStep::Days(days) if days.until == day => Some(&days.parts),
@@ -141,8 +142,7 @@ impl RecordedRun {
         });
         let Some(differs) = differs.filter(|_| day > 0) else { return Ok(()) };
         Err(RunError::InvalidRequest(format!(
-            "{}: the re-simulation of day {day} differs from the record (different: {}). Nothing was changed; \
-             `novamind verify` names the line",
+            "{}: the re-simulation of day {day} differs from the record (different: {}). Nothing was changed. Find the line with `novamind verify`",
             self.path.display(),
             differs.part
         )))

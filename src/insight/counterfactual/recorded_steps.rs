@@ -1,4 +1,4 @@
-//! The recorded steps of a run: calls, parameter changes and simulated days.
+//! The recorded steps of a run: tool calls, parameter changes and simulated days.
 
 use std::collections::BTreeMap;
 
@@ -12,53 +12,53 @@ use novamind_tools::{ToolId, ToolKind};
 /// A recorded step that changed the company.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum RecordedStep {
-    /// A call that can change the company.
+    /// A tool call that can change the company.
     Call(RecordedCall),
-    /// A parameter change.
+    /// A change of a parameter.
     Parameter(RecordedSetting),
-    /// Simulated days.
+    /// Days that were simulated in one step.
     Days(RecordedDays),
 }
 
-/// A recorded call.
+/// A recorded tool call.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedCall {
-    /// Its line.
+    /// Line number of the call in the trajectory.
     pub seq: u64,
-    /// Decision day.
+    /// Decision day of the call.
     pub day: u32,
-    /// Tool.
+    /// Called tool.
     pub tool: ToolId,
-    /// Arguments.
+    /// Arguments of the call.
     pub args: Value,
-    /// Whether it was accepted.
+    /// Whether the run accepted the call.
     pub accepted: bool,
-    /// Line of the call that it undid or redid. Its settings stay even if that call is edited.
+    /// The call that this call undid or redid, if any. The restored settings stay even if the other call is edited.
     pub reversal: Option<Reversal>,
 }
 
-/// A recorded decision.
+/// A recorded decision of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RecordedDecision {
-    /// A call.
+    /// A tool call.
     Call(RecordedCall),
-    /// A parameter change.
+    /// A change of a parameter.
     Parameter {
-        /// Its line.
+        /// Line number of the change in the trajectory.
         seq: u64,
-        /// Decision day.
+        /// Decision day of the change.
         day: u32,
-        /// Full key.
+        /// Full key of the parameter.
         key: String,
-        /// New value.
+        /// New value of the parameter.
         value: Value,
-        /// First day that was simulated with it; `None` if it applied immediately.
+        /// First day with the new value; `None` if the value applied immediately.
         from_day: Option<u32>,
     },
 }
 
 impl RecordedDecision {
-    /// Its line.
+    /// Returns the line number of the decision in the trajectory.
     pub fn seq(&self) -> u64 {
         match self {
             RecordedDecision::Call(RecordedCall { seq, .. }) | RecordedDecision::Parameter { seq, .. } => {
@@ -67,7 +67,7 @@ impl RecordedDecision {
         }
     }
 
-    /// Decision day.
+    /// Returns the decision day.
     pub fn day(&self) -> u32 {
         match self {
             RecordedDecision::Call(RecordedCall { day, .. }) | RecordedDecision::Parameter { day, .. } => {
@@ -76,7 +76,7 @@ impl RecordedDecision {
         }
     }
 
-    /// Returns the call, or `None` for a parameter change.
+    /// Returns the tool call, or `None` for a parameter change.
     pub fn call(&self) -> Option<&RecordedCall> {
         match self {
             RecordedDecision::Call(call) => Some(call),
@@ -84,7 +84,8 @@ impl RecordedDecision {
         }
     }
 
-    /// Describes the status: rejected, undone or redone call, or first day of a parameter. Empty for other decisions.
+    /// Describes the status of the decision: rejected, undo, redo, or the first day of a parameter. Returns an empty
+    /// string for other decisions.
     pub fn describe_status(&self) -> String {
         match self {
             RecordedDecision::Call(RecordedCall { accepted: false, .. }) => "rejected".to_owned(),
@@ -120,31 +121,31 @@ impl RecordedDecision {
 /// A recorded parameter change.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RecordedSetting {
-    /// Day of the change.
+    /// Decision day of the change.
     pub day: u32,
-    /// The change.
+    /// The changed parameter with its new value.
     pub change: ParameterChange,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RecordedDays {
-    /// Last day.
+    /// Last day of the step.
     pub until: u32,
-    /// Hash of the state at the end.
+    /// Hash of the state at the end of the last day.
     pub state_hash: String,
-    /// Hash of each part of the state.
+    /// Hash of each part of the state, by name.
     pub parts: BTreeMap<String, String>,
-    /// Scores of the player's posts by a language model.
+    /// Language model's scores of the player's posts.
     pub scores: Vec<JudgedPost>,
 }
 
-/// Returns the steps of events, in order.
+/// Returns the recorded steps in trajectory lines, in order.
 pub(crate) fn steps_of(lines: &[Line]) -> Vec<RecordedStep> {
     let mut scores = Vec::new();
     lines.iter().filter_map(|line| step_of(line, &mut scores)).collect()
 }
 
-/// Returns the step of an event. Scores are kept for the days in which they apply.
+/// Returns the step that an event records, if any. Collects scores in `scores` until the simulated days to which they apply.
 fn step_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
     if let Some(closing) = line.record.closing() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
@@ -173,7 +174,7 @@ fn step_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
     })
 }
 
-/// Returns the steps after one day up to another. Decisions of a day follow that day.
+/// Returns the steps after day `from` up to day `until`. Decisions on a day follow the simulation of that day.
 pub(crate) fn steps_between(moves: &[RecordedStep], from: u32, until: u32) -> &[RecordedStep] {
     let after = |day: u32| {
         let before = |step: &RecordedStep| match step {
@@ -187,7 +188,7 @@ pub(crate) fn steps_between(moves: &[RecordedStep], from: u32, until: u32) -> &[
     &moves[first..last.max(first)]
 }
 
-/// Returns whether an accepted call replies to another author's post, so that the texts of posts are needed.
+/// Returns whether an accepted call replies to another author's post, in which case the simulation needs the texts of posts.
 pub(crate) fn has_replies(moves: &[RecordedStep]) -> bool {
     moves.iter().any(|step| match step {
         RecordedStep::Call(call) => {

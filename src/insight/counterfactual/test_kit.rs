@@ -1,4 +1,4 @@
-//! A company for tests of re-simulation.
+//! A played company for tests of re-simulation.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
-/// Weeks before a change.
+/// Number of weeks that are played before a change.
 pub(crate) const WEEKS: u32 = 7;
 
-/// Plays several weeks of a company with customers, then one week after a change.
+/// Plays several weeks of a company with customers, makes a change, and plays one more week.
 pub(crate) fn play_weeks(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
     let new = NewRun {
         seed: Some(seed),

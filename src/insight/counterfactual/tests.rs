@@ -55,7 +55,8 @@ fn resimulation_without_edits_reproduces_recorded_states() {
 fn every_snapshot_leads_to_the_recorded_state() {
     let mut past = RecordedRun::open(&recorded_run_path("everything")).expect("a run");
     let days: Vec<u32> = (0..=past.last_day()).step_by(7).filter(|day| past.has_boundary_on(*day)).collect();
-    // Forward, backward, and over several weeks; every state is compared with the record.
+    // Requests states in ascending order, in descending order and across several weeks. Each state is compared with
+    // the record.
     for day in days.iter().chain(days.iter().rev()).chain(days.last()) {
         let moment = past
             .snapshot_at(*day, &mut continue_progress)
@@ -206,7 +207,7 @@ fn dropping_parameter_changes_equals_a_run_without_them() {
         .expect("an outcome");
     assert_eq!(outcome.weeks, plain.weeks());
     assert_ne!(outcome.weeks, changed.weeks());
-    // The same applies to changes that a stored state contains.
+    // Dropping also works for parameter changes that a stored state contains.
     let later =
         past.snapshot_at(35, &mut continue_progress).expect("the recorded state").expect("it is not stopped");
     let dropped = later.overrides.scheduled_changes().map(|change| change.seq).collect();

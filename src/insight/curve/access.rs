@@ -1,4 +1,4 @@
-//! Access to curves: the true curve needs an inspection; otherwise the curve comes from estimates of market studies.
+//! Access to curves. The true curve requires an inspection. Otherwise the curve is computed from estimates of market studies.
 
 use std::sync::Arc;
 
@@ -10,10 +10,10 @@ use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::retention::renewal::ongoing_discount;
 
-/// A number that no customer has, which excludes discounts of single customers.
+/// A customer number that does not exist, so that no discount for a single customer applies.
 const NO_CUSTOMER: u32 = 0;
 
-/// A permitted and recorded inspection of the traits of a group. The true curve requires one.
+/// Proof that an inspection of a group's traits is permitted and recorded. The true curve requires this proof.
 #[derive(Debug)]
 pub struct CurveInspection {
     group: Group,
@@ -21,7 +21,7 @@ pub struct CurveInspection {
 }
 
 impl CurveInspection {
-    /// Records an inspection of the curve of a group on a day.
+    /// Records an inspection of a group's curve on a day.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_saved`.
@@ -34,8 +34,8 @@ impl CurveInspection {
 }
 
 impl CurveExplorer {
-    /// Opens the explorer of a group with the information that the player may see: the true traits in debug runs and finished
-    /// runs, where the inspection is recorded, and the estimates of market studies in all other runs.
+    /// Opens the curve explorer of a group with the information that the player may see. Debug runs and finished runs
+    /// show the true traits, and the inspection is recorded. All other runs show the estimates of market studies.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`, `not_saved`.
@@ -47,7 +47,7 @@ impl CurveExplorer {
         Ok(CurveExplorer::from_true_values(run, &inspection))
     }
 
-    /// Returns the explorer of the true traits of a group at the current moment of the run.
+    /// Returns the curve explorer for the true traits of a group in the current state of the run.
     pub fn from_true_values(
         run: &Session,
         CurveInspection { group, inspection: permit }: &CurveInspection,
@@ -62,7 +62,8 @@ impl CurveExplorer {
         CurveExplorer::from_markets(*group, basis, current_offer(run, *group, &quality), vec![market])
     }
 
-    /// Returns the explorer of the estimates of market studies. In a lesson it requires the guess, because it would reveal the answer.
+    /// Returns the curve explorer for the estimates of market studies. In a lesson, the student must enter the guess
+    /// first, because the explorer would reveal the answer.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`.
@@ -83,7 +84,7 @@ impl CurveExplorer {
                 format!("group {group} is not known yet; the known groups are {}", known.join(", "));
             return Err(Rejection::for_field("group", "group_not_discovered", message));
         };
-        // Drift since the study is unknown.
+        // The drift since the study is unknown.
         let market =
             |reading| (Expectation::default(), Arc::new(assumed_params(estimates, reading, run.params())));
         let markets =
@@ -97,7 +98,7 @@ impl CurveExplorer {
     }
 }
 
-/// Returns current prices, qualities, quotas and discounts, all of which the player can see elsewhere.
+/// Returns the current prices, qualities, quotas and discounts. The player can see all of these values elsewhere.
 fn current_offer(run: &Session, group: Group, quality: &ByPlan<f64>) -> CurrentOffer {
     let (settings, params) = (run.settings(), run.params());
     let promotion = if group.is_enterprise() { 0.0 } else { settings.lead_promotion.sum(group, None) };

@@ -1,5 +1,5 @@
-//! A group according to its market studies. They give means within an error, but neither the spread of the group nor the rise of its
-//! curve. These are assumed to be equal for every group and do not depend on the run.
+//! A group according to its market studies. The studies estimate means, but neither the spread of the group nor the
+//! slope of its curve. The spread and the slope are assumed to be the same for every group and run.
 
 use novamind_session::Estimates;
 use novamind_world::params::Params;
@@ -8,28 +8,28 @@ use novamind_world::params::Params;
 const BUDGET_STD_SHARE: f64 = 0.4;
 /// Standard deviation of the quality floor.
 const QUALITY_FLOOR_STD: f64 = 0.07;
-/// Difference between the quality floor and the required quality at the budget.
+/// Difference between the required quality at the budget and the quality floor.
 const QUALITY_RISE_TO_BUDGET: f64 = 0.5;
-/// Standard deviation of that difference.
+/// Standard deviation of [`QUALITY_RISE_TO_BUDGET`].
 const QUALITY_RISE_STD: f64 = 0.08;
 /// Standard deviation of usage, as a share of the mean.
 const USAGE_STD_SHARE: f64 = 0.4;
-/// Multiple of the estimate that replaces the upper limit if an error of 100 % or more leaves none.
+/// Multiple of the estimate that serves as upper limit if an error of 100 % or more gives no limit.
 const UNBOUNDED_FACTOR: f64 = 10.0;
 
-/// A group that is consistent with the estimates.
+/// A choice of true means within the errors of the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum EstimateReading {
-    /// The estimates are exact.
+    /// True means that equal the estimates.
     Likely,
-    /// Budgets are as small, and floors and usage as large, as the error allows.
+    /// The smallest budgets, and the largest quality floors and usage, within the error.
     Strict,
-    /// Budgets are as large, and floors and usage as small, as the error allows.
+    /// The largest budgets, and the smallest quality floors and usage, within the error.
     Generous,
 }
 
-/// Returns parameters of a market in which the group matches its estimates. Everything else has bundled values, except the curve forms
-/// of the run's scenario, which players can see.
+/// Returns parameters of a market in which the group matches its estimates. All other parameters have bundled values,
+/// except the curve forms of the run's scenario, which players can see.
 pub(super) fn assumed_params(estimates: &Estimates, reading: EstimateReading, run: &Params) -> Params {
     let end = |value: f64, is_most: bool| {
         let (least, most) = estimates.true_range(value);

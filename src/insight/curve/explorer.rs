@@ -1,4 +1,4 @@
-//! The curve of a group, the current plans, and the expected decisions of leads about other plans.
+//! The curve of a group, the current plans, and the expected decisions of leads about changed plans.
 
 use serde::Serialize;
 
@@ -12,102 +12,103 @@ use novamind_world::market::lead_sample::{LeadChoices, LeadSample};
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 
-/// Number of simulated leads.
+/// Number of simulated leads per market.
 pub const LEAD_SAMPLE_SIZE: u32 = 2000;
-/// Seed of these leads: the same in every run, and different from that of its customers.
+/// Seed of the simulated leads. The seed is equal in every run and differs from the seed of the run's customers.
 const SAMPLE_SEED: u64 = 0x5EED;
 const PRICE_STEPS: usize = 60;
 const CURVE_QUANTILES: [f64; 3] = [0.1, 0.5, 0.9];
 
-/// The source of the curve.
+/// The source of a group's curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum CurveBasis {
     /// The true traits of the group, including drift up to a day.
     Truth {
-        /// The day.
+        /// Day up to which drift is included.
         day: u32,
     },
     /// The estimates of market studies.
     Estimates {
-        /// Study level, 1..=5.
+        /// Study level of the group, 1..=5.
         level: u8,
-        /// Largest relative error, 0..1.
+        /// Largest relative error of the estimates, 0..1.
         noise: f64,
-        /// Day of the estimates of floor and budget.
+        /// Day on which floor and budget were estimated.
         as_of: u32,
     },
 }
 
-/// A plan that leads evaluate.
+/// The terms of a plan that leads evaluate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanPoint {
-    /// List price, dollars a month; for enterprises per seat.
+    /// List price, $ per month; for enterprises, per seat.
     pub list_price: f64,
-    /// Delivered quality.
+    /// Delivered quality of the plan.
     pub quality: f64,
-    /// Quota, units a day; infinite without a quota.
+    /// Quota, units per day; infinite without a quota.
     pub quota: f64,
 }
 
-/// Required quality at a price, by share of leads. Infinite if the price is above the budget of too many leads.
+/// Quantiles of the required quality at a price. A quantile is infinite if the price is above the budget of too many leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
-    /// Price, dollars a month; for enterprises per seat.
+    /// Price, $ per month; for enterprises, per seat.
     pub price: f64,
-    /// Quality that a tenth of the leads requires at most.
+    /// Quality that is sufficient for 10 % of the leads.
     pub p10: f64,
-    /// Quality that half of the leads require at most.
+    /// Quality that is sufficient for 50 % of the leads.
     pub median: f64,
-    /// Quality that nine tenths of the leads require at most.
+    /// Quality that is sufficient for 90 % of the leads.
     pub p90: f64,
-    /// Minimum and maximum median of the groups that match the estimates; both equal the median for true traits.
+    /// Lowest and highest median among the groups that match the estimates. With true traits, the lowest and the
+    /// highest median equal [`CurvePoint::median`].
     pub median_range: (f64, f64),
 }
 
-/// A figure, with its range over the groups that match the estimates.
+/// An expected figure, with its range over all groups that match the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedRange {
-    /// Value if the estimates are exact.
+    /// Value of the figure if the estimates are exact.
     pub likely: f64,
-    /// Minimum.
+    /// Lowest value that is consistent with the estimates.
     pub least: f64,
-    /// Maximum.
+    /// Highest value that is consistent with the estimates.
     pub most: f64,
 }
 
-/// The expected decisions of leads.
+/// The expected decisions of leads about a set of plans.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveOutcome {
-    /// Share of leads that sign up; for enterprises, that ask for an offer.
+    /// Share of leads that sign up, or share of enterprise leads that ask for an offer.
     pub conversion: ExpectedRange,
-    /// Dollars per lead in the first bill; `None` for enterprises, which negotiate prices.
+    /// Expected first bill per lead, in dollars; `None` for enterprises, which negotiate prices.
     pub revenue_per_lead: Option<ExpectedRange>,
     /// Share of leads that choose each plan if the estimates are exact; `None` for enterprises.
     pub plan_shares: Option<ByPlan<f64>>,
 }
 
-/// Leads of one market, with the parameters of their decisions.
+/// Simulated leads of one market, with the parameters of their decisions.
 struct Market {
     sample: LeadSample,
     params: Arc<Params>,
 }
 
-/// The explorer of a group.
+/// The curve explorer of a group.
 pub struct CurveExplorer {
-    /// Group.
+    /// Group whose curve is shown.
     pub group: Group,
-    /// The source of the curve.
+    /// Source of the curve.
     pub basis: CurveBasis,
-    /// The current plans.
+    /// Current terms of each plan.
     pub plans: ByPlan<PlanPoint>,
-    /// Discount for leads of every channel, dollars a month; not for enterprises.
+    /// Discount for individual leads of every channel, $ per month.
     pub discount: f64,
-    /// Discount for subscribers, which reduces the first bill, dollars a month.
+    /// Discount for subscribers, $ per month. The discount also reduces the first bill.
     pub ongoing_discounts: ByPlan<f64>,
-    /// Points of the curve, by ascending price from 0.
+    /// Points of the curve, sorted by price from 0.
     pub points: Vec<CurvePoint>,
-    /// The market, and both ends of the range that matches the estimates.
+    /// The likely market, followed by the two extreme markets that match the estimates.
     markets: Vec<Market>,
 }
 
@@ -132,7 +133,7 @@ pub(super) struct CurrentOffer {
 }
 
 impl CurveExplorer {
-    /// Creates the explorer of a group in several markets: the likely one first, then the ends of the range.
+    /// Creates the curve explorer of a group in several markets: the likely market first, then the extreme markets.
     pub(super) fn from_markets(
         group: Group,
         basis: CurveBasis,
@@ -159,7 +160,7 @@ impl CurveExplorer {
         explorer
     }
 
-    /// Returns the highest price of the curve, dollars a month. Nearly all budgets and all plan prices are below it.
+    /// Returns the highest price of the curve, $ per month. All plan prices and nearly all budgets are below this price.
     fn max_price(&self) -> f64 {
         let budget = self.markets[0].sample.budget_quantile(0.9);
         let plans = self.plans.iter().map(|plan_point| 1.2 * plan_point.list_price);
@@ -182,17 +183,17 @@ impl CurveExplorer {
         }
     }
 
-    /// Returns whether the curve shows true traits, so that figures have no range.
+    /// Returns whether the curve shows true traits, in which case figures have no range.
     pub fn shows_true_values(&self) -> bool {
         matches!(self.basis, CurveBasis::Truth { .. })
     }
 
-    /// Returns the expected decisions of leads for these plans, with current discounts.
+    /// Returns the expected decisions of leads about `plans`, with current discounts.
     pub fn outcome(&self, plans: &ByPlan<PlanPoint>) -> CurveOutcome {
         self.evaluate(plans, self.discount, &self.ongoing_discounts)
     }
 
-    /// Returns the expected decisions of leads for a single product, without quota and discounts.
+    /// Returns the expected decisions of leads about a single plan without quota and discounts.
     pub fn outcome_at(&self, price: f64, quality: f64) -> CurveOutcome {
         let point = PlanPoint { list_price: price, quality, quota: f64::INFINITY };
         self.evaluate(&ByPlan([point; 3]), 0.0, &ByPlan([0.0; 3]))
@@ -223,7 +224,7 @@ impl CurveExplorer {
     }
 }
 
-/// Returns the curve of a group's customers from parameters alone, before any drift.
+/// Returns the true curve of a group before any drift, computed from parameters alone.
 pub fn true_curve(group: Group, params: &Params) -> Vec<CurvePoint> {
     let nothing = PlanPoint { list_price: 0.0, quality: 0.0, quota: f64::INFINITY };
     let on_offer =

@@ -37,7 +37,7 @@ fn explorer(session: &mut Session, group: &str) -> CurveExplorer {
     CurveExplorer::open(session, Group::parse(group).expect("a group")).expect("an explorer")
 }
 
-/// Formats everything that an explorer shows.
+/// Formats all values that a curve explorer shows.
 fn format_explorer(curve_explorer: &CurveExplorer) -> String {
     let curve_outcomes: Vec<_> = [(12.0, 0.2), (30.0, 0.4), (90.0, 0.9)]
         .iter()
@@ -94,7 +94,8 @@ fn unfinished_run_depends_only_on_studied_estimates() {
             format_explorer(&explorer(&mut create_run(Mode::Lesson, &[]), "S1")),
             "{key}"
         );
-        // In a debug run the parameter changes the curve, which shows that the test would detect its use.
+        // In a debug run the parameter changes the curve. The test would therefore detect a curve that depends on the
+        // parameter.
         let truth = explorer(&mut create_run(Mode::Debug, &[(key, value)]), "S1");
         let usual = explorer(&mut create_run(Mode::Debug, &[]), "S1");
         let alike = key == "group.S1.usage_demand_std";

@@ -1,4 +1,4 @@
-//! The hidden state of competitors: what they can copy, their moves, and the next move.
+//! The hidden state of competitors: the improvements that they can copy, their past moves, and their next move.
 
 use super::hidden_day::QualityBanks;
 use super::inspector::Inspector;
@@ -8,54 +8,56 @@ use novamind_world::events::Severity;
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::competitors::{Event, next_move, severity};
 
-/// The next competitor move after a day.
+/// The first competitor move after a given day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextCompetitorMove {
-    /// Day of the move.
+    /// Day of the next move.
     pub day: u32,
-    /// Drawn size, after the growth over the run.
+    /// Random size of the move, scaled by its growth over the run.
     pub sampled_size: f64,
-    /// Share of the shared bank that can be copied.
+    /// Share of the shared quality bank that can be copied.
     pub copied_share: f64,
-    /// Share of each targeted bank at the end of the day that is copied; empty after the move.
+    /// Share of each group's quality bank that will be copied, by group; empty after the move.
     pub group_shares: Vec<(Group, f64)>,
-    /// Outcome, if the day has been simulated.
+    /// Outcome of the move, if its day has been simulated.
     pub outcome: Option<Event>,
 }
 
 impl NextCompetitorMove {
-    /// Returns the quality that can be copied from a shared bank. It applies if it exceeds the drawn size.
+    /// Returns the quality that competitors can copy from a shared bank. Competitors copy this quality only if it
+    /// exceeds the sampled size.
     pub fn copied_quality(&self, bank: f64) -> f64 {
         self.copied_share * bank
     }
 
-    /// Returns the shared bank above which competitors copy.
+    /// Returns the size of the shared bank above which competitors copy.
     pub fn copy_threshold(&self) -> f64 {
         self.sampled_size / self.copied_share
     }
 }
 
-/// Competitors at the end of a day.
+/// The state of the competitors at the end of a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompetitorState {
-    /// The day, from 1.
+    /// Day of the state, from 1.
     pub day: u32,
-    /// Shared quality gain.
+    /// Quality that improvements added for all groups.
     pub shared_bonus: f64,
-    /// Part of it that is not copied.
+    /// Part of [`CompetitorState::shared_bonus`] that competitors have not copied.
     pub shared_bank: f64,
-    /// Targeted quality gain and the part of it that is not copied, for groups that have any.
+    /// For each group with targeted improvements: the group, the quality gain, and the part that competitors have not copied.
     pub group_banks: Vec<(Group, f64, f64)>,
-    /// Common addition to expectations by competitors and drift.
+    /// Increase of the expectations of all groups by competitors and drift.
     pub common_expectation: f64,
-    /// Past moves with their names.
+    /// Past moves with their severity.
     pub moves: Vec<(Event, Severity)>,
-    /// Next move; `None` if there is none before the end of the run.
+    /// Next move; `None` if no move follows before the end of the run.
     pub next_move: Option<NextCompetitorMove>,
 }
 
 impl Inspector<'_> {
-    /// Returns the competitors at the end of a day, by default the last one. Records the inspection.
+    /// Returns the state of the competitors at the end of a day, by default the last day. Records the inspection in
+    /// the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -81,7 +83,7 @@ impl Inspector<'_> {
     }
 }
 
-/// Returns the next move after a day: the simulated one, or the one that follows from the current parameters.
+/// Returns the next competitor move after a day. A move that is not simulated yet is predicted from the current parameters.
 pub(super) fn next_competitor_move(
     inside: HiddenState<'_>,
     day: u32,

@@ -6,17 +6,17 @@ use super::inspector::Inspector;
 use novamind_session::InspectionPermit;
 use novamind_tools::Rejection;
 
-/// The hidden state of a customer.
+/// The hidden state of a customer, by type of customer.
 #[derive(Debug, Clone)]
 pub enum CustomerView {
-    /// An individual.
+    /// The hidden state of an individual.
     Individual(Box<IndividualView>),
-    /// An enterprise.
+    /// The hidden state of an enterprise.
     Enterprise(EnterpriseView),
 }
 
 impl Inspector<'_> {
-    /// Returns a customer on a day, by default the last one. Records the inspection.
+    /// Returns the hidden state of a customer on a day, by default the last day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `not_readable`, `not_saved`.

@@ -1,4 +1,4 @@
-//! Records the ends of days for comparisons.
+//! Recorders of the state at the end of days, for comparisons.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -14,11 +14,11 @@ use novamind_world::state::{PartHash, World};
 
 #[derive(Debug, Clone)]
 pub(crate) struct DayEnd {
-    /// Hashes of the parts of the state, and of the facts of the day.
+    /// Hashes of the parts of the state and of the facts of the day.
     pub(crate) parts: Vec<PartHash>,
-    /// Parameters of the day's simulation.
+    /// Parameters with which the day was simulated.
     pub(crate) params: Params,
-    /// Figures by name in a fixed order, including hidden ones.
+    /// Figures by name in a fixed order, including hidden figures.
     pub(crate) figures: Vec<(String, f64)>,
     pub(crate) customers: BTreeMap<u32, (Group, Subscriber)>,
 }
@@ -36,7 +36,7 @@ impl DayEnd {
     }
 }
 
-/// Hashes of the parts of a state, and of the facts of its day.
+/// Returns the hashes of the parts of a state and of the facts of its day.
 fn part_hashes(world: &World, facts: &Facts) -> Vec<PartHash> {
     let mut parts = world.part_hashes();
     parts.push(PartHash { part: "facts", hash: hash_of(facts) });
@@ -57,13 +57,13 @@ fn named_figures(world: &World, facts: &Facts) -> Vec<(String, f64)> {
         ("enterprise seats", f64::from(closing.enterprise_seats)),
         ("individual leads of the day", companies(false)),
         ("enterprise leads of the day", companies(true)),
-        ("departures of the day", facts.endings.len() as f64),
+        ("cancellations of the day", facts.endings.len() as f64),
         ("customers so far", f64::from(world.customers.next_customer)),
         ("open issues", f64::from(issues)),
         ("threads so far", f64::from(world.enterprise.next_thread)),
         ("shared quality", world.product.shared_bonus),
         ("index of the economy", market.economy.pmi),
-        ("moves of rivals so far", market.competitors.len() as f64),
+        ("competitor moves so far", market.competitors.len() as f64),
         ("drift of quality", market.drift.global_quality),
     ]
     .map(|(name, value)| (name.to_owned(), value))
@@ -80,14 +80,14 @@ fn named_figures(world: &World, facts: &Facts) -> Vec<(String, f64)> {
     figures
 }
 
-/// Records the ends of selected days.
+/// Records the state at the end of selected days.
 pub(crate) struct DayEndRecorder {
     wanted: Vec<u32>,
     day_ends: Mutex<BTreeMap<u32, DayEnd>>,
 }
 
 impl DayEndRecorder {
-    /// Creates a recorder for these days.
+    /// Creates a recorder for the days in `wanted`.
     pub(crate) fn for_days(wanted: &[u32]) -> DayEndRecorder {
         DayEndRecorder { wanted: wanted.to_vec(), day_ends: Mutex::default() }
     }
@@ -106,14 +106,14 @@ impl DayObserver for DayEndRecorder {
     }
 }
 
-/// Records the hashes of every day from day 1, and the ends of selected days.
+/// Records the state hashes of every day from day 1, and the complete end of selected days.
 pub(crate) struct StateHashRecorder {
     parts: Mutex<Vec<Vec<PartHash>>>,
     day_ends: DayEndRecorder,
 }
 
 impl StateHashRecorder {
-    /// Creates a recorder for the hashes of every day and the ends of these days.
+    /// Creates a recorder for the hashes of every day and the ends of the days in `wanted`.
     pub(crate) fn with_ends(wanted: &[u32]) -> StateHashRecorder {
         StateHashRecorder { parts: Mutex::default(), day_ends: DayEndRecorder::for_days(wanted) }
     }

@@ -1,4 +1,4 @@
-//! Re-simulates the days of a run with their hidden state, for daily figures of any run that may be inspected.
+//! Re-simulation of all days of a run with their hidden state, for daily figures. The run must permit inspections.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use novamind_session::{Access, DayReport, INSPECTION_REJECTED, InspectionPermit,
 use novamind_tools::Rejection;
 use novamind_world::day::observer::NoObserver;
 
-/// Opens a debug run or a finished run for inspection. Only inspections are recorded.
+/// Opens a debug run or a finished run for inspection. The only events added to its trajectory are inspections.
 ///
 /// # Errors
-/// `InvalidRequest` for other runs, which are not opened; as [`Session::open`].
+/// `InvalidRequest` for other runs, which are not opened; same errors as [`Session::open`].
 pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunError> {
     let mode = read_manifest(folder)?.mode;
     if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end_line().is_none() {
@@ -29,7 +29,7 @@ pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunEr
 }
 
 impl Inspector<'_> {
-    /// Re-simulates every day of the run for an observer. Records the inspection.
+    /// Re-simulates every day of the run and calls `tell` with each day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.

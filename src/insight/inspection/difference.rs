@@ -1,4 +1,4 @@
-//! Comparison of two days of a run, or of one day of two runs: parts of the state, figures, customers.
+//! Comparison of two days of a run, or of the same day in two runs, by state part, figure and customer.
 
 use std::sync::Arc;
 
@@ -11,51 +11,53 @@ use novamind_session::{InspectionPermit, Session};
 use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
-/// Maximum number of customers with listed differences.
+/// Maximum number of customers whose differences are listed.
 const MAX_LISTED_CUSTOMERS: usize = 10;
 
-/// The comparison of the ends of two days.
+/// Differences between the ends of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DayDifference {
-    /// First and second day.
+    /// The two compared days.
     pub days: (u32, u32),
-    /// Simulation parameters that differ: key, first value, second value; null for a missing value.
+    /// Differing parameters: key, first value, second value. A missing value is null.
     pub parameters: Vec<(String, Json, Json)>,
-    /// Names of the parts of the state whose hash differs, in the order of the state; `facts`, the events of the day, is last.
+    /// Names of the parts of the state whose hashes differ, in the order of the state. The last part is `facts`, the
+    /// events of the day.
     pub differing_parts: Vec<&'static str>,
-    /// Names of the equal parts.
+    /// Names of the parts of the state whose hashes are equal.
     pub equal_parts: Vec<&'static str>,
-    /// Figures that differ: name, first value, second value.
+    /// Differing figures: name, first value, second value.
     pub figures: Vec<(String, f64, f64)>,
-    /// Number of customers that subscribe on both sides and differ.
+    /// Number of customers who subscribe on both sides and differ.
     pub differing_customers: usize,
-    /// Numbers of customers that subscribe only on the first side, and only on the second.
+    /// Number of customers who subscribe only on the first side, and number who subscribe only on the second.
     pub only_in_one: (usize, usize),
-    /// The first customers that differ, by customer number.
+    /// The first differing customers, sorted by customer number.
     pub first_customers: Vec<CustomerDifference>,
 }
 
-/// The differences of a customer.
+/// The differences of a customer between the two sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CustomerDifference {
     /// Customer number.
     pub customer: u32,
-    /// Group, from the first side if the customer subscribes there.
+    /// Group of the customer, from the first side if the customer subscribes on that side.
     pub group: Group,
-    /// Whether the customer subscribes on the first side, and on the second.
+    /// Whether the customer subscribes on the first side, and whether on the second side.
     pub subscribes: (bool, bool),
-    /// If it subscribes on both sides: column, first value, second value.
+    /// Differing columns of a customer who subscribes on both sides: column, first value, second value.
     pub columns: Vec<(&'static str, String, String)>,
 }
 
 /// The comparison of two runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunDifference {
-    /// Last day that both runs have.
+    /// Last day that both runs have reached.
     pub last_day: u32,
-    /// First day on which the runs differ; `None` if they are equal on all common days.
+    /// First day on which the runs differ; `None` if the runs are equal on all common days.
     pub first_day: Option<u32>,
-    /// Differences on the requested day, by default on the first day that differs; `None` without such a day.
+    /// Differences on the requested day, by default on the first differing day; `None` if no day was requested and no
+    /// day differs.
     pub difference: Option<DayDifference>,
 }
 
@@ -96,7 +98,7 @@ impl DayDifference {
         }
     }
 
-    /// Returns whether there is no difference.
+    /// Returns whether the two days are equal.
     pub fn is_empty(&self) -> bool {
         self.differing_parts.is_empty() && self.parameters.is_empty()
     }
@@ -125,7 +127,7 @@ fn differing_customers(one: &DayEnd, other: &DayEnd) -> Vec<CustomerDifference> 
 }
 
 impl Inspector<'_> {
-    /// Compares the ends of two days. Records the inspection.
+    /// Compares the states at the end of two days. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -147,10 +149,10 @@ impl Inspector<'_> {
         Ok(DayDifference::between((one, other), &first, &second))
     }
 
-    /// Compares this run with another on a day, by default on the first day that differs. Records the inspection in both.
+    /// Compares two runs on a day, by default on the first differing day. Records the inspection in both runs.
     ///
     /// # Errors
-    /// As [`Inspector::compare_days`], for either run.
+    /// Same errors as [`Inspector::compare_days`], for either run.
     pub fn compare_with_run(
         &mut self,
         other: &mut Session,
@@ -184,7 +186,7 @@ impl Inspector<'_> {
             return Ok(RunDifference { last_day, first_day, difference: None });
         };
         let moment = |run: &Session, inspection_permit: &InspectionPermit, seen: &StateHashRecorder| {
-            // A requested day was recorded during the simulation.
+            // The end of a requested day was already recorded during the simulation.
             if let Some(end) = seen.take(day) {
                 return Ok(end);
             }

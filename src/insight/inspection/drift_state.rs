@@ -1,4 +1,4 @@
-//! Accumulated drift of expectations and budgets by group, and the next application of drift.
+//! Accumulated drift of expectations and budgets by group, and the next drift.
 
 use super::inspector::Inspector;
 use novamind_session::InspectionPermit;
@@ -6,38 +6,39 @@ use novamind_tools::Rejection;
 use novamind_world::customers::drift::{Expectation, global_drift_step, group_drift_step, next_drift_day};
 use novamind_world::identifiers::Group;
 
-/// The drift of a group.
+/// The state of drift in a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroupDriftState {
-    /// The group.
+    /// The group whose drift is described.
     pub group: Group,
-    /// Whether the group was discovered.
+    /// Whether the group had been discovered by the day.
     pub is_known: bool,
-    /// Addition to the group's expectations beyond the common one, by drift and by competitors.
+    /// Increase of the group's expectations by drift and competitors, beyond the common increase.
     pub group_expectation: f64,
-    /// Addition to its curves: quality including the common one, and dollars a month for budgets.
+    /// Total shift of the group's curves: required quality, including the common increase, and budget in $ per month.
     pub expectation: Expectation,
-    /// Next change of the group's addition beyond the common one.
+    /// Next drift of the group's curves, beyond the common increase.
     pub next_step: Expectation,
 }
 
-/// Expectations and budgets at the end of a day.
+/// Drift of expectations and budgets at the end of a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriftState {
-    /// The day, from 1.
+    /// Day of the state, from 1.
     pub day: u32,
-    /// Common addition to expectations, by drift and by competitors.
+    /// Increase of the expectations of all groups by drift and competitors.
     pub common_expectation: f64,
-    /// Next change of the common addition.
+    /// Next change of [`DriftState::common_expectation`].
     pub next_common_step: f64,
-    /// Day of the next application; `None` if there is none before the end of the run.
+    /// Day of the next drift; `None` if no drift follows before the end of the run.
     pub next_day: Option<u32>,
-    /// The groups, in their fixed order.
+    /// State of each group, in the fixed order of the groups.
     pub groups: Vec<GroupDriftState>,
 }
 
 impl Inspector<'_> {
-    /// Returns expectations and budgets at the end of a day, by default the last one. Records the inspection.
+    /// Returns the drift of expectations and budgets at the end of a day, by default the last day. Records the
+    /// inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

@@ -1,4 +1,5 @@
-//! A thread from the enterprise's side at the start of a day: acceptable prices and the answer that it would give.
+//! The enterprise's evaluation of a thread at the start of a day: acceptable prices and the answer that the enterprise
+//! would give.
 
 use serde::Serialize;
 
@@ -12,18 +13,18 @@ use novamind_world::enterprise::{
 use novamind_world::events::{Offering, Sender, ThreadKind};
 use novamind_world::identifiers::{ByPlan, Group};
 
-/// A plan, as an enterprise evaluates it.
+/// An enterprise's evaluation of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EvaluatedPlan {
-    /// Perceived quality today.
+    /// Perceived quality of the plan on the day.
     pub quality: f64,
-    /// Perceived quality after the cost of a late answer, if the player answered today.
+    /// Perceived quality if the player answered today, after the penalty for a late answer.
     pub quality_if_answered: f64,
-    /// Upper price limit, dollars a month and seat: the enterprise accepts prices below it.
+    /// Upper price limit, $ per month and seat. The enterprise accepts prices below the limit.
     pub accepts_below: f64,
-    /// Whether the enterprise accepts every price, because the quality exceeds its highest requirement.
+    /// Whether the enterprise accepts every price, because the quality exceeds the highest quality that it requires.
     pub accepts_any_price: bool,
-    /// Price that the enterprise would name in its next turn, dollars a month and seat; 0 if it would not answer.
+    /// Price that the enterprise would name in its next turn, $ per month and seat; 0 if the enterprise would not answer.
     #[serde(rename = "would_name")]
     pub counter: f64,
 }
@@ -31,35 +32,35 @@ pub struct EvaluatedPlan {
 /// An open thread at the start of a day, before any answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnterpriseThreadDay {
-    /// The day.
+    /// Day of the evaluation.
     pub day: u32,
-    /// Number of the thread.
+    /// Number of the open thread.
     pub thread: u32,
-    /// Customer number.
+    /// Customer number of the enterprise.
     pub customer: u32,
     /// Group of the enterprise.
     pub group: Group,
-    /// Type of the thread.
+    /// Type of the open thread.
     pub kind: ThreadKind,
-    /// Budget including the market's addition, dollars a month and seat.
+    /// Budget including drift, $ per month and seat.
     pub budget: f64,
-    /// The plans.
+    /// Evaluation of each plan.
     pub plans: ByPlan<EvaluatedPlan>,
-    /// Remaining turns with an answer; at 0 the enterprise does not answer again.
+    /// Number of remaining turns that the enterprise will answer.
     pub remaining_turns: u32,
-    /// Relationship, 0..=1.
+    /// Relationship of the enterprise to the company, 0..=1.
     pub relationship: f64,
-    /// Change of the relationship by a late answer today; not positive.
+    /// Change of the relationship if the player answers late today; never positive.
     pub late_penalty: f64,
-    /// Day of the enterprise's answer, if it is its turn.
+    /// Day on which the enterprise will answer; `None` on the player's turn.
     pub reply_day: Option<u32>,
-    /// The player's newest offers, if the enterprise is to answer; empty if it is the player's turn.
+    /// The player's newest offers; empty on the player's turn.
     pub offerings: Vec<Offering>,
     /// The answer that the enterprise would give today; `None` without offers.
     pub answer: Option<OfferResponse>,
 }
 
-/// Returns a thread at the start of the day, or `None` if it has ended.
+/// Returns the evaluation of a thread at the start of the day, or `None` if the thread has ended.
 pub(crate) fn enterprise_thread_day(
     thread: &Thread,
     enterprise: &Enterprise,
@@ -78,7 +79,8 @@ pub(crate) fn enterprise_thread_day(
             enterprise.offer_evaluator_for_row(thread, &Subscriber { relationship, ..row }, talks)?
         }
     };
-    // The answer follows the player's newest or next turn.
+    // The enterprise answers the player's newest turn. On the player's turn, the enterprise will answer the turn that
+    // the player sends next.
     let turns = thread.last().number + u32::from(thread.last().sender != Sender::Agent);
     let plans = ByPlan::from_fn(|plan| {
         let OfferEvaluator { curve, quality, initial_offer_factor, .. } = offended;

@@ -10,16 +10,16 @@ use novamind_world::day::observer::DayObserver;
 use novamind_world::enterprise::{Enterprise, NegotiationContext};
 use novamind_world::identifiers::Group;
 
-/// An enterprise, up to the shown day.
+/// The hidden state of an enterprise up to the shown day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnterpriseView {
-    /// Customer number.
+    /// Customer number of the enterprise.
     pub customer: u32,
     /// Group of the enterprise.
     pub group: Group,
-    /// The shown day.
+    /// Last day of the view.
     pub day: u32,
-    /// Threads by day.
+    /// Evaluated threads of the enterprise, by day.
     pub days: Vec<EnterpriseThreadDay>,
 }
 
@@ -31,7 +31,7 @@ impl EnterpriseView {
 }
 
 impl EnterpriseView {
-    /// Returns an enterprise on a simulated day.
+    /// Creates the view of an enterprise on a simulated day.
     pub(super) fn new(
         run: &Session,
         permit: &InspectionPermit,
@@ -47,7 +47,7 @@ impl EnterpriseView {
     }
 }
 
-/// Records the open threads of one enterprise.
+/// Records the open threads of one enterprise on each day.
 struct EnterpriseRecorder {
     customer: u32,
     days: Mutex<Vec<EnterpriseThreadDay>>,

@@ -11,7 +11,7 @@ use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
 impl Inspector<'_> {
-    /// Returns the quality equation of a group on a day, by default the last one. Records the inspection.
+    /// Returns the quality equation of a group on a day, by default the last day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -21,7 +21,8 @@ impl Inspector<'_> {
         self.hidden_day(&permit, day).map(|seen| QualityEquation::new(group, day, &seen.quality))
     }
 
-    /// Returns the satisfaction equation of a group on a day, by default the last one. Records the inspection.
+    /// Returns the satisfaction equation of a group on a day, by default the last day. Records the inspection in the
+    /// trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -45,7 +46,8 @@ impl Inspector<'_> {
         Ok(SatisfactionEquation::new(group, day, seen.satisfaction[group], evening, yesterday, evenings))
     }
 
-    /// Returns the reputation equation of a group on a day, by default the last one. Records the inspection.
+    /// Returns the reputation equation of a group on a day, by default the last day. Records the inspection in the
+    /// trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -61,7 +63,7 @@ impl Inspector<'_> {
             .map(|seen| ReputationEquation::new(group, day, &seen.reputation, evenings))
     }
 
-    /// Returns a value of a group at the end of a day and of up to 27 days before it.
+    /// Returns a group's values at the end of a day and of up to 27 days before.
     fn values_of_recent_days<T>(
         &mut self,
         permit: &InspectionPermit,
@@ -75,7 +77,8 @@ impl Inspector<'_> {
         Ok((first..=day).filter_map(evening).collect())
     }
 
-    /// Returns the spillover of reputation between groups on a day, by default the last one. Records the inspection.
+    /// Returns the spillover of reputation between groups on a day, by default the last day. Records the inspection in
+    /// the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

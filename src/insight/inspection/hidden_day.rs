@@ -1,4 +1,4 @@
-//! Records the hidden state of observed days.
+//! The hidden state of a simulated day, and its recorder.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -25,57 +25,57 @@ use novamind_world::params::Params;
 use novamind_world::reputation::{ReputationContribution, ReputationWrite};
 use novamind_world::state::World;
 
-/// The groups and the market on a day.
+/// The hidden state of the groups and the market on a day.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HiddenDay {
     pub(crate) known_groups: ByGroup<bool>,
     pub(crate) lead_factors: ByGroup<LeadFactors>,
-    /// Leads by word of mouth before the factors, by source group.
+    /// Word-of-mouth leads of each group before the factors, by source group.
     pub(crate) word_of_mouth: ByGroup<Vec<(Group, f64)>>,
     pub(crate) arrived_leads: ByGroup<u32>,
     pub(crate) quality: QualityDay,
-    /// Components of the satisfaction change.
+    /// Components of the day's satisfaction change, by group.
     pub(crate) satisfaction: ByGroup<SatisfactionDay>,
-    /// Components of the reputation changes.
+    /// Components of the day's reputation changes.
     pub(crate) reputation: ReputationDay,
-    /// Improvements that competitors could copy at the end of the day.
+    /// Quality that competitors could copy at the end of the day.
     pub(crate) banks: QualityBanks,
-    /// Threads at the start of the day that still await an answer, if they are recorded.
+    /// Threads that await an answer at the start of the day; empty unless threads are recorded.
     pub(crate) threads: Vec<EnterpriseThreadDay>,
     pub(crate) groups: ByGroup<GroupDayEnd>,
     pub(crate) market: MarketDayEnd,
 }
 
-/// Improvements, and their parts that competitors have not copied.
+/// Quality gains from improvements, and the parts of the gains that competitors have not copied.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct QualityBanks {
-    /// Shared quality gain.
+    /// Quality gain for all groups.
     pub(crate) shared_bonus: f64,
-    /// Part of it that is not copied.
+    /// Part of `shared_bonus` that competitors have not copied.
     pub(crate) shared: f64,
-    /// Quality gain of single groups.
+    /// Quality gain of each group by targeted development.
     pub(crate) group_bonus: ByGroup<f64>,
-    /// Part of it that is not copied.
+    /// Part of `group_bonus` that competitors have not copied.
     pub(crate) group_banks: ByGroup<f64>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct GroupDayEnd {
-    /// Study level; 0 before the group is discovered.
+    /// Study level of the group; 0 before the group is discovered.
     pub(crate) info_level: u32,
     pub(crate) active: u32,
     pub(crate) reputation: f64,
-    /// Mean satisfaction and relationship of active subscriptions; `None` without any.
+    /// Mean satisfaction and mean relationship of active subscriptions; `None` without subscriptions.
     pub(crate) satisfaction_moments: Option<(f64, f64)>,
-    /// Active subscriptions with an open issue.
+    /// Number of active subscriptions with an open issue.
     pub(crate) open_issues: u32,
-    /// Product quality before the multiplier of the model.
+    /// Product quality before the multiplier of the model tier.
     pub(crate) product_quality: f64,
-    /// Mean budget of new customers, including the market's addition.
+    /// Mean budget of new customers, including drift.
     pub(crate) budget: f64,
-    /// Mean quality floor of new customers, including the market's addition.
+    /// Mean quality floor of new customers, including the increase by drift and competitors.
     pub(crate) quality_floor: f64,
-    /// Market cap; 0 means no limit.
+    /// Market cap of the group; 0 means no limit.
     pub(crate) market_cap: f64,
     /// Factor of the economy on budgets.
     pub(crate) willingness_to_pay: f64,
@@ -87,57 +87,57 @@ pub(crate) struct GroupDayEnd {
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MarketDayEnd {
-    /// Additions to curves since day 0.
+    /// Accumulated drift of the curves since day 0.
     pub(crate) drift: DriftTotals,
-    /// The competitor event on this day, with its severity.
+    /// Competitor event of the day, with its severity.
     pub(crate) event: Option<(Event, &'static str)>,
-    /// Index of the economy.
+    /// Value of the economy index (PMI).
     pub(crate) pmi: f64,
-    /// Newest measurement of the index, and whether it is published.
+    /// Newest measurement of the PMI, and whether it has been published.
     pub(crate) measured: Option<(Reading, bool)>,
 }
 
-/// Records every simulated day.
+/// Records the hidden state of every simulated day.
 #[derive(Debug, Default)]
 pub(crate) struct HiddenDayRecorder {
-    /// Whether threads are recorded as well, which evaluates every plan for every negotiating enterprise and day.
+    /// Whether threads are recorded, which requires evaluating every plan for every negotiating enterprise on each day.
     keeps_threads: bool,
     recorded: Mutex<HiddenDayRecords>,
 }
 
 #[derive(Debug, Default)]
 struct HiddenDayRecords {
-    /// Completed days, from day 1.
+    /// Hidden state of completed days, from day 1.
     days: Vec<HiddenDay>,
     today: HiddenDay,
-    /// Satisfaction changes by block.
+    /// Sums of satisfaction changes by block of customers.
     satisfaction_sums: SatisfactionSumsByBlock,
-    /// Accumulated shared gain of development.
+    /// Shared quality gain that development has accumulated.
     development_gain: f64,
 }
 
 impl HiddenDayRecorder {
-    /// Creates an empty recorder that includes threads.
+    /// Creates an empty recorder that records threads.
     pub(crate) fn with_threads() -> HiddenDayRecorder {
         HiddenDayRecorder { keeps_threads: true, ..HiddenDayRecorder::default() }
     }
 
-    /// Returns whether threads are recorded.
+    /// Returns whether the recorder includes threads.
     pub(crate) fn keeps_threads(&self) -> bool {
         self.keeps_threads
     }
 
-    /// Calls a function with a completed day, from 1.
+    /// Calls `look` with the hidden state of a completed day. Days are numbered from 1.
     pub(crate) fn with_day<R>(&self, day: u32, look: impl FnOnce(&HiddenDay) -> R) -> Option<R> {
         self.lock().days.get(day.checked_sub(1)? as usize).map(look)
     }
 
-    /// Returns a completed day, from 1.
+    /// Returns the hidden state of a completed day. Days are numbered from 1.
     pub(crate) fn day(&self, day: u32) -> Option<HiddenDay> {
         self.with_day(day, HiddenDay::clone)
     }
 
-    /// Takes the threads of a day, which are too large to be stored twice.
+    /// Removes and returns the threads of a day, which are too large to be stored twice.
     pub(crate) fn take_threads(&self, day: u32) -> Vec<EnterpriseThreadDay> {
         let at = day.checked_sub(1).map(|at| at as usize);
         let mut pages = self.lock();
@@ -230,8 +230,8 @@ impl DayObserver for HiddenDayRecorder {
     }
 }
 
-/// Returns whether a thread can still change: it is open, or it is dead and an answer of the enterprise is pending. A dead thread that only
-/// repeats its loss cannot change.
+/// Returns whether the enterprise's answer in a thread can still change something. The thread is open, or it is dead
+/// and an answer is pending.
 fn is_reply_pending(thread: &Thread, reappearing: bool) -> bool {
     thread.is_open() || thread.active_turn(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
 }

@@ -1,4 +1,4 @@
-//! The hidden tables `hidden.*`, together with the visible tables (docs/formats/hidden-tables.md).
+//! Queries on the hidden tables `hidden.*` and the visible tables (docs/formats/hidden-tables.md).
 
 use super::hidden_tables::{CUSTOMERS_TABLE, CustomersSnapshot, HiddenTables, THREADS_TABLE};
 use super::inspector::Inspector;
@@ -7,8 +7,8 @@ use novamind_session::{InspectionPermit, query_rejection};
 use novamind_tools::Rejection;
 
 impl Inspector<'_> {
-    /// Runs a statement that may read hidden tables. `hidden.customers` contains one day, by default the last one; all others
-    /// contain every day. Records the inspection.
+    /// Runs an SQL statement that may read hidden tables. `hidden.customers` contains one day, by default the last
+    /// day. All other hidden tables contain every day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`, the `sql_` codes.
@@ -17,10 +17,11 @@ impl Inspector<'_> {
         self.query_hidden_tables_with_ticket(ticket, sql, day)
     }
 
-    /// Runs a statement like [`Inspector::query_hidden_tables`] with a ticket of [`Inspector::hidden_query_interrupt`] from the time of the request.
+    /// Runs an SQL statement like [`Inspector::query_hidden_tables`]. `ticket` must be taken from
+    /// [`Inspector::hidden_query_interrupt`] when the query is requested.
     ///
     /// # Errors
-    /// As [`Inspector::query_hidden_tables`].
+    /// Same errors as [`Inspector::query_hidden_tables`].
     pub fn query_hidden_tables_with_ticket(
         &mut self,
         ticket: QueryTicket,
@@ -28,10 +29,10 @@ impl Inspector<'_> {
         day: Option<u32>,
     ) -> Result<QueryResult, Rejection> {
         let permit = InspectionPermit::start(self.run, "sql", sql, day)?;
-        // After an error, the next inspection rebuilds the tables.
+        // The tables are removed from the cache first, so that the next inspection rebuilds them after an error.
         let mut tables = self.take_hidden_tables()?;
         let named = tables.connection().hidden_tables_in(sql);
-        // One recorder for all tables: the days are simulated only once.
+        // All tables are filled from one recorder, so the days are simulated only once.
         let keeps_threads =
             self.cache.hidden_days.keeps_threads() || named.iter().any(|table| table.name == THREADS_TABLE);
         for table in named {
@@ -46,7 +47,7 @@ impl Inspector<'_> {
         answer.map_err(query_rejection)
     }
 
-    /// Returns a handle that stops the running statement on hidden tables.
+    /// Returns a handle that can interrupt a running query on hidden tables.
     ///
     /// # Errors
     /// `not_in_this_mode`, or an error if the run has no database.
@@ -57,7 +58,7 @@ impl Inspector<'_> {
     }
 
     fn take_hidden_tables(&mut self) -> Result<HiddenTables, Rejection> {
-        // The visible tables must be complete, as for any other statement.
+        // The visible tables must be up to date before any statement runs.
         self.run.up_to_date_database()?;
         let database = self.run.database().replacement_count();
         match self.cache.hidden_tables.take().filter(|tables| tables.database_number() == database) {
@@ -65,7 +66,7 @@ impl Inspector<'_> {
             None => {
                 let tables = HiddenTables::new(InspectionPermit::open_hidden_tables(self.run)?, database);
                 if self.cache.hidden_days.keeps_threads() {
-                    // The threads of its days were moved to tables that no longer exist.
+                    // The threads of the cached days were moved to tables that no longer exist.
                     self.cache.replay = None;
                 }
                 Ok(tables)

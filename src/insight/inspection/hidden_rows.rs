@@ -50,7 +50,7 @@ pub(crate) fn drift_rows(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
     rows.collect()
 }
 
-/// Returns the rows of `hidden.factors` for a day: the discovered groups.
+/// Returns the rows of `hidden.factors` for a day, one for each discovered group.
 pub(crate) fn factor_rows(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
     let rows = Group::all().filter(|group| seen.known_groups[*group]).map(|group| {
         let lead_factors = &seen.lead_factors[group];
@@ -145,7 +145,7 @@ pub(crate) fn thread_row(thread_day: &EnterpriseThreadDay) -> [HiddenValue; 22] 
     ]
 }
 
-/// Returns the rows of `hidden.customers` for a world: subscribers, then enterprises without a subscription.
+/// Returns the rows of `hidden.customers`: subscribers first, then enterprises without a subscription.
 pub(crate) fn customer_rows(world: &World) -> impl Iterator<Item = [HiddenValue; 32]> {
     let subscribers = world.customers.blocks().flat_map(move |(group, block)| {
         (0..block.len()).map(move |at| {
@@ -171,7 +171,7 @@ fn customer_row(
     row: &Subscriber,
     negotiator: Option<Negotiator>,
 ) -> [HiddenValue; 32] {
-    // These columns have no meaning without a subscription.
+    // The columns with `subscribed` have no meaning without a subscription.
     let is_subscriber = standing == "subscriber";
     let subscribed = |value: HiddenValue| if is_subscriber { value } else { Null };
     [

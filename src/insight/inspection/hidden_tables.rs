@@ -1,4 +1,4 @@
-//! The hidden tables of an open run: their connection, and the days that they contain.
+//! The hidden tables of an open run, with their database connection and the days that they contain.
 
 use std::collections::BTreeMap;
 
@@ -10,27 +10,27 @@ use novamind_database::{QueryConnection, QueryError, QueryTicket, Table};
 use novamind_world::canonical::hash_of;
 use novamind_world::state::World;
 
-/// The connection of the x-ray, the only one with hidden tables.
+/// The database connection of the x-ray. No other connection has hidden tables.
 pub(crate) struct HiddenTables {
     connection: QueryConnection,
     database_number: u32,
-    /// Last day in each table that contains every day.
+    /// Last filled day of each table that contains every day, by table name.
     filled_days: BTreeMap<&'static str, u32>,
-    /// Content of the customer table; `None` before its first use.
+    /// Content of `hidden.customers`; `None` before its first use.
     shown: Option<CustomersSnapshot>,
 }
 
-/// The content of the customer table.
+/// The content of `hidden.customers`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CustomersSnapshot {
-    /// The current state, including calls since the last day.
+    /// The current state, including calls since the last simulated day.
     Current {
         /// Hash of the subscriber columns.
         customers: blake3::Hash,
-        /// Hash of enterprises and threads.
+        /// Hash of the columns of enterprises and threads.
         companies: blake3::Hash,
     },
-    /// The state at the end of a day.
+    /// The state at the end of the given day.
     DayEnd(u32),
 }
 
@@ -43,13 +43,13 @@ impl CustomersSnapshot {
     }
 }
 
-/// The table that contains one day.
+/// Name of the table that contains only one day.
 pub(crate) const CUSTOMERS_TABLE: &str = "hidden.customers";
-/// The table whose rows are recorded only after its first use.
+/// Name of the table whose rows are recorded only after its first use.
 pub(crate) const THREADS_TABLE: &str = "hidden.threads";
 
 impl HiddenTables {
-    /// Creates empty tables on a connection to a database of the run.
+    /// Creates empty hidden tables on a connection to the run's database.
     pub(crate) fn new(connection: QueryConnection, database: u32) -> HiddenTables {
         HiddenTables { connection, database_number: database, filled_days: BTreeMap::new(), shown: None }
     }
@@ -62,7 +62,7 @@ impl HiddenTables {
         &self.connection
     }
 
-    /// Returns whether a table that contains every day lacks one.
+    /// Returns whether a table that contains every day still lacks `day`.
     pub(crate) fn is_missing_day(&self, table: &Table, day: u32) -> bool {
         self.last_filled_day(table) < day
     }
@@ -71,12 +71,12 @@ impl HiddenTables {
         self.filled_days.get(table.name.as_str()).copied().unwrap_or(0)
     }
 
-    /// Returns whether the customer table already has this content.
+    /// Returns whether `hidden.customers` already has the wanted content.
     pub(crate) fn shows_customers(&self, wanted: CustomersSnapshot) -> bool {
         self.shown == Some(wanted)
     }
 
-    /// Extends a table up to a day with recorded days. Takes the threads of these days.
+    /// Appends recorded days to a table, up to a given day. Moves the threads of these days to the table.
     pub(crate) fn fill_to(
         &mut self,
         day: u32,
@@ -121,7 +121,7 @@ impl HiddenTables {
         Ok(())
     }
 
-    /// Fills the customer table from a world.
+    /// Fills `hidden.customers` from a state of the world.
     pub(crate) fn fill_customers(
         &mut self,
         ticket: QueryTicket,

@@ -1,4 +1,4 @@
-//! True values at the end of a day, which screens show next to figures and estimates.
+//! True values at the end of a day. Screens show these values next to figures and estimates.
 
 use super::competitor_state::{NextCompetitorMove, next_competitor_move};
 use super::hidden_day::HiddenDay;
@@ -11,45 +11,45 @@ use novamind_world::identifiers::{ByGroup, Group};
 /// True values of a group at the end of a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueGroupValues {
-    /// Whether the group was discovered; other groups have no leads.
+    /// Whether the group had been discovered by the day. Other groups have no leads.
     pub is_known: bool,
-    /// Reputation.
+    /// Reputation of the company in the group.
     pub reputation: f64,
-    /// Mean satisfaction of its subscribers; `None` without subscribers.
+    /// Mean satisfaction of the group's subscribers; `None` without subscribers.
     pub satisfaction: Option<f64>,
-    /// Expected leads of the day.
+    /// Expected number of leads on the day.
     pub expected_leads: f64,
-    /// Mean budget of new customers, dollars a month (for enterprises per seat), including the market's addition.
+    /// Mean budget of new customers, including drift, $ per month; for enterprises, per seat.
     pub budget: f64,
-    /// Mean quality floor of new customers, including the market's addition.
+    /// Mean quality floor of new customers, including the increase by drift and competitors.
     pub quality_floor: f64,
-    /// Market cap in customers; 0 means no limit.
+    /// Market cap of the group, in customers; 0 means no limit.
     pub market_cap: f64,
 }
 
-/// True values of groups and market at the end of a day.
+/// True values of the groups and the market at the end of a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HiddenValues {
-    /// The day, from 1.
+    /// Day of the values, from 1.
     pub day: u32,
-    /// The groups.
+    /// True values of each group.
     pub groups: ByGroup<TrueGroupValues>,
-    /// Shared quality that competitors have not copied.
+    /// Quality gain for all groups that competitors have not copied.
     pub shared_bank: f64,
-    /// Targeted quality that competitors have not copied, for groups that have any.
+    /// Targeted quality that competitors have not copied, for each group with targeted development.
     pub group_banks: Vec<(Group, f64)>,
-    /// Next competitor move; `None` if there is none before the end of the run.
+    /// Next competitor move; `None` if no move follows before the end of the run.
     pub next_competitor_move: Option<NextCompetitorMove>,
-    /// Common addition to expectations by competitors and drift.
+    /// Increase of the expectations of all groups by competitors and drift.
     pub common_expectation: f64,
-    /// Day of the next drift; `None` if there is none before the end of the run.
+    /// Day of the next drift; `None` if no drift follows before the end of the run.
     pub next_drift_day: Option<u32>,
-    /// Index of the economy.
+    /// Current index of the economy.
     pub pmi: f64,
 }
 
 impl Inspector<'_> {
-    /// Returns the true values at the end of a day, by default the last one. Records the inspection.
+    /// Returns the true values at the end of a day, by default the last day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

@@ -1,4 +1,4 @@
-//! Records the days of one observed individual.
+//! Recorder of the days of one individual.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -17,67 +17,68 @@ use novamind_world::retention::plan_comparison::compare_plans;
 use novamind_world::retention::renewal::RenewalContext;
 use novamind_world::state::World;
 
-/// A plan, as a lead evaluates it.
+/// A lead's evaluation of a plan.
 #[derive(Debug, Clone, Copy)]
 pub struct LeadPlanTerms {
-    /// Price after the discount, and quality with the quota, before noise.
+    /// Price after the discount, and quality after the effect of the quota, before noise.
     pub offered: PlanChoice,
-    /// Required quality at the price.
+    /// Required quality at the plan's price.
     pub required: f64,
 }
 
-/// The first decision of an individual.
+/// An individual's decision as a lead.
 #[derive(Debug, Clone)]
 pub struct SignupDecision {
-    /// The day.
+    /// Day of the decision.
     pub day: u32,
-    /// Source of the lead.
+    /// Source through which the lead arrived.
     pub source: Source,
-    /// The plans.
+    /// Evaluation of each plan.
     pub plans: ByPlan<LeadPlanTerms>,
-    /// The evaluated plan: the one with the largest surplus before noise, or A if there is none.
+    /// The plan with the largest surplus before noise, or plan A if no plan has a surplus. The lead accepts or rejects
+    /// this plan.
     pub plan: Plan,
-    /// Noise factor of the perceived quality.
+    /// Random factor of the perceived quality.
     pub quality_noise: f64,
-    /// Participation curve with market expectations.
+    /// Participation curve of the lead, including market expectations.
     pub curve: Curve,
     /// Whether the lead signed up.
     pub signed_up: bool,
 }
 
-/// The outcome of a day.
+/// The outcome of a subscriber's day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SubscriberOutcome {
-    /// Still subscribed.
+    /// The subscription continues on the same plan.
     Stays,
-    /// Switched to another plan.
+    /// The subscriber switched to the given plan.
     Switches(Plan),
-    /// Cancelled.
+    /// The subscription ended.
     Cancels(EndCause),
 }
 
-/// A day of a subscriber, at the time of the decisions.
+/// A subscriber's state on a day, at the time of the decisions.
 #[derive(Debug, Clone)]
 pub struct IndividualDay {
-    /// The day.
+    /// Day of the state.
     pub day: u32,
-    /// Plan at the start of the day.
+    /// Plan of the subscriber at the start of the day.
     pub plan: Plan,
-    /// Price in force, dollars a month.
+    /// Price in force, $ per month.
     pub price: f64,
-    /// Satisfaction after the day.
+    /// Satisfaction after the change of the day.
     pub satisfaction: f64,
-    /// Relationship, 0..=1.
+    /// Relationship to the company, 0..=1.
     pub relationship: f64,
-    /// Number of days that an issue has been open.
+    /// Number of days that the current issue has been open.
     pub open_issue_days: u32,
-    /// Whether it is a billing day.
+    /// Whether the day is a billing day.
     pub is_due: bool,
     /// Probability of a failed payment on a billing day.
     pub payment_failure: f64,
-    /// The evaluated decision, also on days that are not billing days.
+    /// Evaluated decision, which is also computed on days that are not billing days.
     pub weighed_decision: WeighedDecision,
-    /// Outcome of the day.
+    /// Outcome of the day for the subscription.
     pub outcome: SubscriberOutcome,
 }
 
@@ -98,7 +99,7 @@ pub(crate) struct IndividualRecord {
 }
 
 impl IndividualRecorder {
-    /// Creates an empty recorder for the n-th customer of a group.
+    /// Creates an empty recorder for customer `n` of a group.
     pub(crate) fn new(customer: u32, (group, n): (Group, u32), arrival_day: u32) -> IndividualRecorder {
         IndividualRecorder { customer, group, number_in_group: n, arrival_day, recorded: Mutex::default() }
     }

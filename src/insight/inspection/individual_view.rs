@@ -1,4 +1,4 @@
-//! The hidden state of an individual: its first decision, and its evaluated decision of each day.
+//! The hidden state of an individual: the decision as a lead, and the evaluated decision of each later day.
 
 use std::sync::Arc;
 
@@ -7,23 +7,23 @@ use novamind_session::{InspectionPermit, Session};
 use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
-/// An individual, up to the shown day.
+/// The hidden state of an individual up to the shown day.
 #[derive(Debug, Clone)]
 pub struct IndividualView {
-    /// Customer number.
+    /// Customer number of the individual.
     pub customer: u32,
     /// Group of the individual.
     pub group: Group,
-    /// The shown day.
+    /// Last day of the view.
     pub day: u32,
-    /// Decision as a lead.
+    /// The individual's decision as a lead.
     pub signup: SignupDecision,
-    /// Days as a subscriber, from the day after sign-up.
+    /// State on each day as a subscriber, from the day after sign-up.
     pub days: Vec<IndividualDay>,
 }
 
 impl IndividualView {
-    /// Returns the shown day, or the last earlier day as a subscriber.
+    /// Returns the individual's state on the shown day, or on the last earlier day with a subscription.
     pub fn day_shown(&self) -> Option<&IndividualDay> {
         self.days.last()
     }
@@ -33,7 +33,7 @@ impl IndividualView {
         let individual_day = self.day_shown().filter(|day| day.open_issue_days > 0)?;
         let days = self.days.iter().rev();
         let mut later = u32::MAX;
-        // The count increases while an issue is open; otherwise a new issue was opened.
+        // While an issue is open, its age increases daily. If the age does not increase, a new issue was opened.
         let same = days.take_while(|day| {
             let is_same = day.open_issue_days > 0 && day.open_issue_days < later;
             later = day.open_issue_days;
@@ -42,7 +42,7 @@ impl IndividualView {
         same.last().map_or(Some(individual_day.day), |day| Some(day.day))
     }
 
-    /// Returns the last bill before that day.
+    /// Returns the state on the last billing day before the shown day.
     pub fn last_bill(&self) -> Option<&IndividualDay> {
         let shown = self.day_shown()?.day;
         self.days.iter().rev().find(|individual_day| individual_day.is_due && individual_day.day < shown)
@@ -50,7 +50,7 @@ impl IndividualView {
 }
 
 impl IndividualView {
-    /// Returns an individual on a simulated day.
+    /// Creates the view of an individual on a simulated day.
     pub(super) fn new(
         run: &Session,
         permit: &InspectionPermit,

@@ -1,4 +1,4 @@
-//! The inspector of hidden state. Simulated days are cached with the run for the next question.
+//! The inspector, which reads hidden state. Simulated days are cached with the run for later inspections.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use super::hidden_tables::HiddenTables;
 use novamind_session::{InspectionPermit, RunReplay, Session};
 use novamind_tools::Rejection;
 
-/// Cached data of inspections of a run.
+/// Cached data for the inspections of a run.
 #[derive(Default)]
 pub(super) struct InspectorCache {
-    /// The copy that re-simulates the days; `None` before the first question.
+    /// The copy of the run that re-simulates its days; `None` before the first inspection.
     pub(super) replay: Option<RunReplay>,
     pub(super) hidden_days: Arc<HiddenDayRecorder>,
     pub(super) breakpoints: Breakpoints,
@@ -19,7 +19,7 @@ pub(super) struct InspectorCache {
     pub(super) hidden_tables: Option<HiddenTables>,
 }
 
-/// The inspector of a run's hidden state. Each question is rejected, or recorded before it is answered.
+/// The inspector of a run's hidden state. Each inspection is rejected, or is recorded before its result is returned.
 pub struct Inspector<'a> {
     pub(super) run: &'a mut Session,
     pub(super) cache: Box<InspectorCache>,
@@ -66,8 +66,8 @@ impl Inspector<'_> {
         seen.ok_or_else(|| Rejection::new("not_readable", format!("day {day} could not be re-simulated")))
     }
 
-    /// Returns the hidden state of all days up to now, optionally with threads. Restarts the re-simulation if it has no
-    /// threads yet.
+    /// Returns the hidden state of all days up to now, optionally with threads. Restarts the re-simulation if threads
+    /// are requested and were not recorded.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -89,7 +89,7 @@ impl Inspector<'_> {
                 permit.replay(self.run, self.cache.hidden_days.clone())?
             }
         };
-        // After an error, the next inspection restarts the re-simulation.
+        // The copy is removed from the cache first, so that the next inspection restarts the re-simulation after an error.
         shadow.advance(self.run, |_| true, &mut |_| {})?;
         self.cache.replay = Some(shadow);
         Ok(self.cache.hidden_days.clone())

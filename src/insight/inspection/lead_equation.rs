@@ -1,4 +1,4 @@
-//! The lead equation of a group on a day: factors, sources, and the probability of the actual number.
+//! The lead equation of a group on a day: factors, sources, and the probability of the actual number of leads.
 
 use std::fmt;
 
@@ -9,28 +9,28 @@ use novamind_tools::Rejection;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::market::leads::LeadFactors;
 
-/// Number of days that are shown, including the requested day.
+/// Number of days in a view, including the requested day.
 pub(crate) const WINDOW_DAYS: u32 = 28;
 
-/// A factor of the leads of a group (docs/mechanics/market/leads.md).
+/// A factor in the lead equation of a group (docs/mechanics/market/leads.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LeadFactor {
     /// Reputation of the group.
     Reputation,
-    /// Unused share of its market.
+    /// Unused share of the group's market.
     Saturation,
-    /// Weekday times day of the month.
+    /// Factor of the weekday times factor of the day of the month.
     Calendar,
-    /// The economy.
+    /// Effect of the economy on leads.
     Economy,
     /// Reactions to the company's posts.
     Social,
-    /// Demand surges.
+    /// Effect of active demand surges.
     Surge,
 }
 
 impl LeadFactor {
-    /// All factors, in the order of the equation.
+    /// All lead factors, in the order of the equation.
     pub const ALL: [LeadFactor; 6] = [
         LeadFactor::Reputation,
         LeadFactor::Saturation,
@@ -40,17 +40,17 @@ impl LeadFactor {
         LeadFactor::Surge,
     ];
 
-    /// Returns the letter in the equation.
+    /// Returns the letter of the factor in the equation.
     pub fn letter(self) -> &'static str {
         ["R", "D", "C", "M", "A", "Z"][self as usize]
     }
 
-    /// Returns the name.
+    /// Returns the display name of the factor.
     pub fn name(self) -> &'static str {
         ["reputation", "unused market", "calendar", "economy", "own posts", "surges"][self as usize]
     }
 
-    /// Returns the factor with a letter.
+    /// Returns the factor with the given letter.
     pub fn parse(letter: &str) -> Option<LeadFactor> {
         LeadFactor::ALL.into_iter().find(|factor| factor.letter().eq_ignore_ascii_case(letter))
     }
@@ -73,18 +73,18 @@ impl fmt::Display for LeadFactor {
     }
 }
 
-/// The leads of a group on a day: R D C M A Z (channels + word of mouth) = expected.
+/// The lead equation of a group on a day: R D C M A Z (channels + word of mouth) = expected leads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeadEquation {
-    /// The group.
+    /// Group whose leads are described.
     pub group: Group,
-    /// The day, from 1.
+    /// Day of the leads, from 1.
     pub day: u32,
-    /// Whether the group was discovered; other groups have no leads.
+    /// Whether the group had been discovered by the day. Other groups have no leads.
     pub is_known: bool,
-    /// Leads by word of mouth before the factors, by source group.
+    /// Word-of-mouth leads before the factors, by source group.
     pub word_of_mouth: Vec<(Group, f64)>,
-    /// Actual leads.
+    /// Actual leads of the day.
     pub actual_leads: u32,
     /// Whether the market cap is unlimited.
     pub has_unlimited_market: bool,
@@ -104,13 +104,13 @@ impl LeadEquation {
         }
     }
 
-    /// Returns a factor of the equation.
+    /// Returns the value of a factor on the day.
     pub fn factor(&self, factor: LeadFactor) -> f64 {
         let mut factors = self.factors;
         *factor.factor_mut(&mut factors)
     }
 
-    /// Returns the leads of paid channels before the factors, for channels that have any.
+    /// Returns each paid channel with its leads before the factors. Omits channels without leads.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, f64)> {
         let paid = self.factors.paid;
         Channel::ALL
@@ -119,32 +119,33 @@ impl LeadEquation {
             .filter(|(_, leads)| *leads > 0.0)
     }
 
-    /// Returns the leads by word of mouth before the factors.
+    /// Returns the number of word-of-mouth leads before the factors.
     pub fn word_of_mouth_leads(&self) -> f64 {
         self.factors.network
     }
 
-    /// Returns the expected leads, the mean of the day's draw.
+    /// Returns the expected leads, which are the mean of the Poisson distribution of the day's leads.
     pub fn expected_leads(&self) -> f64 {
         self.factors.expected()
     }
 
-    /// Returns the expected leads with some factors replaced.
+    /// Returns the expected leads if the factors in `held` had the given values.
     pub fn expected_with(&self, held: &[(LeadFactor, f64)]) -> f64 {
         let mut factors = self.factors;
         held.iter().for_each(|(factor, value)| *factor.factor_mut(&mut factors) = *value);
         factors.expected()
     }
 
-    /// Returns the two-sided probability, 0..=1, of a number at least as extreme as the actual one: twice the smaller tail of the
-    /// Poisson distribution around the expectation.
+    /// Returns the two-sided p-value of the actual leads, 0..=1: twice the smaller tail of the Poisson distribution
+    /// with the expected leads as mean.
     pub fn p_value(&self) -> f64 {
         two_sided_p_value(self.expected_leads(), self.actual_leads)
     }
 }
 
 impl Inspector<'_> {
-    /// Returns the lead equations of a group on up to 27 previous days and a day, by default the last one. Records the inspection.
+    /// Returns the lead equations of a group on a day, by default the last day, and on up to 27 days before. Records
+    /// the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -157,7 +158,7 @@ impl Inspector<'_> {
     }
 }
 
-/// Returns twice the smaller tail of a Poisson distribution, at most 1. Both tails include `number`.
+/// Returns twice the smaller tail of a Poisson distribution, at most 1. Each tail includes `number`.
 fn two_sided_p_value(mean: f64, number: u32) -> f64 {
     if mean <= 0.0 {
         return if number == 0 { 1.0 } else { 0.0 };
@@ -180,7 +181,7 @@ mod tests {
 
     #[test]
     fn poisson_tails_match_published_values() {
-        // P(X <= 2) = 0.423190 and P(X >= 2) = 0.800852 around 3; P(X >= 10) = 0.001102.
+        // For mean 3, P(X <= 2) = 0.423190, P(X >= 2) = 0.800852 and P(X >= 10) = 0.001102.
         for (mean, number, p) in [(3.0, 2, 0.846380), (3.0, 10, 0.002205), (3.0, 3, 1.0), (0.0, 0, 1.0)] {
             assert!(
                 (two_sided_p_value(mean, number) - p).abs() < 2e-6,

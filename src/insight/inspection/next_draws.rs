@@ -1,5 +1,5 @@
-//! The next draws of a part of the world. Streams are keyed and keep no state, so the draws of the next day are known in advance,
-//! unless they depend on open decisions.
+//! The next random draws of a part of the world. Random streams are keyed and keep no state. The draws of the next day
+//! are therefore known in advance, unless they depend on open decisions.
 
 use super::inspector::Inspector;
 use novamind_session::{HiddenState, InspectionPermit};
@@ -17,28 +17,28 @@ use novamind_world::retention::renewal::{group_involuntary_rate, payment_rolls};
 /// A part of the world whose next draws can be inspected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RandomPart {
-    /// Numbers of leads.
+    /// Number of leads in each group.
     Leads,
-    /// Failed payments.
+    /// Failed payments of individuals.
     Renewals,
-    /// Outage, its length, latency, errors.
+    /// Outages: occurrence, length, latency and error rate.
     Service,
     /// Daily noise of shared quality.
     Quality,
-    /// R&D projects.
+    /// Duration and gain of R&D projects.
     Research,
-    /// The next attempt of market research.
+    /// Result of the next market research attempt.
     Discovery,
-    /// Demand surges.
+    /// Start and strength of demand surges.
     Surge,
-    /// Index of the economy.
+    /// Noise of the economy index.
     Economy,
-    /// Competitors.
+    /// Size and timing of competitor moves.
     Competitors,
 }
 
 impl RandomPart {
-    /// All parts.
+    /// All parts of the world that make random draws.
     pub const ALL: [RandomPart; 9] = [
         RandomPart::Leads,
         RandomPart::Renewals,
@@ -51,18 +51,18 @@ impl RandomPart {
         RandomPart::Competitors,
     ];
 
-    /// Returns the id, as used in commands and texts.
+    /// Returns the id of the part in commands and texts.
     pub fn id(self) -> &'static str {
         ["leads", "renewals", "service", "quality", "research", "discovery", "surge", "economy", "rivals"]
             [self as usize]
     }
 
-    /// Returns the part with an id.
+    /// Returns the part with the given id.
     pub fn parse(id: &str) -> Option<RandomPart> {
         RandomPart::ALL.into_iter().find(|part| part.id() == id)
     }
 
-    /// Returns the random streams of the part, and the maximum number of draws of each.
+    /// Returns the random streams of the part, and the maximum number of draws per stream.
     fn stream_and_draws(self) -> (Part, usize) {
         match self {
             RandomPart::Leads => (Part::LeadCount, 2),
@@ -77,102 +77,104 @@ impl RandomPart {
         }
     }
 
-    /// Returns whether a recorded series can be replayed in place of its draws.
+    /// Returns whether a recorded series can replace the draws of the part.
     fn is_replayable(self) -> bool {
         use RandomPart::{Competitors, Discovery, Economy, Renewals, Surge};
         matches!(self, Renewals | Discovery | Surge | Economy | Competitors)
     }
 }
 
-/// One draw of a stream.
+/// One draw of a random stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw {
-    /// As a uniform number, in [0, 1).
+    /// The draw as a uniform variate in [0, 1).
     pub uniform: f64,
-    /// As a standard normal number.
+    /// The draw as a standard normal variate.
     pub normal: f64,
 }
 
-/// The consequence of the draws of a stream.
+/// The effect that the draws of a stream have on the simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DrawEffect {
-    /// Number of leads, if the expectation equals that of the last day.
+    /// Number of leads, assuming the expected leads of the last day.
     Leads {
-        /// Leads expected on the last day.
+        /// Expected leads of the last day.
         expected: f64,
-        /// Resulting leads.
+        /// Number of leads that the draws produce.
         number: u32,
     },
-    /// Failed payments.
+    /// Customers whose payment fails.
     FailedPayments {
-        /// Rate of failed payments in the month.
+        /// Probability of a failed payment in the month.
         rate: f64,
         /// Numbers of the customers whose payment fails on the day.
         customers: Vec<u32>,
     },
-    /// Outage probability above which an outage occurs.
+    /// Drawn threshold. An outage occurs if the outage probability is above the threshold.
     OutageAbove(f64),
-    /// Noise of shared quality.
+    /// Daily noise of the shared quality.
     Noise(f64),
-    /// An R&D project of the tier.
+    /// Duration and quality gain of an R&D project.
     Project {
-        /// Tier, 1..=20.
+        /// Tier of the R&D project, 1..=20.
         tier: u8,
-        /// Duration, days.
+        /// Duration of the R&D project, days.
         days: u32,
-        /// Quality gain.
+        /// Quality gain of the R&D project.
         gain: f64,
     },
-    /// The discovered group, if any.
+    /// Group that market research would discover, if any.
     Found(Option<Group>),
-    /// A demand surge, if there is one.
+    /// Demand surge that starts on the day, if any.
     Surge(Option<Surge>),
-    /// Index of the economy.
+    /// Change of the economy index.
     Index {
-        /// Current value.
+        /// Current value of the index.
         before: f64,
-        /// Value of the next day.
+        /// Value of the index on the next day.
         after: f64,
     },
-    /// A competitor move, if there is one: its size before copying, and the share of the shared bank that can be copied.
+    /// Competitor move on the day, if any: its size before copying, and the share of the shared quality bank that can
+    /// be copied.
     CompetitorMove(Option<(f64, f64)>),
 }
 
-/// A stream that the next day opens.
+/// A random stream that the next day opens, with its first draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeyedDraws {
     /// Name of the stream (docs/mechanics/randomness.md).
     pub stream: &'static str,
-    /// Keys of the stream.
+    /// Names and values of the stream's keys.
     pub key: Vec<(&'static str, u64)>,
-    /// The group of the stream, if any.
+    /// Group of the stream, if any.
     pub group: Option<Group>,
-    /// First draws.
+    /// First draws of the stream.
     pub draws: Vec<Draw>,
-    /// Consequence of the draws.
+    /// Effect of the draws.
     pub effect: DrawEffect,
 }
 
-/// The next draws of a part.
+/// The next draws of a part of the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextDraws {
-    /// The part.
+    /// The part whose draws are listed.
     pub part: RandomPart,
-    /// Day of the draws.
+    /// Day on which the draws are used.
     pub day: u32,
-    /// Whether the run has ended, so that the day will not be simulated.
+    /// Whether the run has ended, in which case the day will not be simulated.
     pub is_over: bool,
-    /// Whether a recorded series replaces these draws on the days that it covers.
+    /// Whether a recorded series replaces the draws on the days that the series covers.
     pub is_replayed: bool,
-    /// The streams.
+    /// Random streams of the part.
     pub streams: Vec<KeyedDraws>,
 }
 
-/// Maximum number of draws of a stream.
+/// Maximum number of draws that can be requested per stream.
 pub const MAX_DRAWS: usize = 1000;
 
 impl Inspector<'_> {
-    /// Returns the next draws of a part. `count` limits the draws of each stream; the default is the maximum of the part. Records
+    /// Returns the next draws of a part of the world. `count` limits the draws of each stream; the default is the
+    /// maximum of the part. Records
     /// the inspection.
     ///
     /// # Errors
@@ -273,7 +275,9 @@ fn lead_effect(inside: HiddenState<'_>, group: Group, day: u32) -> DrawEffect {
     DrawEffect::Leads { expected, number }
 }
 
-/// Returns the customers whose payment fails if it is due. The roll of each customer has its position in the block.
+/// Returns the customers whose payment would fail on the day if the payment were due. Each customer uses the draw at
+/// the customer's
+/// position in the block.
 fn failed_payment_effect(inside: HiddenState<'_>, group: Group, day: u32) -> DrawEffect {
     let (params, streams) = (inside.params(), inside.streams());
     let rate = group_involuntary_rate(group, day, params, streams);

@@ -1,4 +1,4 @@
-//! The quality equation: the quality that is delivered to a group on each plan, by term.
+//! The quality equation, which splits the delivered quality of a group into terms for each plan.
 
 use serde::Serialize;
 
@@ -12,27 +12,27 @@ use novamind_world::quality::delivered_quality;
 use novamind_world::settings::Settings;
 use novamind_world::state::World;
 
-/// Sources of shared quality.
+/// Sources of the shared quality gain.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SharedQualityGains {
-    /// Initial quality.
+    /// Shared quality at the start of the run.
     pub opening: f64,
-    /// Gain from finished R&D projects.
+    /// Quality gain from finished R&D projects.
     pub research: f64,
-    /// Sum of the daily gains of development.
+    /// Sum of the daily quality gains from development.
     pub development: f64,
-    /// Daily noise, the remainder.
+    /// Sum of the daily noise, computed as the remainder.
     pub noise: f64,
 }
 
 /// The delivered quality of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeliveredPlanQuality {
-    /// Model tier, 1..=5.
+    /// Model tier of the plan, 1..=5.
     pub tier: u8,
-    /// Quality multiplier of the tier.
+    /// Quality multiplier of the model tier.
     pub multiplier: f64,
-    /// Delivered quality.
+    /// Delivered quality of the plan.
     pub delivered: f64,
 }
 
@@ -48,12 +48,12 @@ pub(crate) struct QualityDay {
     plans: ByGroup<ByPlan<DeliveredPlanQuality>>,
     common_expectation: f64,
     expectations: ByGroup<Expectation>,
-    /// Quality lost to the service of the day.
+    /// Quality lost to overload and outages of the day.
     pub(crate) service_penalty: f64,
 }
 
 impl QualityDay {
-    /// Captures the start of a day after the accumulated gain of development, and adds the gain of the day.
+    /// Captures quality at the start of a day. Then adds the day's development gain to `development`.
     pub(crate) fn new(
         world: &World,
         morning: &Morning,
@@ -98,32 +98,32 @@ fn shared_gains(product: &Product, development: f64, params: &Params) -> SharedQ
     SharedQualityGains { opening, research, development, noise }
 }
 
-/// The delivered quality of a group: (base + shared + own) times the multiplier of the plan's model tier.
+/// The delivered quality of a group: (base + shared gain + group gain) times the multiplier of the plan's model tier.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QualityEquation {
-    /// The group.
+    /// The group that receives the quality.
     pub group: Group,
-    /// The day, from 1.
+    /// Day of the equation, from 1.
     pub day: u32,
-    /// Quality before any improvement.
+    /// Base quality, before any improvement.
     pub base: f64,
-    /// Shared gain.
+    /// Quality gain for all groups.
     pub shared: f64,
-    /// Sources of the shared gain.
+    /// Sources of the shared quality gain.
     pub gains: SharedQualityGains,
-    /// Gain of the group by targeted development.
+    /// Quality gain of the group by targeted development.
     pub group_gain: f64,
-    /// The plans.
+    /// Delivered quality of each plan.
     pub plans: ByPlan<DeliveredPlanQuality>,
-    /// Quality lost to the service of the day, for decisions that include it.
+    /// Quality lost to overload and outages of the day; not every decision includes this loss.
     pub service_penalty: f64,
-    /// Shared improvements that competitors had not copied at the start of the day.
+    /// Shared quality gain that competitors had not copied at the start of the day.
     pub shared_bank: f64,
-    /// The group's improvements that competitors had not copied at the start of the day.
+    /// Quality gain of the group that competitors had not copied at the start of the day.
     pub group_bank: f64,
-    /// Common addition to expectations.
+    /// Increase of the expectations of all groups by drift and competitors.
     pub common_expectation: f64,
-    /// Addition to expectations of the group, including the common one.
+    /// Increase of the group's expectations, including the common increase.
     pub expectation: Expectation,
 }
 
@@ -145,7 +145,7 @@ impl QualityEquation {
         }
     }
 
-    /// Returns the sum of the terms times a multiplier.
+    /// Returns the sum of the quality terms, multiplied by `multiplier`.
     pub fn product_quality(&self, multiplier: f64) -> f64 {
         delivered_quality(self.base, self.shared, self.group_gain, multiplier)
     }

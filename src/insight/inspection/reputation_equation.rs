@@ -10,28 +10,28 @@ use novamind_world::reputation::{
     spillover_effect, unrounded_daily_change,
 };
 
-/// The cancellations of a day and their effect.
+/// The cancellations of a day and their effect on reputation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct DepartureEffect {
-    /// Number of cancellations with an effect; a lost enterprise counts once for each thread.
+    /// Number of cancellations that changed reputation. A lost enterprise counts once for each thread.
     pub count: u32,
-    /// Change of the reputation; not positive.
+    /// Change of the reputation; never positive.
     pub change: f64,
 }
 
-/// The contribution of a group's subscribers.
+/// The contribution of a group's subscribers to its reputation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SubscriberContribution {
-    /// Number of subscribers.
+    /// Number of contributing subscribers.
     pub subscribers: u32,
-    /// Change by their satisfaction before the threshold.
+    /// Change by the subscribers' satisfaction, before the threshold.
     pub requested_change: f64,
-    /// Whether the change reached the threshold and was applied.
+    /// Whether the change reached the threshold and was therefore applied.
     pub is_applied: bool,
 }
 
 impl SubscriberContribution {
-    /// Returns the applied change.
+    /// Returns the change of reputation, or 0 if the change was below the threshold.
     pub fn applied_change(&self) -> f64 {
         if self.is_applied { self.requested_change } else { 0.0 }
     }
@@ -40,9 +40,9 @@ impl SubscriberContribution {
 /// Thresholds below which changes are dropped.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ChangeThresholds {
-    /// A contribution is dropped if its absolute value is below this.
+    /// Smallest absolute value of a contribution that is applied.
     pub subscriber_contribution: f64,
-    /// A spillover is dropped if its absolute value is not above this.
+    /// Largest absolute value of a spillover that is dropped.
     pub spillover: f64,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct ReputationDay {
     individual_departures: ByGroup<DepartureEffect>,
     enterprise_departures: ByGroup<DepartureEffect>,
     contributions: ByGroup<SubscriberContribution>,
-    /// Spillovers with a weight, in order.
+    /// Spillovers with a positive weight, in the order of the day.
     spillovers: Vec<SpilloverEffect>,
     bounds: ByGroup<f64>,
     after: ByGroup<f64>,
@@ -64,7 +64,7 @@ impl ReputationDay {
         ReputationDay { before: ByGroup::from_fn(|group| book.get(group)), ..ReputationDay::default() }
     }
 
-    /// Adds a write of a mechanism.
+    /// Adds a change of reputation by a mechanism.
     pub(crate) fn add_write(&mut self, write: &ReputationWrite<'_>) {
         let group = write.group;
         let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
@@ -78,7 +78,7 @@ impl ReputationDay {
         departures.change += write.changes.iter().sum::<f64>();
     }
 
-    /// Adds the contributions of subscribers, including dropped ones.
+    /// Adds the contributions of subscribers, including dropped contributions.
     pub(crate) fn add_subscriber_contributions(
         &mut self,
         moods: &ByGroup<ReputationContribution>,
@@ -107,28 +107,28 @@ impl ReputationDay {
     }
 }
 
-/// The reputation of a group on a day: before + departures + own contribution + spills + bounds = after.
+/// The reputation of a group on a day: before + departures + contribution + spillovers + bounds = after.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReputationEquation {
-    /// The group.
+    /// Group whose reputation is described.
     pub group: Group,
-    /// The day, from 1.
+    /// Day of the equation, from 1.
     pub day: u32,
     /// Reputation at the start of the day.
     pub before: f64,
-    /// Cancellations of individuals without an acceptable plan.
+    /// Effect of cancellations of individuals without an acceptable plan.
     pub individual_departures: DepartureEffect,
-    /// Lost enterprises.
+    /// Effect of lost enterprises.
     pub enterprise_departures: DepartureEffect,
-    /// Contribution of its subscribers.
+    /// Contribution of the group's subscribers.
     pub contribution: SubscriberContribution,
-    /// Spillovers from other groups, including dropped ones.
+    /// Spillovers from other groups, including dropped spillovers.
     pub spillovers: Vec<SpilloverEffect>,
-    /// Effect of the lower and upper limit.
+    /// Change by the lower and upper limit of reputation.
     pub bounds: f64,
     /// Reputation at the end of the day.
     pub after: f64,
-    /// Reputation at the end of up to 28 days, in ascending order; this day is last.
+    /// Reputation at the end of up to 28 days, in ascending order. The last value belongs to the day of the equation.
     pub recent_days: Vec<f64>,
     /// Thresholds below which changes are dropped.
     pub thresholds: ChangeThresholds,
@@ -156,7 +156,7 @@ impl ReputationEquation {
         }
     }
 
-    /// Returns the sum of the terms.
+    /// Returns the sum of the reputation terms.
     pub fn total(&self) -> f64 {
         let spills: f64 = self.spillovers.iter().filter(|spill| spill.counts).map(|spill| spill.change).sum();
         self.before
@@ -168,16 +168,16 @@ impl ReputationEquation {
     }
 }
 
-/// The spillover of a day between discovered groups.
+/// The spillover of reputation between discovered groups on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spillover {
-    /// The day, from 1.
+    /// Day of the spillover, from 1.
     pub day: u32,
-    /// Discovered groups.
+    /// Groups that are discovered on the day.
     pub known_groups: Vec<Group>,
-    /// Contribution of each group's subscribers.
+    /// Contribution of the subscribers of each group.
     pub contributions: ByGroup<SubscriberContribution>,
-    /// Spillovers with a weight, including dropped ones.
+    /// Spillovers with a positive weight, including dropped spillovers.
     pub spillovers: Vec<SpilloverEffect>,
     /// Thresholds below which changes are dropped.
     pub thresholds: ChangeThresholds,
@@ -201,7 +201,7 @@ impl Spillover {
         }
     }
 
-    /// Returns the spillover from one group to another; `None` without a weight or a change.
+    /// Returns the spillover from one group to another, or `None` without a weight or a change.
     pub fn between(&self, from: Group, to: Group) -> Option<SpilloverEffect> {
         self.spillovers.iter().copied().find(|spill| spill.from == from && spill.to == to)
     }

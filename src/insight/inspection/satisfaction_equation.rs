@@ -1,4 +1,4 @@
-//! The satisfaction equation of a group on a day: the terms of the mechanism, each as a mean over the subscribers.
+//! The satisfaction equation of a group on a day: the terms of the mechanism, each term as a mean over the subscribers.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -11,28 +11,28 @@ use novamind_world::retention::satisfaction::{SatisfactionTerms, satisfaction_te
 /// A term of instant satisfaction (docs/mechanics/retention/satisfaction.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SatisfactionTerm {
-    /// Delivered quality, before the service of the day.
+    /// Delivered quality before outages and overload.
     Delivered,
-    /// Overload and outages.
+    /// Loss by overload and outages.
     Service,
-    /// Relationship, positive or negative.
+    /// Relationship to the company; the term can be negative.
     Relationship,
-    /// Tenure.
+    /// Effect of the tenure of the subscription.
     Tenure,
-    /// A quota below the demand.
+    /// Loss by a quota below the demand.
     Quota,
-    /// Open issues.
+    /// Loss by open issues.
     Issues,
-    /// In-app ads.
+    /// Loss by in-app advertising.
     Ads,
-    /// Required quality at the price.
+    /// Required quality at the subscriber's price.
     Required,
-    /// The market's addition to required quality.
+    /// Increase of required quality by drift and competitors.
     Expectations,
 }
 
 impl SatisfactionTerm {
-    /// All terms in display order.
+    /// All terms, in display order.
     pub const ALL: [SatisfactionTerm; 9] = [
         SatisfactionTerm::Delivered,
         SatisfactionTerm::Service,
@@ -45,7 +45,7 @@ impl SatisfactionTerm {
         SatisfactionTerm::Expectations,
     ];
 
-    /// Returns the name.
+    /// Returns the identifier of the term.
     pub fn id(self) -> &'static str {
         [
             "delivered",
@@ -60,7 +60,7 @@ impl SatisfactionTerm {
         ][self as usize]
     }
 
-    /// Returns the value of the term for each subscriber. The sum of the terms is instant satisfaction.
+    /// Returns the term's value for a subscriber. The sum of all terms is the subscriber's instant satisfaction.
     fn contribution(self, felt: &SatisfactionTerms) -> f64 {
         let experience = &felt.experience;
         match self {
@@ -68,7 +68,7 @@ impl SatisfactionTerm {
             SatisfactionTerm::Service => 0.0 - felt.service_penalty,
             SatisfactionTerm::Relationship => experience.relationship,
             SatisfactionTerm::Tenure => experience.tenure,
-            // The remainder to the sum of all other terms, because the quota is a factor of several terms.
+            // Instant satisfaction minus all other terms, because the quota is a factor of several terms.
             SatisfactionTerm::Quota => {
                 felt.perceived
                     - (experience.delivered + experience.relationship + experience.tenure
@@ -83,7 +83,7 @@ impl SatisfactionTerm {
     }
 }
 
-/// Sums over subscribers.
+/// Sums of satisfaction values over subscribers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct SatisfactionSums {
     count: u32,
@@ -94,7 +94,7 @@ pub(crate) struct SatisfactionSums {
 }
 
 impl SatisfactionSums {
-    /// Sums a block before its satisfaction changes.
+    /// Computes the sums of a block before its satisfaction changes.
     pub(crate) fn from_block(group: Group, block: &Block, day: &DayContext<'_>) -> SatisfactionSums {
         let mut sums = SatisfactionSums { count: block.len() as u32, ..SatisfactionSums::default() };
         for at in 0..block.len() {
@@ -129,11 +129,12 @@ pub(crate) struct SatisfactionDay {
     weight: f64,
 }
 
-/// Sums of a day's blocks, in any order.
+/// Sums of each block on a day, by group and block index.
 pub(crate) type SatisfactionSumsByBlock = BTreeMap<(Group, u32), SatisfactionSums>;
 
 impl SatisfactionDay {
-    /// Combines the blocks of all groups with their cancellations. `weight` is the weight of a day.
+    /// Combines the sums of the blocks with the cancellations of each group. `weight` is the weight of one day in the
+    /// moving average.
     pub(crate) fn by_group(
         blocks: &SatisfactionSumsByBlock,
         left: &ByGroup<u32>,
@@ -149,32 +150,33 @@ impl SatisfactionDay {
     }
 }
 
-/// The mean satisfaction of a group on a day: after = (1 - weight) before + weight (sum of the terms).
+/// The satisfaction equation of a group on a day: after = (1 - weight) before + weight (sum of the terms).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SatisfactionEquation {
-    /// The group.
+    /// Group whose satisfaction is described.
     pub group: Group,
-    /// The day, from 1.
+    /// Day of the equation, from 1.
     pub day: u32,
-    /// Weight of a day, 0..=1.
+    /// Weight of one day in the moving average, 0..=1.
     pub weight: f64,
     /// Number of individuals and enterprises that cancelled on the day.
     pub departed: u32,
-    /// Number of new subscribers of the day, who are not in the mean.
+    /// Number of new subscribers on the day, who are excluded from the mean.
     pub joined: u32,
     /// Number of subscribers at the end of the day.
     pub subscribers: u32,
-    /// Their mean satisfaction; `None` without subscribers.
+    /// Mean satisfaction of all subscribers at the end of the day; `None` without subscribers.
     pub end_of_day: Option<f64>,
-    /// Mean satisfaction at the end of up to 28 days, in ascending order; this day is last. `None` without subscribers.
+    /// Mean satisfaction at the end of up to 28 days, in ascending order. The last value belongs to the day of the
+    /// equation. `None` without subscribers.
     pub recent_days: Vec<Option<f64>>,
     today: SatisfactionDay,
     yesterday: Option<SatisfactionDay>,
 }
 
 impl SatisfactionEquation {
-    /// Creates the equation of a group on a day from its subscribers at the end of the day with their mean satisfaction, the
-    /// day before, and the mean satisfaction of recent days.
+    /// Creates the equation of a group on a day. `subscribers` and `evening` are the number and the mean satisfaction
+    /// of the subscribers at the end of the day.
     pub(crate) fn new(
         group: Group,
         day: u32,
@@ -197,27 +199,27 @@ impl SatisfactionEquation {
         }
     }
 
-    /// Returns the number of subscribers in the mean.
+    /// Returns the number of subscribers that the means include.
     pub fn included_subscribers(&self) -> u32 {
         self.today.sums.count
     }
 
-    /// Returns their mean satisfaction before the day; `None` without subscribers.
+    /// Returns the mean satisfaction before the day, or `None` without subscribers.
     pub fn before(&self) -> Option<f64> {
         mean(self.today.sums.before, self.today.sums.count)
     }
 
-    /// Returns their mean satisfaction after the day.
+    /// Returns the mean satisfaction after the day.
     pub fn after(&self) -> Option<f64> {
         mean(self.today.sums.after, self.today.sums.count)
     }
 
-    /// Returns their mean instant satisfaction, the sum of the terms.
+    /// Returns the mean instant satisfaction, which is the sum of the terms.
     pub fn instant(&self) -> Option<f64> {
         mean(self.today.sums.instant, self.today.sums.count)
     }
 
-    /// Returns the mean of a term.
+    /// Returns the mean value of a term on the day.
     pub fn term(&self, term: SatisfactionTerm) -> Option<f64> {
         mean(self.today.sums.terms[term as usize], self.today.sums.count)
     }

@@ -1,4 +1,4 @@
-//! Views show the values that the simulator used: equations of a recorded run, and draws of simulated days.
+//! Inspections show the values that the simulator used, in the equations of a recorded run and the draws of simulated days.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ use novamind_world::state::World;
 
 const COMPARED_DAYS: [u32; 8] = [1, 2, 31, 62, 66, 91, 98, 119];
 
-/// Opens a copy of the recorded run that uses every setting.
+/// Opens a copy of a recorded run in which every setting is used.
 fn recorded_run(place: &Path) -> Session {
     let from = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/recorded/everything");
     let folder = place.join("everything");
@@ -49,11 +49,11 @@ struct ObservedDay {
     delivered: ByGroup<ByPlan<f64>>,
     expectations: ByGroup<Expectation>,
     service_penalty: f64,
-    /// Satisfaction of all subscribers after its change, by block.
+    /// Satisfaction of all subscribers after the daily change, by block.
     satisfaction_updates: BTreeMap<(Group, u32), Vec<f64>>,
     evening: ByGroup<Vec<f64>>,
     reputation: ByGroup<f64>,
-    /// Cancellations with an effect on reputation.
+    /// Number of cancellations that affect reputation, by group.
     gave_up: ByGroup<u32>,
     shared: (f64, f64),
     group_banks: ByGroup<(f64, f64)>,
@@ -61,7 +61,7 @@ struct ObservedDay {
     events: Vec<Event>,
 }
 
-/// Observes the values that the simulator uses, independently of the recorder.
+/// Observes the simulator's values independently of the hidden-day recorder.
 #[derive(Default)]
 struct WorldObserver {
     today: Mutex<ObservedDay>,
@@ -101,7 +101,7 @@ impl DayObserver for WorldObserver {
     }
 }
 
-/// Returns the recorded run and its observed days from day 1.
+/// Returns the recorded run and its observed days, starting with day 1.
 fn run_and_days(place: &Path) -> (Session, Vec<ObservedDay>) {
     let mut session = recorded_run(place);
     let used = Arc::new(WorldObserver::default());
@@ -139,7 +139,7 @@ fn quality_equation_equals_delivered_quality_bit_for_bit() {
                 gains.opening + gains.research + gains.development + gains.noise,
                 quality_equation.shared,
             );
-            // The noise of a day has a standard deviation of 0.001.
+            // The daily noise has a standard deviation of 0.001.
             assert!(gains.noise.abs() < 0.005 * f64::from(day).sqrt(), "{gains:?}");
             researched += u32::from(gains.research > 0.0);
         }
@@ -256,7 +256,7 @@ fn competitor_and_drift_state_match_the_world_and_next_move_occurs() {
         assert_eq!(moves, used.events);
         let coming = last.iter().find(|event| event.day > day);
         assert_eq!(rivals.next_move.as_ref().and_then(|next| next.outcome), coming.copied());
-        // The fixed next move equals the simulated one.
+        // The predicted next move equals the simulated move.
         let permit = InspectionPermit::start(&mut session, "streams", "rivals", None).expect("a look");
         let (params, streams) =
             (permit.hidden_state(&session).params(), permit.hidden_state(&session).streams());
@@ -317,7 +317,7 @@ const DRAWN_DAYS: u32 = 150;
 
 #[test]
 fn next_day_makes_the_predicted_draws() {
-    // A world with a demand surge.
+    // Find a world with a demand surge.
     let surges = |seed: &u64| {
         let streams = Streams::new(*seed);
         (1..=DRAWN_DAYS).any(|day| surge_on_day(day, &Params::bundled(), &streams).is_some())
@@ -398,7 +398,7 @@ fn assert_effects_match_day(
                 let (law, service) = (&params.operations, facts.service.expect("a service"));
                 let spend = world.settings.core.operations;
                 assert_eq!(service.outage, *above < outage_probability(spend, service.overload, law));
-                // An outage draws its length before latency and errors.
+                // If an outage occurs, its length is drawn before latency and errors.
                 let at = 1 + usize::from(service.outage);
                 assert_eq!(service.p95_ms, p95_latency(service.overload, keyed_draws.draws[at].normal, law));
                 assert_eq!(

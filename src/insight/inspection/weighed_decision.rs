@@ -1,4 +1,4 @@
-//! The decision of an individual by term, and the terms without which it would have been different.
+//! The decision of an individual by term, and the terms that determined the decision.
 
 use serde::Serialize;
 
@@ -8,42 +8,43 @@ use novamind_world::params::Params;
 use novamind_world::quality::Experience;
 use novamind_world::retention::plan_comparison::PlanComparison;
 
-/// A plan, as an individual evaluates it on a billing day.
+/// An individual's evaluation of a plan on a billing day.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct RenewalPlanTerms {
-    /// Price after the ongoing discount, dollars a month.
+    /// Price after the ongoing discount, $ per month.
     pub price: f64,
-    /// The terms of its perceived quality.
+    /// Terms of the perceived quality.
     #[serde(flatten)]
     pub experience: Experience,
-    /// Perceived quality.
+    /// Perceived quality of the plan.
     pub quality: f64,
-    /// Required quality at the price.
+    /// Required quality at the plan's price.
     pub required: f64,
-    /// Surplus: perceived minus required quality.
+    /// Perceived quality minus required quality.
     pub surplus: f64,
-    /// Whether the price is within the budget. A plan is acceptable if it is and the surplus is at least 0.
+    /// Whether the plan's price is within the budget. An acceptable plan is within the budget and has a surplus of at
+    /// least 0.
     pub within_budget: bool,
 }
 
-/// An input of a decision that can be removed.
+/// An input of a decision. The decision can be evaluated without the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DecisionTerm {
-    /// Open issue.
+    /// Effect of an open issue.
     Issue,
-    /// In-app ads.
+    /// Effect of in-app advertising.
     Ads,
-    /// A quota below the demand.
+    /// Effect of a quota below the demand.
     Quota,
-    /// Relationship, positive or negative.
+    /// Effect of the relationship to the company.
     Relationship,
-    /// Tenure.
+    /// Effect of the tenure of the subscription.
     Tenure,
-    /// Service of the day.
+    /// Effect of the day's outages and overload.
     Service,
-    /// Market addition to the individual's curve.
+    /// Increase of the required quality by drift and competitors.
     Expectations,
-    /// Drift of budgets.
+    /// Drift of the budget.
     Budgets,
     /// Effect of the economy on the budget.
     Economy,
@@ -52,7 +53,7 @@ pub enum DecisionTerm {
 }
 
 impl DecisionTerm {
-    /// All terms.
+    /// All decision terms.
     pub const ALL: [DecisionTerm; 10] = [
         DecisionTerm::Issue,
         DecisionTerm::Ads,
@@ -66,7 +67,8 @@ impl DecisionTerm {
         DecisionTerm::Prices,
     ];
 
-    /// Returns the decision without the term, or `None` if the term has no effect. `last_bill` contains the prices of the last bill.
+    /// Returns the decision that the individual would make without the term, or `None` if the term has no effect.
+    /// `last_bill` contains the price of each plan at the last bill.
     fn without_term(
         self,
         weighing: &PlanComparison,
@@ -90,31 +92,31 @@ impl DecisionTerm {
     }
 }
 
-/// The decision without one term.
+/// A decisive term, with the decision that the individual would make without the term.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecisiveTerm {
-    /// The term.
+    /// The term that is removed.
     pub term: DecisionTerm,
-    /// Best plan with its surplus; `None` if no plan is acceptable.
+    /// Best plan without the term, with its surplus; `None` if no plan is acceptable.
     pub plan: Option<(Plan, f64)>,
 }
 
-/// An evaluated decision.
+/// An evaluated decision of an individual.
 #[derive(Debug, Clone)]
 pub struct WeighedDecision {
-    /// The plans.
+    /// Evaluation of each plan.
     pub plans: ByPlan<RenewalPlanTerms>,
-    /// The curve with market expectations and the economy.
+    /// Participation curve, including market expectations and the economy.
     pub curve: Curve,
-    /// Best acceptable plan.
+    /// Best acceptable plan; `None` if no plan is acceptable.
     pub choice: Option<Plan>,
-    /// Terms that change the decision when removed alone: from cancelling to staying, by descending surplus, or from staying to
-    /// cancelling.
+    /// Terms that reverse the decision to stay or cancel when one of them is removed. If the decision is to cancel,
+    /// sorted by descending surplus.
     pub decisive_terms: Vec<DecisiveTerm>,
 }
 
 impl WeighedDecision {
-    /// Decomposes an evaluated decision.
+    /// Computes the terms of a decision from a comparison of plans.
     pub(crate) fn new(
         weighing: &PlanComparison,
         last_bill: Option<&ByPlan<f64>>,
@@ -165,7 +167,7 @@ mod tests {
     use novamind_world::settings::PerGroup;
     use novamind_world::state::World;
 
-    /// A decision: plan at the start of the day, whether satisfaction was negative, evaluation.
+    /// A decision: the plan at the start of the day, whether satisfaction was negative, and the evaluation.
     struct ObservedDecision {
         plan: Plan,
         is_unhappy: bool,
@@ -193,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Plays a company with many subscribers and frequent changes of prices, quotas and ads.
+    /// Changes prices, quotas and ads frequently in a company with many subscribers.
     fn change_settings(world: &mut World, day: u32) {
         let step = f64::from(day % 11);
         let core = &mut world.settings.core;
@@ -249,7 +251,7 @@ mod tests {
         assert!(left > 2000 && switched > 2000 && turned_by_issue > 0, "{left} {switched} {turned_by_issue}");
     }
 
-    /// Asserts that the shown terms of a plan add up to the compared value, bit for bit.
+    /// Asserts that the terms of each plan add up bit for bit to the value that the simulator compared.
     fn assert_terms_add_up(weighed: &WeighedDecision) {
         for plan_terms in weighed.plans.iter() {
             let Experience { delivered, relationship, tenure, quota, issues, ads } = plan_terms.experience;

@@ -1,4 +1,4 @@
-//! Creation of a separate run from a branch with edited decisions.
+//! Creation of a run from a what-if branch with edited decisions.
 
 use std::ops::ControlFlow;
 
@@ -17,21 +17,22 @@ use novamind_session::{Session, StagedBranch, not_saved_error, unreadable_record
 use novamind_tools::{Rejection, ToolId};
 use novamind_world::customers::customer_numbers::CustomerNumbers;
 
-/// A branch that was played up to the current day of its run.
+/// A branch that was simulated up to the current day of its parent run.
 pub struct AdoptedBranch {
-    /// The branch.
+    /// The session of the branch.
     pub session: Session,
     /// Rejected calls and parameter changes: day, tool or key, reason.
     pub rejected: Vec<(u32, String, Rejection)>,
 }
 
-/// Creates a branch at the start of a week, counted from 1, and repeats the decisions of the run with some edits. Calls are made
-/// again, rationales are copied, and forecasts are naive. `progress` is called once per simulated day and can stop the simulation
+/// Creates a branch at the start of a week and repeats the later decisions of the run with edits. `week` is counted
+/// from 1. Calls are executed again, rationales are copied, and forecasts are naive. `progress` is called once per
+/// simulated day and can stop the simulation
 /// at the end of a week.
 ///
 /// # Errors
-/// As for [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. No branch exists after an error, or if the program
-/// ends during the simulation.
+/// Same errors as [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. After an error, or if the
+/// program ends during the simulation, no branch is created.
 pub fn create_branch_with_decisions(
     run: &Session,
     week: u32,
@@ -58,7 +59,7 @@ pub fn create_branch_with_decisions(
         |refusal: Rejection| if refusal.code == "not_saved" { branch_rejection(refusal) } else { refusal };
     let branch = StagedBranch::stage(run, week, mode).map_err(no_room)?;
     let mut session = branch.open().map_err(|error| branch_rejection(not_saved_error(error)))?;
-    // Repeated posts keep their recorded scores.
+    // Posts that are repeated keep their recorded scores.
     session.set_inherited_scores(later.iter().filter_map(judged_post).collect());
     let (settings, params) = (session.settings(), session.params());
     let opening = BranchStart { day: from, settings, params, mode };
@@ -66,7 +67,7 @@ pub fn create_branch_with_decisions(
     let is_moved =
         run.lesson().is_some_and(|lesson_progress| lesson_progress.current_part().has_automatic_capacity());
     if is_moved && !decided.is_empty() && edits.capacity_rule.is_none() {
-        // The branch is not a lesson, so the automatic capacity changes of the lesson are applied here.
+        // The branch is not a lesson, so this rule replaces the automatic capacity changes of the lesson.
         let followed = UsageBasedCapacity { rule: UsageCapacityRule::StepByStep, from_day: from };
         follow_usage_with_capacity(followed, &mut edits, &known);
     }
@@ -74,7 +75,7 @@ pub fn create_branch_with_decisions(
         BranchAdoption { session, rejected: Vec::new(), recorded_numbers: run.company().customer_numbers() };
     adopted.replay_lines(&later, &edits, progress);
     let BranchAdoption { mut session, rejected: refused, .. } = adopted;
-    // Disk or memory is insufficient: an incomplete branch is not kept.
+    // If disk space or memory is insufficient, the incomplete branch is deleted.
     let ends_it = |refusal: &&Rejection| ["not_saved", "too_many_leads"].contains(&refusal.code);
     if let Some(refusal) = refused.iter().map(|(_, _, refusal)| refusal).find(ends_it) {
         return Err(branch_rejection(refusal.clone()));
@@ -87,7 +88,7 @@ pub fn create_branch_with_decisions(
     })
 }
 
-/// Returns the language model's scores of a post, if an event contains them.
+/// Returns the language model's scores of a post, if the event contains scores.
 fn judged_post(line: &Line) -> Option<JudgedPost> {
     match &line.record {
         Record::Voice(VoiceAnswer::Scores(judged)) => Some(judged.clone()),
@@ -104,7 +105,7 @@ fn branch_rejection(refusal: Rejection) -> Rejection {
 struct BranchAdoption<'a> {
     session: Session,
     rejected: Vec<(u32, String, Rejection)>,
-    /// Maps customer numbers of the run.
+    /// Customer numbers of the run.
     recorded_numbers: &'a CustomerNumbers,
 }
 
@@ -118,7 +119,7 @@ impl BranchAdoption<'_> {
         for (tool, args) in &edits.initial_calls {
             self.apply_call(*tool, args);
         }
-        // The closing event of a week includes the days after its starting event.
+        // The end event of a week covers the days since the start event of the week.
         let mut is_begun = false;
         for line in later {
             if self.session.ended().is_some() {
@@ -169,7 +170,7 @@ impl BranchAdoption<'_> {
         }
     }
 
-    /// Applies added parameters and calls of this day, and capacity that follows usage.
+    /// Applies the added parameters and calls of the current day, and the usage-based capacity.
     fn apply_additions(&mut self, edits: &Edits) {
         let day = self.session.day();
         for setting in edits.added_settings.iter().filter(|setting| setting.day == day) {

@@ -1,4 +1,4 @@
-//! Comparison of branches of a run.
+//! Comparison of a run with its alternatives.
 
 use serde_json::Value;
 
@@ -11,69 +11,70 @@ use novamind_session::engine::value_to_json;
 use novamind_tools::{Rejection, ToolId, ToolKind};
 use novamind_world::events::DayFigures;
 
-/// Branches of a run with the same random draws.
+/// Figures of the unchanged run and of alternatives with the same random draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchComparison {
     /// Day on which the branches start: the start of the requested week.
     pub from: u32,
-    /// Last simulated day.
+    /// Last simulated day of the branches.
     pub until: u32,
-    /// Last day of the record. Later days have no decisions and keep the settings.
+    /// Last recorded day. Later days have no decisions, so their settings do not change.
     pub recorded_until: u32,
-    /// The unchanged run, then each alternative.
+    /// The unchanged run, followed by each alternative.
     pub branches: Vec<BranchFigures>,
-    /// Figures that the player may see.
+    /// Figures that the player may see in the comparison.
     pub figures: Vec<BranchFigure>,
 }
 
-/// The results of a branch.
+/// The results of one branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchFigures {
-    /// The edits; empty for the unchanged run.
+    /// Edits of the branch; empty for the unchanged run.
     pub edits: Vec<DecisionEdit>,
-    /// Last day of each week, in ascending order.
+    /// Last day of each simulated week, in ascending order.
     days: Vec<u32>,
-    /// Figures on those days.
+    /// Values of the figures at the end of each week.
     weeks: Vec<FigureValues>,
-    /// Calls that differ from those of the run, by day.
+    /// Calls that differ from the calls of the run, sorted by day.
     pub call_differences: Vec<CallDifference>,
-    /// Parameter changes that differ from those of the run, by day.
+    /// Parameter changes that differ from the changes of the run, sorted by day.
     pub parameter_differences: Vec<ParameterDifference>,
     /// Rejected calls and parameter changes: day, tool or key, reason.
     pub rejected: Vec<(u32, String, Rejection)>,
-    /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. They are not made.
+    /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. The branch does not
+    /// execute these calls.
     pub newly_accepted: Vec<(u64, u32, ToolId)>,
-    /// First day at whose end the company differs from the unchanged run; `None` if it never differs.
+    /// First day at whose end the branch differs from the unchanged run; `None` if it never differs.
     pub first_different_day: Option<u32>,
 }
 
-/// A call that differs.
+/// A call that differs between the run and the branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CallDifference {
-    /// Decision day.
+    /// Decision day of the call.
     pub day: u32,
-    /// Tool.
+    /// Called tool.
     pub tool: ToolId,
-    /// Line in the run; `None` for an added call.
+    /// Line of the call in the record of the run; `None` for an added call.
     pub seq: Option<u64>,
-    /// Arguments in the run.
+    /// Arguments in the run; `None` for an added call.
     pub recorded: Option<Value>,
-    /// Arguments in the branch; `None` if the call is not made.
+    /// Arguments in the branch; `None` if the branch omits the call.
     pub edited: Option<Value>,
-    /// For an added call: day and line of the run's next call of the same tool.
+    /// For an added call: day and line of the next call of the same tool in the run.
     pub next_recorded: Option<(u32, u64)>,
 }
 
-/// A parameter change that differs from the run.
+/// A parameter change that differs between the run and the branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterDifference {
-    /// Day from which it applies.
+    /// Day from which the change applies.
     pub day: u32,
-    /// Full key.
+    /// Full key of the parameter.
     pub key: String,
-    /// Value that the run sets, if any.
+    /// Value that the run sets; `None` if only the branch sets the parameter.
     pub recorded: Option<Value>,
-    /// Value that the branch sets, if any.
+    /// Value that the branch sets; `None` if only the run sets the parameter.
     pub edited: Option<Value>,
 }
 
@@ -109,17 +110,17 @@ impl BranchFigures {
         }
     }
 
-    /// Returns a figure at the end of each week, as pairs of day and value.
+    /// Returns the values of a figure at the end of each week, as pairs of day and value.
     pub fn values_by_week(&self, figure: BranchFigure) -> impl Iterator<Item = (u32, f64)> {
         self.days.iter().zip(&self.weeks).map(move |(day, values)| (*day, values[figure as usize]))
     }
 
-    /// Returns a figure at the end of the week that ends on `day`, or `None` if the branch ended earlier.
+    /// Returns the value of a figure at the end of the week that ends on `day`, or `None` if the branch ended earlier.
     pub fn value(&self, figure: BranchFigure, day: u32) -> Option<f64> {
         self.values_by_week(figure).find(|(number, _)| *number == day).map(|(_, value)| value)
     }
 
-    /// Returns the last simulated day.
+    /// Returns the last simulated day of the branch.
     pub fn last_day(&self) -> Option<u32> {
         self.days.last().copied()
     }
@@ -135,7 +136,7 @@ impl BranchComparison {
     }
 }
 
-/// Returns the difference for a call that the run did not make.
+/// Returns the difference for a call that the run does not contain.
 fn added_call_difference(day: u32, tool: ToolId, args: &Value) -> CallDifference {
     CallDifference { day, tool, seq: None, recorded: None, edited: Some(args.clone()), next_recorded: None }
 }
@@ -167,7 +168,7 @@ fn call_differences(edits: &Edits, moves: &[RecordedStep], from: u32) -> Vec<Cal
     opening.chain(of_run).chain(added).collect()
 }
 
-/// Returns the parameter changes that edits change, by day.
+/// Returns the parameter changes that the edits add or omit, sorted by day.
 fn parameter_differences(edits: &Edits, moves: &[RecordedStep]) -> Vec<ParameterDifference> {
     let dropped = moves.iter().filter_map(|step| match step {
         RecordedStep::Parameter(RecordedSetting { day, change })

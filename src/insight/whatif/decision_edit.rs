@@ -17,51 +17,52 @@ use novamind_world::settings::Settings;
 
 const MAX_FACTOR: f64 = 1000.0;
 
-/// An edit of decisions from the start of a week.
+/// An edit of the decisions from the start of a week on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionEdit {
     /// Multiplies the current and later settings of a tool by a factor from 0 to 1,000.
     Scale {
-        /// The tool.
+        /// Tool whose settings are multiplied.
         tool: ToolId,
-        /// The factor.
+        /// Factor from 0 to 1,000.
         factor: f64,
     },
     /// Omits all calls of a tool and keeps its current settings.
     Keep(ToolId),
-    /// Omits one call or parameter change, by line.
+    /// Omits the call or parameter change in the given line.
     Drop(u64),
-    /// Changes the arguments of one call.
+    /// Changes the arguments of the call in the given line.
     Change {
-        /// Line of the call.
+        /// Line of the edited call.
         seq: u64,
-        /// New arguments.
+        /// New arguments of the call.
         args: Value,
     },
-    /// Adds a call after those of its day.
+    /// Adds a call after the recorded calls of its day.
     Add {
-        /// Week at whose start the call is made, counted from 1; by default the first week of the what-if.
+        /// Week at whose start the call is executed, counted from 1; `None` for the first week of the what-if.
         week: Option<u32>,
-        /// The tool.
+        /// Called tool.
         tool: ToolId,
-        /// The arguments.
+        /// Arguments of the call.
         args: Value,
     },
-    /// Sets a parameter after the calls of the day; debug runs only.
+    /// Sets a parameter after the calls of the day. Only debug runs allow this edit.
     Set {
-        /// Week at whose start the parameter is set, counted from 1; by default the first week of the what-if.
+        /// Week at whose start the parameter is set, counted from 1; `None` for the first week of the what-if.
         week: Option<u32>,
-        /// Full key.
+        /// Full key of the parameter.
         key: String,
-        /// The value.
+        /// New value of the parameter.
         value: Value,
     },
-    /// Ignores calls that set the capacity. At the start of every week, sets the smallest tier that covers the busiest day of the
+    /// Ignores calls that set the capacity. At the start of every week, sets the smallest tier that covers the busiest
+    /// day of the
     /// previous week.
     CapacityFollowsUsage,
 }
 
-/// Converts decision edits to edits of the recorded steps after a day.
+/// Converts decision edits to edits of recorded steps.
 ///
 /// # Errors
 /// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`, and
@@ -95,7 +96,7 @@ impl BranchStart<'_> {
         BranchStart { day: world.day, settings: &world.settings, params, mode }
     }
 
-    /// Returns the first day of the week of an added decision.
+    /// Returns the decision day of an added decision: the day on which its week starts.
     fn decision_day(&self, week: Option<u32>, until: u32) -> Result<u32, Rejection> {
         let (from, days) = (self.day, self.params.run.days_per_week);
         let day = week.map_or(from, |week| week.saturating_sub(1).saturating_mul(days));
@@ -107,14 +108,14 @@ impl BranchStart<'_> {
         Err(Rejection::for_field("week", "week_unknown", message))
     }
 
-    /// Rejects a parameter that cannot be set.
+    /// Rejects a parameter that cannot be set, or that cannot have the given value.
     fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Rejection> {
         require_debug_mode(self.mode)?;
         let in_force = self.params.value(key).map_err(unknown_parameter)?;
         let not_allowed = |problem| Rejection::for_field(key, "parameter_not_allowed", problem);
         if let (Value::String(word), false) = (value, in_force.is_str()) {
             return Err(not_allowed(format!(
-                "{word} is not a valid value of {key}, which is {in_force} now"
+                "{word} is not a valid value of {key}; its current value is {in_force}"
             )));
         }
         let value =
@@ -168,7 +169,7 @@ fn recorded_calls(moves: &[RecordedStep]) -> impl Iterator<Item = &RecordedCall>
     })
 }
 
-/// Lets the capacity follow usage and omits calls that set it.
+/// Adds a rule that adjusts the capacity to usage, and omits calls that set the capacity.
 pub(super) fn follow_usage_with_capacity(
     followed: UsageBasedCapacity,
     edits: &mut Edits,
@@ -187,7 +188,7 @@ fn check_is_call(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
     is_there.then_some(()).ok_or_else(|| unknown_line(seq))
 }
 
-/// Returns the recorded decision of a line.
+/// Rejects a line that is not a recorded decision.
 fn check_is_decision(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
     let is_it =
         |step: &RecordedStep| matches!(step, RecordedStep::Parameter(setting) if setting.change.seq == seq);
@@ -200,7 +201,7 @@ fn unknown_line(seq: u64) -> Rejection {
     Rejection::for_field("line", "line_unknown", message)
 }
 
-/// Multiplies current settings by calls before all others, and changes the numbers of recorded calls.
+/// Multiplies the current settings with calls that precede all others, and multiplies the numbers in recorded calls.
 fn scale_settings(
     tool: ToolId,
     factor: f64,
@@ -210,10 +211,10 @@ fn scale_settings(
 ) {
     let mut in_force = tool.tool().current_arguments(opening.settings);
     if tool == ToolId::SetPrices {
-        // A plan without a price keeps no price.
+        // A plan without a price stays without a price.
         in_force.retain(|_, price| price.as_f64() != Some(0.0));
     }
-    // Settings that the run changes on that day are scaled in its own call.
+    // If a call of the run on the first day sets all values, only this call is scaled.
     let is_set_anew = recorded_calls(moves)
         .filter(|call| call.tool == tool && call.day == opening.day)
         .any(|call| call.accepted && in_force.keys().all(|name| call.args.get(name).is_some()));
@@ -227,7 +228,7 @@ fn scale_settings(
     }
 }
 
-/// Multiplies every number by a factor.
+/// Multiplies every number in a JSON value by a factor.
 fn scale_numbers(value: &Value, factor: f64) -> Value {
     match value {
         Value::Number(number) => {
@@ -241,12 +242,12 @@ fn scale_numbers(value: &Value, factor: f64) -> Value {
     }
 }
 
-/// Rounds to twelve digits, which removes binary rounding errors.
+/// Rounds to twelve significant digits, which removes binary rounding errors.
 fn round_to_12_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// Returns whether the arguments of a tool are amounts that can be multiplied by a factor.
+/// Returns whether the tool's arguments are amounts, which can be multiplied by a factor.
 pub fn is_scalable(tool: ToolId) -> bool {
     let spec = tool.spec();
     let is_amount = |kind: &ArgumentKind| {
@@ -277,7 +278,7 @@ impl Display for DecisionEdit {
     }
 }
 
-/// Example edits for help and error messages.
+/// Examples of edits for help texts and error messages.
 pub const EDIT_SYNTAX: [&str; 7] = [
     "set_prices * 0.9",
     "keep set_daily_spend",
@@ -318,7 +319,7 @@ impl FromStr for DecisionEdit {
     }
 }
 
-/// Parses `set_prices * 0.9`, or a call.
+/// Parses a multiplication, for example `set_prices * 0.9`, or a call.
 fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     let name = text.split(|letter: char| letter.is_whitespace() || letter == '*').next().unwrap_or_default();
     let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else {
@@ -328,7 +329,7 @@ fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     if !is_scalable(tool) {
         let amounts: Vec<&str> =
             ToolId::all().filter(|tool_id| is_scalable(*tool_id)).map(ToolId::name).collect();
-        return Err(format!("{name} has no amounts; a factor works with {}", amounts.join(", ")));
+        return Err(format!("{name} has no amounts; a factor applies only to {}", amounts.join(", ")));
     }
     let factor = factor.trim();
     let number = factor.parse().ok().filter(|number: &f64| (0.0..=MAX_FACTOR).contains(number));
@@ -337,7 +338,7 @@ fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     })
 }
 
-/// Parses `set KEY VALUE`, or a call.
+/// Parses a parameter change, `set KEY VALUE`, or a call.
 fn parse_set_or_call(week: Option<u32>, text: &str) -> Result<DecisionEdit, String> {
     let Some(rest) = text.strip_prefix("set").filter(|rest| rest.starts_with(char::is_whitespace)) else {
         return parse_added_call(week, text);
@@ -361,7 +362,7 @@ fn parse_added_call(week: Option<u32>, call: &str) -> Result<DecisionEdit, Strin
     Ok(DecisionEdit::Add { week, tool, args: parse_arguments(rest, tool.spec().unnamed_argument)? })
 }
 
-/// Parses the name of a tool that can change the company.
+/// Parses a tool name. Rejects tools that cannot change the company.
 fn parse_acting_tool(name: &str) -> Result<ToolId, String> {
     let Some(tool) = find(name) else {
         let near = catalogue::similar_tools(name);

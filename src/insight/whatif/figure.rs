@@ -6,26 +6,27 @@ use novamind_world::events::DayFigures;
 
 const CHURN_WINDOW_DAYS: usize = 30;
 
-/// A figure at the end of a week.
+/// A figure of a branch at the end of a week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BranchFigure {
-    /// Cash, dollars.
+    /// Cash in dollars.
     Cash,
-    /// Monthly recurring revenue, dollars.
+    /// Monthly recurring revenue in dollars.
     RecurringRevenue,
-    /// Active subscriptions of individuals.
+    /// Number of active individual subscriptions.
     Subscribers,
-    /// Seats of active enterprises.
+    /// Number of seats of active enterprises.
     Seats,
-    /// Cancellations of individuals in the last 30 days, as a share of the subscribers before; NaN without subscribers.
+    /// Cancellations of individuals in the last 30 days, as a share of the subscribers 30 days earlier; NaN without
+    /// subscribers.
     Churn,
-    /// Leads of individuals in the week.
+    /// Number of individual leads in the week.
     Leads,
-    /// Individuals who signed up in the week.
+    /// Number of individuals who signed up in the week.
     NewSubscribers,
-    /// Individuals who cancelled in the week.
+    /// Number of individuals who cancelled in the week.
     Cancellations,
-    /// Mean satisfaction of individuals; hidden from the player of an unfinished run.
+    /// Mean satisfaction of individuals, which is hidden in unfinished runs.
     Satisfaction,
 }
 
@@ -46,14 +47,14 @@ impl BranchFigure {
         BranchFigure::Satisfaction,
     ];
 
-    /// Returns the display name.
+    /// Returns the display name of the figure.
     pub fn name(self) -> &'static str {
         match self {
             BranchFigure::Cash => "cash",
             BranchFigure::RecurringRevenue => "recurring revenue",
             BranchFigure::Subscribers => "subscribers",
             BranchFigure::Seats => "enterprise seats",
-            BranchFigure::Churn => "churn of 30 days",
+            BranchFigure::Churn => "30-day churn",
             BranchFigure::Leads => "individual leads a week",
             BranchFigure::NewSubscribers => "new subscribers a week",
             BranchFigure::Cancellations => "cancellations a week",
@@ -61,12 +62,12 @@ impl BranchFigure {
         }
     }
 
-    /// Returns the name in data formats.
+    /// Returns the identifier of the figure in data formats.
     pub fn id(self) -> String {
         self.name().replace(' ', "_")
     }
 
-    /// Returns the unit of the values.
+    /// Returns the unit of the figure.
     pub fn unit(self) -> FigureUnit {
         match self {
             BranchFigure::Cash | BranchFigure::RecurringRevenue => FigureUnit::Dollars,
@@ -82,7 +83,7 @@ impl BranchFigure {
     }
 }
 
-/// Returns the figures at the end of each week of a branch. `earlier` contains the days before its first day.
+/// Returns the figures at the end of each week of a branch. `earlier` contains the days before the branch starts.
 pub(super) fn weekly_values(earlier: &[DayFigures], outcome: &BranchOutcome) -> Vec<FigureValues> {
     let days: Vec<&DayFigures> = earlier.iter().chain(&outcome.days).collect();
     let churn = |last_day: u32| {

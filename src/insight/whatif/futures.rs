@@ -1,29 +1,29 @@
-//! Branches with redrawn random draws: the range of outcomes, and the certainty of differences.
+//! Branches with several futures, which show the range of outcomes and the certainty of differences.
 
 use super::figure::{BranchFigure, FigureValues};
 use novamind_base::statistics::{PairedDifference, quantile_of_sorted};
 
-/// Branches with several futures; all branches have the same futures.
+/// Figures of branches in several futures. All branches have the same futures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Futures {
-    /// Number of futures.
+    /// Number of futures per branch.
     pub count: u32,
-    /// Last day with the random draws of the run.
+    /// Last day that uses the random draws of the run.
     pub redrawn_after: u32,
-    /// Last day of each week from the start of the branches, including weeks after a bankruptcy.
+    /// Last day of each week from the start of the branches. Includes weeks after a bankruptcy.
     days: Vec<u32>,
-    /// Figures by branch, future and week; a future that ended in bankruptcy has fewer weeks.
+    /// Figures by branch, future and week. A future that ends in bankruptcy has fewer weeks.
     branches: Vec<Vec<Vec<FigureValues>>>,
 }
 
 /// The distribution of a figure over several futures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FutureInterval {
-    /// 10th percentile.
+    /// 10th percentile of the values.
     pub low: f64,
-    /// Median.
+    /// Median of the values.
     pub median: f64,
-    /// 90th percentile.
+    /// 90th percentile of the values.
     pub high: f64,
 }
 
@@ -33,7 +33,8 @@ impl Futures {
         Futures { count, redrawn_after, days, branches }
     }
 
-    /// Returns a figure of a branch at the end of the week that ends on `day`, or `None` if no future has a value.
+    /// Returns the distribution of a branch's figure at the end of the week that ends on `day`. Returns `None` if no
+    /// future has a value.
     pub fn interval(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<FutureInterval> {
         let mut values: Vec<f64> =
             self.values(branch, figure, day).into_iter().filter(|value| !value.is_nan()).collect();
@@ -42,7 +43,7 @@ impl Futures {
         Some(FutureInterval { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
     }
 
-    /// Returns a figure of a branch at the end of every week, as pairs of day and distribution.
+    /// Returns the distributions of a branch's figure at the end of every week, as pairs of day and distribution.
     pub fn intervals(
         &self,
         branch: usize,
@@ -51,8 +52,8 @@ impl Futures {
         self.days.iter().filter_map(move |day| Some((*day, self.interval(branch, figure, *day)?)))
     }
 
-    /// Returns the difference of a figure between a branch and the first one at the end of the week that ends on `day`, or `None`
-    /// if no future has a value in both.
+    /// Returns the paired difference of a figure between a branch and the first branch, at the end of the week that
+    /// ends on `day`. Returns `None` if no future has a value in both branches.
     pub fn difference(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<PairedDifference> {
         let pairs = self.values(branch, figure, day).into_iter().zip(self.values(0, figure, day));
         PairedDifference::from_pairs(pairs)
@@ -67,7 +68,7 @@ impl Futures {
         branch_futures.filter(|weeks| weeks.len() < self.days.len() || is_broke(weeks)).count() as u32
     }
 
-    /// Returns a figure in each future, NaN if it has no value.
+    /// Returns the value of a figure in each future, or NaN if the figure has no value.
     fn values(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
         let week = self.days.iter().position(|number| *number == day);
         let value = |weeks: &Vec<FigureValues>| match (week, weeks.last()) {
@@ -79,7 +80,7 @@ impl Futures {
     }
 }
 
-/// Returns a figure of a future after its bankruptcy: cash stays, counts are 0, churn and satisfaction are NaN.
+/// Returns the value of a figure after a bankruptcy: unchanged cash, 0 for counts, NaN for churn and satisfaction.
 fn value_after_end(figure: BranchFigure, last: &FigureValues) -> f64 {
     match figure {
         BranchFigure::Cash => last[figure as usize],

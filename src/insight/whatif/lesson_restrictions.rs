@@ -1,4 +1,4 @@
-//! Restrictions of a what-if in an unfinished lesson: no results before the guess, and no calls of unavailable tools.
+//! Restrictions of a what-if in an unfinished lesson: no results before the guess and no calls of unavailable tools.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use novamind_record::trajectory::Trajectory;
 use novamind_session::unreadable_record;
 use novamind_tools::{Rejection, ToolId};
 
-/// Returns the student's standing in an unfinished lesson, and whether the lesson of the run changes the capacity automatically.
+/// Returns the student's progress in an unfinished lesson, and whether the lesson changes the capacity automatically.
 ///
 /// # Errors
 /// `not_readable`.
@@ -30,7 +30,7 @@ pub(super) fn lesson_state(
     Ok((Some(LessonProgress::from_lines(lesson.into(), part, &trajectory.lines)), moves_capacity))
 }
 
-/// Rejects edits of decisions that the student could not make.
+/// Rejects edits with tools that the lesson has not unlocked.
 ///
 /// # Errors
 /// `not_in_this_lesson`.

@@ -1,4 +1,4 @@
-//! A what-if in a lesson changes the capacity automatically and ends with the step.
+//! A what-if in a lesson changes the capacity automatically and stops at the end of the lesson step.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -12,7 +12,7 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::engine::UsageCapacityRule;
 use novamind_session::{LessonEntry, NewRun, Storage};
 
-/// Starts a company that outgrows its servers in a lesson that changes the capacity.
+/// A lesson with automatic capacity, in which the company outgrows its servers.
 const LESSON_TOML: &str = r#"
 title = "More and more"
 minutes = 5

@@ -1,7 +1,7 @@
 //! What-if: re-simulates days of a run with some decisions changed and all others kept.
 //!
-//! Branches have the random draws of the run, so a difference is exactly the effect of the edit. Futures can be redrawn as well;
-//! then all branches have the same futures.
+//! Branches have the random draws of the run, so a difference is exactly the effect of the edit. Optionally, several
+//! futures are drawn. All branches then have the same futures.
 
 mod adoption;
 mod comparison;
@@ -46,28 +46,28 @@ use novamind_world::events::DayFigures;
 
 /// Maximum number of alternatives in one comparison.
 pub const MAX_ALTERNATIVES: usize = 3;
-/// Minimum number of simulated weeks, limited by the last week of the run.
+/// Minimum number of simulated weeks, unless the run ends earlier.
 const MIN_WEEKS: u32 = 12;
-/// Weeks before the start of the branches that figures over past days use.
+/// Number of weeks before the start of the branches that figures over several days include.
 const LOOKBACK_WEEKS: u32 = 5;
 
-/// Receives the number of simulated days and the total. Can stop the work.
+/// A callback that receives the number of simulated days and the total, and can stop the simulation.
 pub type WhatIfProgressFn<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
-/// Compares a run with branches in which decisions are changed.
+/// Compares a run with branches that have changed decisions.
 pub struct WhatIf {
     folder: PathBuf,
     run: RecordedRun,
     visibility: InputVisibility,
     /// Whether the inspection is recorded, so that hidden figures may be shown.
     shows_hidden: bool,
-    /// The unfinished lesson of the run, if any.
+    /// Progress in the unfinished lesson of the run, if any.
     lesson: Option<LessonProgress>,
-    /// Whether the lesson of the run changes the capacity automatically, as in every branch.
+    /// Whether the lesson of the run changes the capacity automatically. The branches do the same.
     automates_capacity: bool,
 }
 
-/// The recorded days after the start of the branches.
+/// The state at the start of the branches, and the recorded days around it.
 struct BranchPoint {
     start: Arc<MemorySnapshot>,
     earlier: Vec<DayFigures>,
@@ -100,8 +100,8 @@ impl RecordAnalysis for WhatIf {
     }
 }
 
-/// Records an inspection for a what-if that shows true satisfaction. Returns `false` if the run may not be inspected or the event
-/// cannot be written; then the what-if omits the figure.
+/// Records an inspection for a what-if that shows true satisfaction. Returns `false` if the run may not be inspected
+/// or the event cannot be written. The what-if then omits satisfaction.
 pub fn record_what_if_inspection(run: &mut Session, week: u32) -> bool {
     let day = run.day();
     InspectionPermit::start_at_current_state(run, "whatif", &format!("from {week}"), day).is_ok()
@@ -113,13 +113,14 @@ impl WhatIf {
         self.shows_hidden = is_recorded;
     }
 
-    /// Rejects the what-if while the question of a lesson is open.
+    /// Rejects the what-if if the lesson waits for a guess.
     fn check_guess_submitted(&self) -> Result<(), Rejection> {
         let weeks = self.run.last_day() / self.run.days_per_week();
         self.lesson.as_ref().map_or(Ok(()), |lesson| lesson.check_guess_submitted(weeks))
     }
 
-    /// Returns the edits of each branch after checking that the player may make them, or `None` if stopped.
+    /// Returns the edits of each branch after checking that the player may make them. Returns `None` if `progress`
+    /// stopped the simulation.
     fn edits_for_branches(
         &mut self,
         alternatives: &[Vec<DecisionEdit>],
@@ -150,8 +151,8 @@ impl WhatIf {
         Ok(Some((all, edits)))
     }
 
-    /// Applies the capacity rule of the lesson: in the unchanged run after the last recorded day, and in every edited branch that
-    /// has no other rule.
+    /// Applies the capacity rule of the lesson. The unchanged run uses the rule after the last recorded day. An edited
+    /// branch uses the lesson's rule unless its edits define another rule.
     fn apply_lesson_capacity(&self, edits: &mut Edits, decided: &[DecisionEdit], parting: &BranchPoint) {
         let rule = UsageCapacityRule::StepByStep;
         match (decided.is_empty(), edits.capacity_rule) {
@@ -166,10 +167,10 @@ impl WhatIf {
         }
     }
 
-    /// Returns the decisions of the run from the start of a week, which edits can change.
+    /// Returns the decisions of the run from the start of a week on. Edits can change these decisions.
     ///
     /// # Errors
-    /// `week_unknown`, and `guess_first` while the question of a lesson is open.
+    /// `week_unknown`, and `guess_first` if the lesson waits for a guess.
     pub fn decisions(&self, week: u32) -> Result<Vec<RecordedDecision>, Rejection> {
         self.check_guess_submitted()?;
         let from = self.first_day_of_week(week)?;
@@ -184,11 +185,11 @@ impl WhatIf {
             .collect())
     }
 
-    /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] if a number of futures is given. Returns `None`
-    /// if stopped.
+    /// Returns the result of [`WhatIf::compare`], and the result of [`WhatIf::futures`] if a number of futures is
+    /// given. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// As for [`WhatIf::compare`].
+    /// Same errors as [`WhatIf::compare`].
     pub fn compare_with_futures(
         &mut self,
         (week, until_week): (u32, Option<u32>),
@@ -204,12 +205,13 @@ impl WhatIf {
         Ok(drawn.map(|drawn| (compared, Some(drawn))))
     }
 
-    /// Compares the unchanged run and up to three alternatives, from the start of a week to the end of another. By default the last
-    /// week is the last recorded one, but at least twelve weeks are simulated. Returns `None` if stopped.
+    /// Compares the unchanged run with up to three alternatives, from the start of one week to the end of another
+    /// week. By default the last recorded week is the last week, but at least twelve weeks are simulated. Returns
+    /// `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished lesson
-    /// `guess_first` while its question is open, and `not_in_this_lesson` for an unavailable tool.
+    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished
+    /// lesson `guess_first` if the lesson waits for a guess, and `not_in_this_lesson` for an unavailable tool.
     pub fn compare(
         &mut self,
         week: u32,
@@ -257,11 +259,11 @@ impl WhatIf {
         }))
     }
 
-    /// Compares the branches with redrawn futures. Random draws are redrawn after the last recorded day if the branches continue
-    /// beyond it, otherwise from the start of the branches. Returns `None` if stopped.
+    /// Simulates the branches with several futures. New random draws start after the last recorded day if the branches
+    /// continue beyond it, otherwise at the start of the branches. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// As for [`WhatIf::compare`].
+    /// Same errors as [`WhatIf::compare`].
     pub fn futures(
         &mut self,
         week: u32,
@@ -309,7 +311,7 @@ impl WhatIf {
         self.run.days_per_week()
     }
 
-    /// Returns the day on which a week starts, if recorded days end on it.
+    /// Returns the first decision day of a week, if the week starts at the end of a recorded day.
     fn first_day_of_week(&self, week: u32) -> Result<u32, Rejection> {
         let days = self.run.days_per_week();
         let day = week.checked_sub(1).map(|earlier| earlier.saturating_mul(days));
@@ -324,8 +326,8 @@ impl WhatIf {
         }
     }
 
-    /// Returns the last day that can be simulated, and a name for its end. In an unfinished lesson it is the end of the step, because
-    /// the next step can ask for the outcome.
+    /// Returns the last day that can be simulated, with a name for this day. An unfinished lesson stops at the end of
+    /// the current step, because the next step can ask for the outcome.
     fn horizon(&self) -> (u32, &'static str) {
         let (days, last) = (self.run.days_per_week(), self.run.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {
@@ -358,7 +360,7 @@ impl WhatIf {
                 let message = format!("a what-if from week {week} cannot end with week {last}");
                 return Err(Rejection::for_field("until", "week_unknown", message));
             }
-            // A record can end within a week, but figures need complete weeks.
+            // The record can end within a week, but the figures need complete weeks.
             None => {
                 let last_end = self.run.last_day().div_ceil(days) * days;
                 last_end.max(from + MIN_WEEKS * days).min(horizon)
@@ -381,14 +383,14 @@ impl WhatIf {
 }
 
 impl BranchPoint {
-    /// Returns the last day of each week.
+    /// Returns the last day of each week of the run.
     fn week_ends(&self, days_per_week: u32) -> Vec<u32> {
         let from = self.start.world.day;
         let weeks = (self.until - from).div_ceil(days_per_week);
         (1..=weeks).map(|week| (from + week * days_per_week).min(self.until)).collect()
     }
 
-    /// Returns the usage of the week before the branches start.
+    /// Returns the figures of the week before the branches start, for their usage.
     fn week_before(&self, days_per_week: u32) -> Option<WeekFigures> {
         let from = self.earlier.len().checked_sub(days_per_week as usize)?;
         let mut week = WeekFigures::default();
@@ -396,8 +398,8 @@ impl BranchPoint {
         Some(week)
     }
 
-    /// Returns the last day on which a call names a customer who came after the start of the branches. Such customers have other
-    /// numbers in a branch with more or fewer customers.
+    /// Returns the last day on which a call names a customer who arrived after the start of the branches. The number
+    /// of such a customer differs in a branch with more or fewer customers.
     fn last_day_naming_new_customers(&self, edits: &[Edits]) -> Option<u32> {
         let first_new = self.start.world.customers.next_customer;
         let is_met = |tool, args| highest_customer(tool, args) >= Some(first_new);
@@ -418,7 +420,7 @@ impl BranchPoint {
         kept.chain(changed.map(|call| call.day)).chain(added.map(|call| call.day)).max()
     }
 
-    /// Simulates the days with each of several edits. Returns `None` if stopped.
+    /// Simulates the days once with each of the edits. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
     /// `too_many_leads` if a day of a branch exceeds the limits of memory.
@@ -459,7 +461,7 @@ fn latest_difference_day(one: &BranchOutcome, other: &BranchOutcome) -> Option<u
     (one.day != other.day || one.part_hashes() != other.part_hashes()).then_some(one.day.max(other.day))
 }
 
-/// The decision edits of each branch, the unchanged run first, and the resulting edits of recorded steps.
+/// Decision edits of each branch, starting with the unchanged run, and the resulting edits of recorded steps.
 type BranchEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
 
 fn build_branch_edits(

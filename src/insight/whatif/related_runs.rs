@@ -1,4 +1,4 @@
-//! The tree of related runs: the start of each branch, its first different decision, and its current state.
+//! The tree of related runs. Each branch is shown with its first week, its first different decision, and its current state.
 
 use std::path::Path;
 
@@ -11,23 +11,23 @@ use novamind_record::trajectory::record::Parent;
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_session::week_of;
 
-/// A run in the tree.
+/// A run in the tree of related runs.
 #[derive(Debug, Clone)]
 pub struct RelatedRun {
-    /// Current state of the run.
+    /// Summary of the run.
     pub run: RunSummary,
     /// Number of branches between the run and the root; 0 for the root.
     pub depth: usize,
-    /// Week at whose start the branch begins; `None` for the root.
+    /// Week at whose start the branch begins, counted from 1; `None` for the root.
     pub branched_in_week: Option<u32>,
     /// First decision that only the branch or only its parent made.
     pub first_change: Option<FirstChange>,
 }
 
-/// The origin of a branch.
+/// The parent of a branch, and the first difference between branch and parent.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BranchOrigin {
-    /// The parent run.
+    /// ID of the parent run.
     pub run: String,
     /// Week at whose start the branch begins.
     pub week: u32,
@@ -38,9 +38,9 @@ pub struct BranchOrigin {
 /// The first decision that differs between a branch and its parent.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FirstChange {
-    /// Decision day.
+    /// Decision day of the change.
     pub day: u32,
-    /// Tool, or parameter.
+    /// Name of the tool or parameter.
     pub what: String,
     /// Whether the parent made the decision and the branch did not.
     pub is_left_out: bool,
@@ -53,7 +53,7 @@ pub fn branch_origin(folder: &Path) -> Option<BranchOrigin> {
     Some(BranchOrigin { run: parent.run, week, first_change })
 }
 
-/// Returns the week in which the run in a folder branched, and the first decision that only one of both runs made.
+/// Returns the week in which a run branched from its parent, and the first decision that only one of the two runs made.
 fn branch_week_and_change(folder: &Path, parent: &Parent) -> Option<(u32, Option<FirstChange>)> {
     let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
     let branch_lines = lines(folder)?;
@@ -65,7 +65,8 @@ fn branch_week_and_change(folder: &Path, parent: &Parent) -> Option<(u32, Option
     Some((week, change))
 }
 
-/// Returns the first decision that only one of branch and parent made on its day, up to the last day that both have reached.
+/// Returns the first decision that only the branch or only its parent made on a day, up to the last day that both runs
+/// have reached.
 fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
     let one = |line: &Line| decision_of_line(line).map(|(what, how)| (line.day, what.to_owned(), how));
     let branch_decisions: Vec<_> = lines.iter().filter_map(one).collect();
@@ -77,7 +78,7 @@ fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Opt
         is_left_out,
     };
     let new = branch_decisions.iter().find(|one| !parent_decisions.contains(one)).map(|one| of(one, false));
-    // The current day of the branch is still open for decisions.
+    // The branch can still make decisions on its current day, so this day is not compared.
     let left_out = parent_decisions
         .iter()
         .find(|one| one.0 < until && !branch_decisions.contains(one))
@@ -88,7 +89,7 @@ fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Opt
     }
 }
 
-/// Returns the decision of an event: tool or parameter, with arguments or value.
+/// Returns the decision that an event records: a tool with its arguments or a parameter with its value.
 fn decision_of_line(line: &Line) -> Option<(&str, Value)> {
     if let Record::Override(setting) = &line.record {
         return Some((&setting.key, setting.new.clone()));
@@ -97,9 +98,9 @@ fn decision_of_line(line: &Line) -> Option<(&str, Value)> {
     call.tool.tool_id()?.spec().kind.changes_company().then(|| (call.tool.name(), call.args.clone()))
 }
 
-/// Returns the tree of a run in a folder of runs, in pre-order from the root. Unreadable runs are omitted.
+/// Returns the tree that contains a run, in pre-order from the root. Unreadable runs are omitted.
 pub fn related_runs(runs: &Path, id: &str) -> Vec<RelatedRun> {
-    // A copied folder contains the same run.
+    // A copied folder contains a run that is already listed.
     let once = list_runs(runs).into_iter().flatten().filter(|run| run.copy_of.is_none());
     let all: Vec<RunNode> = once.filter_map(|run| read_node(runs, run)).collect();
     let parent_of = |id: &str| {

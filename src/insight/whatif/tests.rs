@@ -1,4 +1,4 @@
-//! Branches equal runs with the same decisions; futures share their random draws; hidden state stays hidden.
+//! Branches equal runs with the same decisions. Futures share their random draws. Hidden state stays hidden.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -35,7 +35,7 @@ fn compare(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchComp
     compared.expect("an answer").expect("it is not stopped")
 }
 
-/// Plays a run with decisions in weeks 1, 5 and 8, and starts a project twice.
+/// Plays a run with decisions in weeks 1, 5 and 8 that starts a project twice.
 fn play_run(runs: &Path, mode: Mode) -> Session {
     let mut session = play_weeks(runs, mode, 3, Some(("set_prices", json!({"B": 30}))));
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect("a project");
@@ -58,7 +58,7 @@ fn unchanged_branch_equals_the_run() {
         branch.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect::<Vec<_>>()
     };
     assert_eq!(curve(was), cash);
-    // These weeks have no changed settings, so keeping them changes nothing.
+    // No setting changes in these weeks, so keeping the settings has no effect.
     assert_eq!((curve(same), same.first_different_day, same.call_differences.len()), (cash, None, 0));
     let left = was.value(BranchFigure::Churn, session.day()).expect("a value");
     let days = session.weeks().len();
@@ -154,7 +154,7 @@ fn futures_share_draws_across_branches_and_calls() {
     let futures = asked(&mut what_if);
     assert_eq!((futures.count, futures.redrawn_after), (5, session.day()));
     assert_eq!(asked(&mut what_if), futures);
-    // There are no decisions after the record, so keeping the settings changes nothing.
+    // No decisions follow the record, so keeping the settings has no effect.
     let difference = |branch, figure| futures.difference(branch, figure, 91).expect("pairs");
     let same = difference(2, BranchFigure::Cash);
     assert_eq!(
@@ -330,7 +330,7 @@ fn edited_parameter_equals_a_parameter_set_in_a_run() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_run(runs.path(), Mode::Debug);
     let alternative = &["set group.S1.c_max_mean 200", "in 7 set satisfaction.satisfaction_ema_alpha 0.9"];
-    // A branch in which the same parameters are set manually.
+    // Create a branch and set the same parameters manually.
     let mut by_hand = session.branch(5, Mode::Debug).expect("a branch");
     let recorded: Vec<_> = open_what_if(&session).decisions(5).expect("decisions");
     for week in 5..=session.day() / 7 {
@@ -373,7 +373,7 @@ fn edited_parameter_equals_a_parameter_set_in_a_run() {
     );
     let adopted = adopt(&session, 5, alternative);
     assert_eq!(adopted.state_hash(), by_hand.state_hash());
-    // Branches of a branch can omit its parameter changes.
+    // A what-if of the branch can omit the parameter changes of the branch.
     let lines =
         Trajectory::read(&adopted.folder().expect("a folder").join("trajectory.jsonl")).expect("lines").lines;
     let set: Vec<String> = lines
@@ -420,7 +420,7 @@ fn adoption_replays_single_days() {
     assert_eq!((same.day(), same.state_hash()), (session.day(), session.state_hash()));
 }
 
-/// Plays a run that answers every waiting enterprise each week.
+/// Plays a run in which every waiting enterprise is answered each week.
 fn run_with_offers(runs: &Path) -> Session {
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
     let mut session = play_weeks(runs, Mode::Debug, 3, None);
@@ -443,7 +443,7 @@ fn run_with_offers(runs: &Path) -> Session {
     session
 }
 
-/// Returns the enterprises with offers as day, group and number in the group, and their customer numbers.
+/// Returns the enterprises that received offers: day, group and number in the group, and the customer numbers.
 fn sent_offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
     let numbers = session.company().customer_numbers();
     let path = session.folder().expect("a folder").join("trajectory.jsonl");

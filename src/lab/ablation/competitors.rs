@@ -1,16 +1,16 @@
-//! Competitor settings of the two axes: copying and draining.
+//! Competitor settings of the copying axis and of the draining axis.
 
 use crate::experiment::Arm;
 use crate::policy::Policy;
 
-/// The competitor behavior of an arm.
+/// The behavior of competitors in one arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CompetitorSetting {
-    /// Name in tables.
+    /// Name of the setting in tables.
     pub name: &'static str,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: &'static str,
-    /// Minimum and maximum share of a targeted bank that an event drains; `None`: from the scenario.
+    /// Minimum and maximum share of a targeted bank that an event drains; `None` keeps the values of the scenario.
     drain_range: Option<(&'static str, &'static str)>,
 }
 
@@ -22,7 +22,7 @@ const fn drain_setting(name: &'static str, least: &'static str, most: &'static s
     CompetitorSetting { name, scenario: "default", drain_range: Some((least, most)) }
 }
 
-/// Settings of the copying axis, from no competitors to hard ones.
+/// Settings of the copying axis, from no competitors to hard competitors.
 pub const COPY_SETTINGS: [CompetitorSetting; 7] = [
     scenario_setting("off", "competitor-off"),
     scenario_setting("stationary", "competitor-stationary"),
@@ -43,7 +43,7 @@ pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
     drain_setting("drain to 0.2", "0.0", "0.2"),
 ];
 
-/// Name of the arm that the others are compared with.
+/// Returns the index of the arm with which the others are compared.
 pub fn reference_arm(settings: &[CompetitorSetting]) -> usize {
     settings.iter().position(|competitor_setting| competitor_setting.name == "default").unwrap_or(0)
 }

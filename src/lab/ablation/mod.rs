@@ -1,4 +1,5 @@
-//! Effect of competitors that copy shared development and drain targeted development (docs/laboratory/ablation.md).
+//! The ablation: the effect of competitors that copy shared development and drain targeted development
+//! (docs/laboratory/ablation.md).
 
 mod competitors;
 mod probes;

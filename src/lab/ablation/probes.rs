@@ -1,10 +1,10 @@
-//! Policies that play against the competitor settings.
+//! Policies that are played against the competitor settings.
 
 use crate::baseline::{PAPER_GRID, PolicyGrid};
 use crate::policy::{Policy, PolicyError, RuleBased};
 use novamind_world::params::ParameterSource;
 
-/// Returns the probe that buys general development only.
+/// Returns the probe policy that buys only general development.
 ///
 /// # Errors
 /// Fails if the bundled file is invalid.
@@ -12,7 +12,7 @@ pub fn shared_development_probe() -> Result<Policy, PolicyError> {
     parse_bundled("shared", include_str!("../../../configs/probes/shared.toml"))
 }
 
-/// Returns the probe that buys targeted development for one group.
+/// Returns the probe policy that buys targeted development for one group.
 ///
 /// # Errors
 /// Fails if the bundled file is invalid.
@@ -24,8 +24,8 @@ fn parse_bundled(name: &str, text: &str) -> Result<Policy, PolicyError> {
     Policy::parse(&ParameterSource { name: format!("configs/probes/{name}.toml"), text: text.to_owned() })
 }
 
-/// Returns the policies of the short horizon: the paper's best configuration, and the configuration that
-/// advertises from the first day.
+/// Returns the policies of the short runs: the paper's best configuration, and the configuration that advertises from
+/// the first day.
 ///
 /// # Errors
 /// Fails if a bundled grid is invalid.

@@ -1,4 +1,4 @@
-//! Tables and graphs of the ablation: figures by arm, paired differences between neighboring arms, curves.
+//! Tables and graphs of the ablation: figures by arm, paired differences between adjacent arms, and curves.
 
 use super::competitors::{CompetitorSetting, reference_arm};
 use crate::experiment::{ExperimentResults, RunResult};
@@ -10,35 +10,36 @@ use novamind_report::pluralize;
 
 /// The results of one axis of the ablation.
 pub struct AblationAxis<'a> {
-    /// Name for programs.
+    /// Identifier of the axis in data formats.
     pub name: &'static str,
-    /// Caption: what varies and which policy plays.
+    /// Caption that names the varied setting and the policy.
     pub caption: String,
-    /// Name of the policy.
+    /// Name of the policy that plays.
     pub policy: &'a str,
-    /// Arms.
+    /// Competitor settings, one per arm.
     pub settings: &'a [CompetitorSetting],
-    /// Results, one arm per setting.
+    /// Results of the experiment, one arm per setting.
     pub results: &'a ExperimentResults,
 }
 
-/// The results of a policy over the short horizon, with and without competitors.
+/// The results of a policy in short runs, with and without competitors.
 pub struct ShortRun<'a> {
-    /// Policy.
+    /// Name of the policy.
     pub name: &'a str,
     /// Competitor settings: off, default, hard.
     pub settings: &'a [CompetitorSetting],
-    /// Results, one arm per setting.
+    /// Results of the experiment, one arm per setting.
     pub results: &'a ExperimentResults,
 }
 
-/// Days of the short horizon. Competitors and drift start later.
+/// Length of a short run in days. Competitors and drift start later.
 pub const SHORT_DAYS: u32 = 50;
 
-/// Starting cash of a short run in dollars; final cash is compared with it.
+/// Starting cash of a short run in dollars, with which final cash is compared.
 const SHORT_RUN_START_CASH: f64 = 1e6;
 
-/// Returns the tables and graphs of the ablation: subscribers on `day`, final figures, steps, and short runs.
+/// Returns the tables and graphs of the ablation: subscribers on `day`, final figures, differences between adjacent
+/// arms, and short runs.
 pub fn ablation_report(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> LabReport {
     let seeds = axes.first().map_or(0, |axis| axis.results.seeds.len());
     let mut exhibit = LabReport {
@@ -66,12 +67,12 @@ pub fn ablation_report(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u
             .to_owned(),
     );
     exhibit.notes.push(format!(
-        "An event uses the copied improvement only if it is larger than the event's own size. Subscribers are those at the end of day {day}; a run that went bankrupt earlier counts as 0. Intervals and verdicts need at least {MIN_SAMPLE_SIZE} seeds."
+        "An event uses the copied improvement only if the improvement is larger than the size of the event. Subscribers are those at the end of day {day}; a run that went bankrupt earlier counts as 0. Intervals and verdicts need at least {MIN_SAMPLE_SIZE} seeds."
     ));
     exhibit
 }
 
-/// Returns the subscribers at the end of a day; 0 after a bankruptcy.
+/// Returns the number of subscribers at the end of a day, or 0 after a bankruptcy.
 fn subscribers_on(run: &RunResult, day: u32) -> f64 {
     run.weeks.iter().find(|week| week.day == day).map_or(0.0, |week| f64::from(week.subscribers))
 }
@@ -188,7 +189,7 @@ fn short_run_table(short: &[ShortRun<'_>]) -> LabTable {
         Column::number("cash", "mean cash", Measure::Dollars),
         Column::interval("cash_interval", "95 % interval", Measure::Dollars),
         Column::number("gained", "seeds above $1,000,000", Measure::Count),
-        Column::number("alike", "seeds equal with rivals off, default, hard", Measure::Count),
+        Column::number("alike", "seeds equal with competitors off, default, hard", Measure::Count),
         Column::number("seeds", "seeds", Measure::Count),
     ];
     let caption = format!("{SHORT_DAYS} days: neither competitors nor drift");

@@ -2,7 +2,7 @@ use super::*;
 use crate::experiment::{ExperimentResults, test_kit};
 use crate::policy::Policy;
 
-/// Plays a policy against competitor settings, over (days, last day).
+/// Plays a policy against competitor settings.
 fn play_arms(
     policy: &Policy,
     settings: &[CompetitorSetting],
@@ -33,7 +33,7 @@ fn copying_hurts_shared_and_draining_hurts_targeted_development() {
         let [off, default, hard] = [0, 1, 2].map(|arm| at(&copy, arm)[seed]);
         assert!(off > default && default >= hard, "{off} {default} {hard}");
     }
-    // With targeted spending alone, default and hard competitors have the same effect; draining has not.
+    // With targeted spending alone, default and hard competitors have the same effect, but draining has a different effect.
     let drain = play_arms(
         &targeted,
         &pick(&DRAIN_SETTINGS, &["no drain", "default", "hard", "drain to 0.2"]),

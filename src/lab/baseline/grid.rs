@@ -1,4 +1,4 @@
-//! Policy grids: every combination of the levels of their axes is a policy (docs/laboratory/baseline.md#own-grids).
+//! Policy grids. Each combination of levels, one per axis, is a policy (docs/laboratory/baseline.md#own-grids).
 
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
@@ -13,30 +13,30 @@ pub const MAX_COMBINATIONS: usize = 2_000;
 /// Separator between the levels in a label.
 const LEVEL_SEPARATOR: &str = " / ";
 
-/// A grid.
+/// A grid of policies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolicyGrid {
-    /// Name.
+    /// Name of the grid.
     pub name: String,
-    /// Description for readers of the file.
+    /// Description of the grid for readers of the file.
     pub description: String,
-    /// Names of the axes.
+    /// Names of the axes, in the order of the file.
     pub axes: Vec<String>,
-    /// Combinations; the last axis varies fastest.
+    /// Combinations of levels, ordered so that the last axis varies fastest.
     pub configurations: Vec<GridPoint>,
 }
 
-/// A combination of levels.
+/// A combination of one level per axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridPoint {
-    /// Names of its levels, one per axis.
+    /// Names of the levels, one per axis.
     pub levels: Vec<String>,
-    /// Policy that plays.
+    /// Policy of the combination.
     pub policy: Policy,
 }
 
 impl GridPoint {
-    /// Returns the level names joined by the separator.
+    /// Returns the names of the levels, joined by the separator.
     pub fn label(&self) -> String {
         self.levels.join(LEVEL_SEPARATOR)
     }
@@ -70,7 +70,7 @@ struct LevelEntry {
     call: Vec<Value>,
 }
 
-/// A level and its position in the file.
+/// A level with its position in the file.
 struct GridLevel {
     name: String,
     set: Table,
@@ -103,7 +103,7 @@ impl PolicyGrid {
         }
     }
 
-    /// Parses a grid.
+    /// Parses a grid from TOML.
     ///
     /// # Errors
     /// Fails on unknown keys, axes without levels, duplicate level names, invalid policies, and too many combinations.
@@ -152,10 +152,10 @@ impl PolicyGrid {
     }
 }
 
-/// Rule for names, for error messages.
+/// Rule for the names of axes and levels, as a part of error messages.
 const LABEL_RULE: &str = "is one line of text without \" / \", which separates the levels of a combination";
 
-/// Column names that axes must not use.
+/// Column names of reports, which axes must not use.
 const RESERVED_COLUMNS: [&str; 13] = [
     "seed",
     "cash",
@@ -179,7 +179,7 @@ fn is_label(name: &str) -> bool {
         && !name.chars().any(|letter| letter.is_control() || ['\u{2028}', '\u{2029}'].contains(&letter))
 }
 
-/// Reads the parts of a file and locates problems.
+/// Reads a grid file and locates its errors.
 struct GridReader<'a>(&'a ParameterSource);
 
 impl GridReader<'_> {
@@ -220,14 +220,14 @@ impl GridReader<'_> {
         Ok(levels)
     }
 
-    // The part that all combinations share must be a valid policy too.
+    // Checks that the part shared by all combinations is a valid policy.
     fn check_base(&self, base: Option<&(std::ops::Range<usize>, Table)>) -> Result<(), PolicyError> {
         let Some((span, table)) = base else { return Ok(()) };
         let parsed = parse_policy(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
         parsed.map(drop).map_err(|(span, problem)| self.error_at_key(span, &problem))
     }
 
-    /// Returns the combination with a number; the last axis varies fastest.
+    /// Returns the combination with an index. The last axis varies fastest.
     fn build_point(
         &self,
         number: usize,
@@ -250,7 +250,7 @@ impl GridReader<'_> {
                     calls.extend(level.calls.iter().cloned());
                 }
             }
-            // The previous levels were valid, so the problem is in this level.
+            // The previous levels were valid, so the error is in this level.
             let checked = parse_policy(table.clone(), grid);
             checked.map_err(|problem| {
                 self.error_at_key(level.span.clone(), &format!("level {}: {problem}", level.name))
@@ -262,7 +262,8 @@ impl GridReader<'_> {
         Ok(GridPoint { levels, policy })
     }
 
-    /// Locates a problem at the first line from `span` that begins with the key quoted in the message, otherwise at `span`.
+    /// Locates an error at the first line after the start of `span` that begins with the key quoted in the message.
+    /// If no line matches, locates the error at `span`.
     fn error_at_key(&self, span: std::ops::Range<usize>, problem: &str) -> PolicyError {
         let mut error = self.error_at(Some(span.clone()), problem);
         let text = self.0.text.get(span.start..).unwrap_or_default();
@@ -278,7 +279,7 @@ impl GridReader<'_> {
     }
 }
 
-/// Merges a table into another, key by key.
+/// Merges the keys of `above` into `below`, recursively.
 fn merge_into(below: &mut Table, above: Table) {
     for (key, value) in above {
         match (below.get_mut(&key), value) {
@@ -316,7 +317,7 @@ mod tests {
                 grid.configurations.iter().find(|point| point.label() == label).expect("a configuration");
             grid_point.policy.rule_based.clone()
         };
-        // The published best configuration equals the routine's defaults.
+        // The best published configuration equals the default values of the routine.
         assert_eq!(of("mid / S1 / heavy / $100K"), Some(crate::policy::RuleBased::default()));
         for (at, grid_point) in grid.configurations.iter().enumerate() {
             let same = |other: &&GridPoint| other.policy.rule_based == grid_point.policy.rule_based;

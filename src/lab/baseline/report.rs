@@ -1,4 +1,4 @@
-//! Tables of configurations: the paper's columns for one seed, spread and rank stability for several.
+//! Tables of configurations. One seed gives the paper's columns, and several seeds give spread and rank stability.
 
 use super::grid::PolicyGrid;
 use crate::experiment::{ExperimentResults, RunResult};
@@ -11,7 +11,7 @@ use novamind_base::formatting::dollars;
 use novamind_base::statistics::{Interval, Quartiles, mean, median};
 use novamind_report::ranking::published_results;
 
-/// Returns the results of a grid's configurations.
+/// Returns the report on the configurations of a grid.
 pub fn baseline_report(grid: &PolicyGrid, is_published: bool, results: &ExperimentResults) -> LabReport {
     let board = RankedResults::new(results);
     let count = results.seeds.len();
@@ -35,12 +35,12 @@ pub fn baseline_report(grid: &PolicyGrid, is_published: bool, results: &Experime
     exhibit
 }
 
-/// Results with ranks.
+/// Results of an experiment with the rank of each configuration.
 struct RankedResults<'a> {
     results: &'a ExperimentResults,
-    /// Configurations by median final cash, highest first.
+    /// Indices of the configurations by median final cash, highest first.
     order: Vec<usize>,
-    /// Ranks by seed and configuration.
+    /// Ranks of the configurations, by seed and configuration.
     ranks_by_seed: Vec<Vec<f64>>,
 }
 
@@ -183,7 +183,7 @@ fn best_by_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable 
     table
 }
 
-/// Describes the configurations that share first place: one of them by name, and the number of others.
+/// Describes the configurations that share the first rank: the name of one configuration and the number of ties.
 fn tied_labels(grid: &PolicyGrid, first: &[usize]) -> String {
     match first {
         [] => String::new(),

@@ -1,11 +1,12 @@
-//! Configurations that differ only in their cash floor play alike until cash falls between the floors. Such runs are played
-//! once.
+//! Detection of equal runs. Configurations that differ only in their cash floor make the same decisions until cash is
+//! between the floors. Such runs are simulated only once.
 
 use super::grid::GridPoint;
 use crate::experiment::RunResult;
 use crate::policy::{Policy, RuleBased};
 
-/// Returns for each configuration the one with the lowest floor among those that are otherwise equal.
+/// Returns for each configuration the index of its leader: the configuration with the lowest cash floor among the
+/// otherwise equal configurations.
 pub fn shared_run_leaders(points: &[GridPoint]) -> Vec<usize> {
     let floor = |at: usize| cash_floor(&points[at].policy);
     let leader = |at: usize| {
@@ -16,7 +17,7 @@ pub fn shared_run_leaders(points: &[GridPoint]) -> Vec<usize> {
     (0..points.len()).map(leader).collect()
 }
 
-/// Returns the cash floor of the routine, or negative infinity without a routine.
+/// Returns the cash floor of a policy, or negative infinity if the policy has no routine.
 fn cash_floor(policy: &Policy) -> f64 {
     policy.rule_based.as_ref().map_or(f64::NEG_INFINITY, |rules| rules.cash_floor)
 }
@@ -29,8 +30,8 @@ fn differ_only_in_floor(one: &Policy, other: &Policy) -> bool {
         && (&one.start, &one.calls, &one.enterprise) == (&other.start, &other.calls, &other.enterprise)
 }
 
-/// Returns whether a run of the leader is also valid for a configuration with another floor: on no decision day was cash above
-/// one floor and not above the other.
+/// Returns whether a run of the leader is also valid for a configuration with another cash floor. The run is valid
+/// unless cash was between the two floors on a decision day.
 pub fn is_shared_run(leader: &Policy, policy: &Policy, start_cash: f64, run: &RunResult) -> bool {
     let (low, high) = (cash_floor(leader), cash_floor(policy));
     let decided = run.weeks.iter().take(run.weeks.len().saturating_sub(1)).map(|week| week.cash);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::experiment::{Arm, ExperimentResults, test_kit};
 
-/// The results of some configurations over a few days, all played.
+/// Plays all configurations for a few days and returns the results.
 fn play_configurations(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
     let arms = points.iter().map(|grid_point| {
         let mut arm = Arm::new(grid_point.label(), grid_point.policy.clone());
@@ -18,7 +18,7 @@ fn shared_runs_are_equal_unless_cash_is_between_floors() {
     let leaders = shared_run_leaders(points);
     let expected: Vec<usize> = (0..24).map(|at| at / 2 * 2).collect();
     assert_eq!(leaders, expected);
-    // mid / S1 / light comes below $300,000 within 350 days, mid / S1 / heavy within 50 does not.
+    // Cash of mid / S1 / light falls below $300,000 within 350 days. Cash of mid / S1 / heavy does not do so within 50 days.
     let (light, heavy) = (&points[12..14], &points[16..18]);
     for (pair, days, shared) in [(light, 350, false), (heavy, 49, true)] {
         let results = play_configurations(pair, &[1], days);

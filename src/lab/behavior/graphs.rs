@@ -1,14 +1,14 @@
-//! Graphs of player behavior: small multiples of cash, customers by group.
+//! Graphs of player behavior: cash as small multiples, and customers by group.
 
 use std::collections::BTreeMap;
 
 use super::{BehaviorRun, participant_label};
 use crate::lab_report::{AxisScale, Graph, GraphAxis, GraphForm, Series};
 
-/// Maximum number of runs with a customer graph; each run has its own graph.
+/// Maximum number of runs for which a customer graph is drawn.
 pub(super) const MAX_CUSTOMER_GRAPHS: usize = 4;
 
-/// Returns a cash graph per participant and, for the first few runs, a graph of customers by group.
+/// Returns a graph of cash per participant, and a graph of customers by group for each of the first runs.
 pub(super) fn behavior_graphs(runs: &[BehaviorRun]) -> Vec<Graph> {
     let mut players: BTreeMap<Option<String>, Vec<&BehaviorRun>> = BTreeMap::new();
     runs.iter().for_each(|run| players.entry(participant_label(run)).or_default().push(run));

@@ -1,6 +1,6 @@
-//! The paper's behavior measures for one or more runs (docs/laboratory/behaviour.md).
+//! The paper's measures of player behavior for one or more runs (docs/laboratory/behaviour.md).
 //!
-//! The figures come from `report::measures` and have the same names as in `lab compare`.
+//! The figures are computed by `report::measures` and have the same names as in `lab compare`.
 
 mod graphs;
 
@@ -18,22 +18,22 @@ use novamind_session::Session;
 
 /// A run and the data of its behavior tables.
 pub struct BehaviorRun {
-    /// Report on the run.
+    /// Logbook of the run, with its figures and decisions.
     pub logbook: Logbook,
-    /// Groups by week.
+    /// History of each group by week.
     pub groups: Vec<GroupHistory>,
-    /// Cash at the end of each day, day 0 first.
+    /// Cash at the end of each day, starting with day 0.
     pub cash_by_day: Vec<f64>,
-    /// Every saved version of the notes.
+    /// Saved versions of the notes, in order.
     pub notes: Vec<NoteVersion>,
 }
 
 /// One saved version of the notes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoteVersion {
-    /// Decision day.
+    /// Decision day on which the version was saved.
     pub day: u32,
-    /// Number of words.
+    /// Word counts of the version.
     pub wording: WordCounts,
     /// Sentences that contain a planning word.
     pub planning_sentences: Vec<String>,
@@ -65,11 +65,11 @@ fn note_versions(lines: &[Line]) -> Vec<NoteVersion> {
     .collect()
 }
 
-/// Figures of a run (named as in `lab compare`) and their column headings.
+/// Names of the figures as in `lab compare`, each with its horizon and column heading.
 const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
     ("survival", "", "life, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
-    ("ad spend on the best channel, as measured", "", "on best tried"),
+    ("ad spend on the best channel, as measured", "", "ads on best tried"),
     ("targeted share of development", "", "targeted dev."),
     ("forecast error of the first four weeks", "28", "4-week error, first weeks"),
     ("calls that act, a week", "", "calls a week"),
@@ -81,7 +81,7 @@ const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
 
 const MAX_TOOLS: usize = 10;
 
-/// Returns the behavior tables and graphs of some runs.
+/// Returns the report on player behavior in the given runs.
 pub fn behavior_report(runs: &[BehaviorRun]) -> LabReport {
     let mut exhibit = LabReport::with_table("Player behavior", figure_table(runs));
     exhibit.tables.extend([
@@ -100,22 +100,21 @@ pub fn behavior_report(runs: &[BehaviorRun]) -> LabReport {
         ));
     }
     exhibit.notes.push(format!(
-        "Random allocation puts {:.0}% of ads on the best of the five channels. The truly best channel is shown for runs that are \
-         over; best tried compares those that were paid for.",
+        "Random allocation spends {:.0}% of the ad budget on the best of the five channels. The truly best channel is shown only for finished runs. \"Best tried\" compares only the channels on which the run spent money.",
         published_results().best_channel_random_share * 100.0
     ));
     exhibit.notes.push(describe_correlation(runs));
     exhibit
 }
 
-/// Returns one row per run, plus mean and standard deviation for several runs.
+/// Returns a table with one row per run. For several runs, adds the mean and the standard deviation.
 fn figure_table(runs: &[BehaviorRun]) -> LabTable {
     let figures: Vec<(&ComparedFigure, &str)> = FIGURE_COLUMNS
         .iter()
         .filter_map(|(name, of, heading)| Some((find_figure(name, of)?, *heading)))
         .collect();
     let column = |(figure, heading): &(&ComparedFigure, &str)| {
-        // A mean of counts or days is not a whole number.
+        // The mean of counts or days is not a whole number, so the column needs decimals.
         let measure = match measure_for_unit(figure.unit()) {
             Measure::Count | Measure::Days => Measure::Number(1),
             other => other,
@@ -203,7 +202,7 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
     LabTable { rows, ..LabTable::new("tools", "Most-used tools", columns) }
 }
 
-/// Shares of a run at which customers are listed.
+/// Shares of a run's weeks after which the customers are listed.
 const SAMPLED_RUN_SHARES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
 fn customer_table(runs: &[BehaviorRun]) -> LabTable {
@@ -226,15 +225,15 @@ fn customer_table(runs: &[BehaviorRun]) -> LabTable {
     LabTable { rows, ..LabTable::new("customers", caption, columns) }
 }
 
-/// Number of points in a small curve.
+/// Number of points in a sparkline.
 const SPARKLINE_POINTS: usize = 36;
 
-/// Returns the lowest, highest and final cash of each run, with curves on one scale.
+/// Returns the lowest, highest and final cash of each run, with sparklines on one scale.
 fn cash_range_table(runs: &[BehaviorRun]) -> LabTable {
     let all = || runs.iter().flat_map(|run| run.cash_by_day.iter().copied());
     let (least, most) = (all().fold(0.0, f64::min), all().fold(1.0, f64::max));
     let height = |value: f64| sparkline_char((value - least) / (most - least));
-    // A run that ended early has a shorter curve.
+    // A run that ended early has a shorter sparkline.
     let longest = runs.iter().map(|run| run.cash_by_day.len()).max().unwrap_or(1).max(2);
     let curve = |run: &BehaviorRun| {
         let day = |point: usize| point * (longest - 1) / (SPARKLINE_POINTS - 1);
@@ -316,7 +315,7 @@ fn note_table(runs: &[BehaviorRun]) -> LabTable {
     LabTable { rows, ..LabTable::new("notes", "Versions of the notes", columns) }
 }
 
-/// Returns the forecast error of the first weeks and the survival of each run that has both.
+/// Returns a pair of first-weeks forecast error and survival for each run with the two figures.
 fn forecast_error_survival_pairs(runs: &[BehaviorRun]) -> Vec<(f64, f64)> {
     let of = |name, horizon, run: &BehaviorRun| find_figure(name, horizon)?.value(&run.logbook);
     runs.iter()
@@ -328,10 +327,12 @@ fn forecast_error_survival_pairs(runs: &[BehaviorRun]) -> Vec<(f64, f64)> {
 
 fn describe_correlation(runs: &[BehaviorRun]) -> String {
     let pairs = forecast_error_survival_pairs(runs);
-    let text = "Error of 4-week forecasts filed before the first four weeks, against survival";
+    let text = "Error of the 4-week forecasts that were filed before the first four weeks, against survival";
     match rank_correlation(&pairs) {
         Some(value) => format!("{text}: rank correlation {value:.2} over {} runs.", pairs.len()),
-        None => format!("{text}: no correlation. It needs at least three runs that differ in both."),
+        None => {
+            format!("{text}: no correlation. At least three runs that differ in both figures are needed.")
+        }
     }
 }
 

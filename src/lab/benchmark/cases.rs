@@ -1,4 +1,4 @@
-//! The rows of the speed table and their measurements.
+//! The cases of the speed table, with their measurements.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use novamind_base::statistics::median;
 use novamind_record::folder::runs::find_run;
 use novamind_session::{Access, Session};
 
-/// Cases of the simulator.
+/// Measured cases of the simulator.
 pub const CASES: &[Case] = &[
     Case {
         name: "day",
@@ -59,8 +59,8 @@ pub const CASES: &[Case] = &[
                 9.0,
                 Some(5.0),
             ),
-            BenchFigure::with_target("its run directory", Unit::Megabytes, 300.0, Some(150.0)),
-            BenchFigure::with_target("its peak memory", Unit::Megabytes, 400.0, None),
+            BenchFigure::with_target("run directory with --save", Unit::Megabytes, 300.0, Some(150.0)),
+            BenchFigure::with_target("peak memory with --save", Unit::Megabytes, 400.0, None),
         ],
         needs_new_process: true,
         is_slow: false,
@@ -134,7 +134,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// Returns the milliseconds per day, scaled to this many subscribers.
+/// Returns the milliseconds per simulated day, scaled to `subscribers`.
 fn estimate_day_milliseconds(subscribers: f64, laps: &[WeekMeasurement]) -> Vec<f64> {
     laps.iter().map(|lap| lap.per_subscriber_day() * subscribers * 1e3).collect()
 }
@@ -143,7 +143,7 @@ fn measure_weeks(company: &mut MeasuredCompany, count: usize) -> Result<Vec<Week
     (0..count).map(|_| company.measure_week()).collect()
 }
 
-/// Returns a company with about 165,000 subscribers. It grows during the measurement.
+/// Returns a company with about 165,000 subscribers, which grows during the measurement.
 fn company_with_165_000(keep: RunStorage, bench: &BenchContext) -> Result<MeasuredCompany, BenchError> {
     MeasuredCompany::with_subscribers(150_000, keep, bench)
 }
@@ -158,7 +158,7 @@ pub fn save_large_company(bench: &BenchContext) -> Result<String, BenchError> {
     Ok(company.session.manifest().id.clone())
 }
 
-/// Returns a company with about a million subscribers in the large market.
+/// Returns a company with about 1,000,000 subscribers in the large market.
 fn company_with_a_million(keep: RunStorage, bench: &BenchContext) -> Result<MeasuredCompany, BenchError> {
     let mut company = MeasuredCompany::new(MarketSize::Large, keep, bench)?;
     company.grow_to(1_000_000)?;
@@ -176,7 +176,7 @@ fn measure_day_with_a_million(bench: &BenchContext) -> Result<Samples, BenchErro
     let mut company = company_with_a_million(RunStorage::Disk, bench)?;
     let on_disk = measure_weeks(&mut company, bench.repetitions)?;
     company.session.save()?;
-    // Read the peak before the second company allocates memory.
+    // Read the peak memory before a second company allocates memory.
     let memory = peak_memory_megabytes().into_iter().collect();
     drop(company);
     let in_memory =
@@ -184,7 +184,7 @@ fn measure_day_with_a_million(bench: &BenchContext) -> Result<Samples, BenchErro
     Ok(vec![estimate_day_milliseconds(1e6, &on_disk), estimate_day_milliseconds(1e6, &in_memory), memory])
 }
 
-/// Plays the 500 days; returns the seconds and the name of the run.
+/// Plays 500 days. Returns the duration in seconds and the ID of the run.
 fn play_500_days(projection: bool, bench: &BenchContext) -> Result<(f64, String), BenchError> {
     let policy = Policy::find(POLICY, &bench.configuration)?;
     let spec = RunSpec {
@@ -244,20 +244,20 @@ fn measure_week(bench: &BenchContext) -> Result<Samples, BenchError> {
     Ok(vec![dashboard, query])
 }
 
-/// Subscriber counts at which costs are compared, in the default market.
+/// Subscriber counts at which the cost per subscriber is compared, in the default market.
 const SUBSCRIBER_COUNTS: [u32; 3] = [10_000, 40_000, 165_000];
-/// Maximum weeks measured per company: after more it has outgrown its size.
+/// Maximum number of weeks measured per company. After more weeks, the company has grown too far beyond its nominal size.
 const MAX_WEEKS_PER_SIZE: usize = 5;
 
-/// Uses one thread: the gain of a second one depends on wake-up latency, which is the same for a company
-/// of any size.
+/// Uses one thread, because the gain of a second thread depends on wake-up latency. This latency is the same for a
+/// company of any size.
 fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| costs_by_size(bench))
 }
 
-/// Companies take turns, so that a slow period of the machine affects all of them equally.
+/// Measures the companies in turn, so that a slow period of the machine affects all companies equally.
 fn costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
-    // Companies grow during the measurement, so they start slightly smaller.
+    // The companies start slightly smaller, because they grow during the measurement.
     let sized_companies = SUBSCRIBER_COUNTS
         .iter()
         .map(|size| MeasuredCompany::with_subscribers(size / 10 * 9, RunStorage::Memory, bench));

@@ -6,16 +6,16 @@ use std::time::Instant;
 
 const CALIBRATION_STEPS: u64 = 60_000_000;
 
-/// Returns the seconds that a fixed amount of integer and floating-point work takes on one processor, so that figures of
-/// different machines can be compared.
+/// Returns the time in seconds that a fixed amount of integer and floating-point work takes on one processor. With
+/// this time, figures of different machines can be compared.
 pub fn calibration_seconds() -> f64 {
     let started = Instant::now();
     black_box(fixed_work(black_box(CALIBRATION_STEPS)));
     started.elapsed().as_secs_f64()
 }
 
-/// Each step depends on the previous one (shifts, a multiplication, a division and a root), as the
-/// terms of a formula do.
+/// Each step depends on the previous step, like the terms of a formula. A step consists of shifts, a multiplication, a
+/// division and a root.
 fn fixed_work(steps: u64) -> f64 {
     let (mut word, mut value) = (0x9e37_79b9_7f4a_7c15_u64, 1.0_f64);
     for _ in 0..steps {
@@ -28,7 +28,7 @@ fn fixed_work(steps: u64) -> f64 {
     value
 }
 
-/// Returns the peak memory of this process in millions of bytes, or `None` if the system does not report it.
+/// Returns the peak memory of the process in megabytes, or `None` if the system does not report it.
 pub fn peak_memory_megabytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -36,7 +36,7 @@ pub fn peak_memory_megabytes() -> Option<f64> {
     Some(kibibytes * 1024.0 / 1e6)
 }
 
-/// Returns the size of the files in a folder in millions of bytes.
+/// Returns the total size of the files in a folder, in megabytes.
 pub fn folder_megabytes(folder: &Path) -> std::io::Result<f64> {
     let mut bytes = 0;
     for entry in std::fs::read_dir(folder)? {

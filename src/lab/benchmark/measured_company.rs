@@ -1,4 +1,4 @@
-//! The measured company: policy P1a, played up to a number of subscribers.
+//! Companies for measurements: policy P1a, played up to a given number of subscribers.
 
 use std::time::Instant;
 
@@ -8,56 +8,56 @@ use crate::runner::{RunSpec, decide, new_run};
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
-/// Policy of all figures.
+/// Name of the policy that all measured companies use.
 pub const POLICY: &str = "P1a";
-/// Seed of all figures.
+/// Seed of all measured companies.
 pub const SEED: u64 = 42;
-/// Weeks after which every subscriber was billed: a billing period and a few days.
+/// Number of weeks after which every subscriber has been billed at least once.
 const SETTLING_WEEKS: u32 = 5;
 
-/// Storage of the run.
+/// Where the run of a measured company is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunStorage {
-    /// In memory, without a database.
+    /// Memory only, without a database.
     Memory,
     /// On disk, with the database updated in the background, as in interactive play.
     Disk,
 }
 
-/// Market of the company.
+/// The market of a measured company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarketSize {
     /// The default market.
     Standard,
-    /// A larger market with room for a million subscribers.
+    /// A larger market, in which a company can reach 1,000,000 subscribers.
     Large,
 }
 
-/// A company with many subscribers.
+/// A company with many subscribers, for measurements.
 pub struct MeasuredCompany {
     policy: Policy,
-    /// Its run.
+    /// Session of the company's run.
     pub session: Session,
 }
 
-/// Measurement of one week.
+/// The measurement of one simulated week.
 #[derive(Debug, Clone, Copy)]
 pub struct WeekMeasurement {
-    /// Seconds from the key to the dashboard.
+    /// Seconds from the key press to the updated dashboard.
     pub seconds: f64,
     /// Active subscribers in the middle of the week.
     pub subscribers: f64,
 }
 
 impl WeekMeasurement {
-    /// Returns the seconds per subscriber and day.
+    /// Returns the simulation time in seconds per subscriber and day.
     pub fn per_subscriber_day(&self) -> f64 {
         self.seconds / 7.0 / self.subscribers
     }
 }
 
 impl MeasuredCompany {
-    /// Creates a company on day 0.
+    /// Creates a measured company on day 0.
     pub fn new(
         market: MarketSize,
         keep: RunStorage,
@@ -79,7 +79,7 @@ impl MeasuredCompany {
         Ok(MeasuredCompany { session: Session::create(new, &bench.configuration)?, policy })
     }
 
-    /// Returns a company in the default market once it has this many subscribers.
+    /// Creates a company in the default market and plays it until it has at least `subscribers` subscribers.
     pub fn with_subscribers(
         subscribers: u32,
         keep: RunStorage,
@@ -90,12 +90,12 @@ impl MeasuredCompany {
         Ok(company)
     }
 
-    /// Returns the active subscribers.
+    /// Returns the number of active subscribers.
     pub fn subscribers(&self) -> u32 {
         self.session.weeks().last().map_or(0, |week| week.individual_subscribers)
     }
 
-    /// Makes the decisions of a week and simulates it; only the simulation is measured.
+    /// Makes the decisions of a week and simulates the week. Only the simulation is measured.
     pub fn measure_week(&mut self) -> Result<WeekMeasurement, BenchError> {
         decide(&self.policy, SEED, &mut self.session)?;
         self.session.wait_for_database()?;
@@ -107,7 +107,7 @@ impl MeasuredCompany {
         Ok(WeekMeasurement { seconds, subscribers: f64::from(before + self.subscribers()) / 2.0 })
     }
 
-    /// Plays until the company has this many subscribers.
+    /// Plays weeks until the company has at least `subscribers` subscribers.
     pub fn grow_to(&mut self, subscribers: u32) -> Result<(), BenchError> {
         while self.subscribers() < subscribers {
             if self.session.ended().is_some() {
@@ -118,7 +118,7 @@ impl MeasuredCompany {
         Ok(())
     }
 
-    /// Plays until every subscriber was billed once.
+    /// Plays weeks until every subscriber has been billed once.
     pub fn play_billing_period(&mut self) -> Result<(), BenchError> {
         for _ in 0..SETTLING_WEEKS {
             self.measure_week()?;

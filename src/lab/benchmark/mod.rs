@@ -1,23 +1,24 @@
 //! Speed of simulation on this machine: one row per operation that users or programs wait for.
 //!
-//! A [`Case`] is measured in a separate process, so that its peak memory is measured too; it
-//! yields samples of one or more [`BenchFigure`]s, and a figure's value is their median. New figures, for instance
-//! those of the console, are additional cases; [`CASES`] covers the simulator.
+//! Each [`Case`] is measured in a separate process, so that its peak memory can be measured. A case returns samples of
+//! one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the simulator.
+//! Other crates can add cases, for example for the console.
 //!
-//! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with seed
-//! 42, the same company that the 500-day figures play. It passes 10,000, 40,000 and 165,000 subscribers by
-//! itself, so a day is measured with the leads, bills, switches, cancellations and support issues that such
-//! a company really has, not with synthetic subscribers. A million does not fit into its market,
-//! so there the market is larger: with `leads.saturation_base` = b the room left is b - (N / cap)², which fills up
-//! where (N / cap)² approaches b. The company is rich there, because it grows faster than it could pay for, and
-//! it is measured only after all its subscribers were billed once.
+//! **Where the subscribers come from.** All cases play the policy P1a (the paper's best configuration) with seed 42.
+//! The 500-day figures play the same company. The company reaches 10,000, 40,000 and 165,000 subscribers without
+//! intervention. A measured day therefore includes realistic leads, bills, switches, cancellations and support issues,
+//! not synthetic subscribers. The default market is too small for a million subscribers, so these cases use a larger
+//! market: with `leads.saturation_base` = b, the unused share is b - (N / cap)². In the larger market the company
+//! starts with more cash, because it grows faster than it could pay for. It is measured only after all its subscribers
+//! have been billed once.
 //!
-//! **What a sample is.** Days are measured by the week, as they are played: the seven days, the figures, the
-//! state hash and the lines of the trajectory, divided by seven, and scaled from the subscribers there are to
-//! the number the figure names (they differ by less than a fifth). The policy's own decisions are not counted.
-//! If the projection runs in the background, the case waits for it between weeks, as a user who reads the
-//! dashboard does. The cost per subscriber is compared on one thread: the gain of a second one depends on how soon
-//! the system wakes it, which takes equally long for small and large companies.
+//! **What a sample is.** Days are measured in weeks, as they are played. A sample includes the seven days, the
+//! figures, the state hash and the lines of the trajectory. The time is divided by seven and scaled from the actual
+//! number of subscribers to the number in the figure's name. The two numbers differ by less than a fifth. The
+//! decisions of the policy are not measured.
+//! If the projection runs in the background, the case waits for it between weeks, as a user who reads the dashboard
+//! does. The cost per subscriber is compared on one thread. The gain of a second thread depends on its wake-up
+//! latency, which is the same for small and large companies.
 //!
 //! # Where the time goes
 //!
@@ -36,30 +37,31 @@
 //! | 15 % | state hash, once a week |
 //! | 3 % | the rest |
 //!
-//! On two threads about 95 % of it runs in parallel. These changes helped and kept results bit-identical: passes in which
-//! a block goes through several mechanisms while it is in the cache, instead of a pass each; pieces of work as small
-//! as two blocks, because subscribers of one day are due on one day and adjacent; the state hash as a
-//! tree, with each thread hashing the bytes it collected; the work after a day in parallel with the next day, and after
-//! the last day in parallel with the state hash; reuse of fact buffers that the database writer has finished
-//! with; loops over several rows at a time without branches and without access to
-//! shared data, which the compiler vectorizes. The obstacle was a parameter read only if a
-//! condition is true, through a reference that the compiler cannot prove dereferenceable.
+//! On two threads, about 95 % of this work runs in parallel. The following changes made the simulation faster and kept
+//! results bit-identical. Several mechanisms process a block in one pass, while the block is in the cache. Work units are as
+//! small as two blocks, because subscribers who signed up on one day are adjacent and due on the same day. The state
+//! hash is a tree, and each thread hashes the bytes that it collected. The work after a day runs in parallel with the
+//! next day, or with the state hash after the last day. Fact buffers are reused after the database writer has
+//! processed them. Loops process several rows at a time without branches and without access to shared data, so that
+//! the compiler can vectorize them. Vectorization fails if a parameter is read only under a condition, through a
+//! reference that the compiler cannot prove dereferenceable.
 //!
-//! These did not help: prefetching the columns of a block; other purge delays and page sizes of the
-//! allocator; keeping a second thread awake between the steps of a day on two processors of one core; post weights
-//! without a branch; work units of one block.
+//! The following changes did not make the simulation faster: prefetching the columns of a block, other purge delays
+//! and page sizes
+//! of the allocator, post weights without a branch, and work units of one block. Keeping a second thread awake between
+//! the steps of a day did not help either, on two processors of one core.
 //!
-//! The first days of a week with a database are slower than those in memory because both threads slept: a
-//! company in memory that sleeps a second before each week is as slow.
+//! The first days of a week are slower with a database than in memory, because both threads slept before the week. A
+//! company in memory is equally slow if it sleeps for a second before each week.
 //!
 //! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
 //! 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
-//! state: 128 bytes. At the 7 GB/s that one thread of this machine copies, a day at 165,000 is at least 3 ms of one
-//! thread, at a million 18 ms. The rest is arithmetic and sign-ups, payments and cancellations, not passes over
-//! columns.
+//! state: 128 bytes. One thread of this machine copies 7 GB/s. A day therefore takes at least 3 ms of one thread with
+//! 165,000 subscribers, and 18 ms with a million. The remaining time is spent on arithmetic, sign-ups, payments and
+//! cancellations, not on passes over columns.
 //!
-//! **Streams.** Every lead and every bill opens a stream. That took 180 ns (BLAKE3, then ChaCha8, both a chain
-//! of dependent steps); eight at a time take 50 ns each for one draw (`world::random`).
+//! **Streams.** Every lead and every bill opens a stream. Opening a single stream took 180 ns (BLAKE3, then ChaCha8,
+//! both a chain of dependent steps). Opening eight streams at a time takes 50 ns per stream with one draw (`world::random`).
 
 mod cases;
 mod machine;
@@ -81,24 +83,24 @@ pub use cases::{CASES, save_large_company};
 pub use machine::calibration_seconds;
 pub use queries::company_for_queries;
 
-/// Unit of a figure.
+/// Unit of a benchmark figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
-    /// Milliseconds.
+    /// A time in milliseconds.
     Milliseconds,
-    /// Seconds.
+    /// A time in seconds.
     Seconds,
-    /// Nanoseconds per subscriber and day.
+    /// A time in nanoseconds per subscriber and day.
     NanosecondsPerSubscriberDay,
-    /// Millions of bytes.
+    /// Megabytes, 1,000,000 bytes each.
     Megabytes,
-    /// Percent.
+    /// A share in percent.
     Percent,
 }
 
 impl Unit {
-    /// Returns the unit symbol.
+    /// Returns the symbol of the unit.
     pub fn symbol(self) -> &'static str {
         match self {
             Unit::Milliseconds => "ms",
@@ -109,7 +111,7 @@ impl Unit {
         }
     }
 
-    /// Returns the unit's length in seconds, or `None` if it is not a time.
+    /// Returns the length of the unit in seconds, or `None` if the unit is not a time.
     pub fn seconds_per_unit(self) -> Option<f64> {
         match self {
             Unit::Milliseconds => Some(1e-3),
@@ -120,16 +122,16 @@ impl Unit {
     }
 }
 
-/// One row of the speed table.
+/// A measured quantity: one row of the speed table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BenchFigure {
-    /// Name of the measurement.
+    /// Name of the figure in the speed table.
     pub name: &'static str,
-    /// Unit of the numbers.
+    /// Unit of the measured values.
     pub unit: Unit,
-    /// Maximum allowed value.
+    /// Maximum allowed value; `None` without a target.
     pub target: Option<f64>,
-    /// Maximum desired value.
+    /// Maximum desired value; `None` without a stretch target.
     pub stretch: Option<f64>,
 }
 
@@ -137,15 +139,15 @@ pub struct BenchFigure {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Within the stretch target.
+    /// The value is within the stretch target.
     WithinStretch,
-    /// Within the target.
+    /// The value is within the target.
     WithinTarget,
-    /// Above the target.
+    /// The value is above the target.
     Over,
     /// The figure has no target.
     NoTarget,
-    /// The system does not report it.
+    /// The system does not report the value.
     NotMeasured,
 }
 
@@ -162,7 +164,7 @@ impl fmt::Display for Verdict {
 }
 
 impl BenchFigure {
-    /// Returns a figure with a target.
+    /// Creates a benchmark figure with a target.
     pub const fn with_target(
         name: &'static str,
         unit: Unit,
@@ -172,12 +174,12 @@ impl BenchFigure {
         BenchFigure { name, unit, target: Some(target), stretch }
     }
 
-    /// Returns a figure without a target.
+    /// Creates a benchmark figure without a target.
     pub const fn without_target(name: &'static str, unit: Unit) -> BenchFigure {
         BenchFigure { name, unit, target: None, stretch: None }
     }
 
-    /// Compares a value with the target.
+    /// Compares a measured value with the target of the figure.
     pub fn verdict(&self, value: Option<f64>) -> Verdict {
         match (value, self.target, self.stretch) {
             (None, ..) => Verdict::NotMeasured,
@@ -189,20 +191,20 @@ impl BenchFigure {
     }
 }
 
-/// Samples of a case's figures in order; empty if the system does not report a figure.
+/// Samples of each figure of a case, in order. The samples are empty if the system does not report the figure.
 pub type Samples = Vec<Vec<f64>>;
 
-/// A measurement that runs in a separate process.
+/// A benchmark case, which is measured in a separate process.
 pub struct Case {
-    /// Name for `--only`.
+    /// Name of the case for `--only`.
     pub name: &'static str,
-    /// Figures that it measures.
+    /// Figures that the case measures.
     pub figures: &'static [BenchFigure],
-    /// Whether every repetition needs a new process; otherwise one process repeats.
+    /// Whether every repetition needs a new process. Otherwise one process measures all repetitions.
     pub needs_new_process: bool,
-    /// Whether a quick run skips it because it takes long.
+    /// Whether a quick run skips the case because it takes long.
     pub is_slow: bool,
-    /// Function that measures.
+    /// Function that measures the samples of the case.
     pub measure: fn(&BenchContext) -> Result<Samples, BenchError>,
 }
 
@@ -210,13 +212,13 @@ pub struct Case {
 pub struct BenchContext {
     /// Number of repetitions.
     pub repetitions: usize,
-    /// Scratch folder for runs; its contents can be deleted.
+    /// Scratch folder for runs. Its contents can be deleted.
     pub scratch_folder: PathBuf,
-    /// Configuration of the runs.
+    /// Configuration of the measured runs.
     pub configuration: Configuration,
 }
 
-/// Reason why a measurement failed.
+/// The reason why a measurement failed.
 #[derive(Debug)]
 pub struct BenchError(String);
 

@@ -12,16 +12,16 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_tools::ToolId;
 
-/// Approximate peak subscribers of P1a.
+/// Approximate peak number of subscribers of the company.
 const SUBSCRIBER_COUNT: u32 = 190_000;
 
-/// Prefix of figures of library queries.
+/// Prefix of the names of library query figures.
 const FIGURE_NAME_PREFIX: &str = "query ";
 
 const USAGE_30_DAYS_SQL: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS units FROM daily_usage
     WHERE day > (SELECT MAX(day) FROM service_day) - 30";
 
-/// The slowest library query, a count over millions of rows, and ten common queries.
+/// Figures of the slowest library query, a count over millions of rows, and ten common queries.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
     BenchFigure::with_target(
@@ -42,8 +42,8 @@ pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::without_target("query prices-paid", Unit::Milliseconds),
 ];
 
-/// Returns the queried company at its largest, after five weeks of in-app ads: as many rows in every
-/// table as there ever are.
+/// Returns the queried company at its peak size, after five weeks of in-app ads. At this time, every table has its
+/// maximum number of rows.
 ///
 /// # Errors
 /// Fails if the run cannot be played or saved.
@@ -57,7 +57,7 @@ pub fn company_for_queries(bench: &BenchContext) -> Result<Session, BenchError> 
     Ok(company.session)
 }
 
-/// Runs every library query several times; the slowest has the largest median.
+/// Measures every library query several times. The slowest query is the query with the largest median.
 pub fn measure_queries(bench: &BenchContext) -> Result<Samples, BenchError> {
     let mut session = MeasuredCompany::with_subscribers(SUBSCRIBER_COUNT, RunStorage::Disk, bench)?.session;
     session.wait_for_database()?;
@@ -81,7 +81,7 @@ pub fn measure_queries(bench: &BenchContext) -> Result<Samples, BenchError> {
     Ok([slowest.unwrap_or_default(), usage].into_iter().chain(typical).collect())
 }
 
-/// Returns the milliseconds until the result is available.
+/// Returns the time until the query result is available, in milliseconds per repetition.
 fn query_milliseconds(session: &mut Session, sql: &str, repetitions: usize) -> Result<Vec<f64>, BenchError> {
     let once = |_| {
         let started = Instant::now();

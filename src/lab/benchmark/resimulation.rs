@@ -13,11 +13,12 @@ use novamind_session::Session;
 const SMALL_SUBSCRIBERS: u32 = 20_000;
 const LARGE_SUBSCRIBERS: u32 = 165_000;
 const BRANCH_WEEKS: u32 = 12;
-/// Changed decisions of the branches; one more branch keeps the run's decisions.
+/// Edits of the alternative branches. One additional branch keeps the decisions of the run.
 const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];
 
-/// A company with 20,000 subscribers grows fast, so the what-if covers weeks with that average. The first
-/// answer about a run reads its record and simulates it from day 0; later answers continue from there.
+/// Figures of what-if branches and causes. A company with 20,000 subscribers grows fast, so the what-if covers weeks
+/// with this average. The first answer about a run reads its record and simulates the run from day 0. Later answers
+/// reuse this simulation.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target(
         "what if, 4 branches of 12 weeks of 20,000: next answer",
@@ -30,7 +31,7 @@ pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target("why of a week at 165,000: first answer", Unit::Seconds, 8.0, None),
 ];
 
-/// Measures a company once it has the number of subscribers in the figures.
+/// Measures companies with the subscriber counts that the figures name.
 pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError> {
     let mut company = MeasuredCompany::with_subscribers(SMALL_SUBSCRIBERS, RunStorage::Disk, bench)?;
     let small = measure_cause_analysis(&company.session, bench.repetitions)?;
@@ -53,13 +54,13 @@ pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError>
     Ok(vec![next, first, small, large])
 }
 
-/// Returns the mean subscribers over the last weeks, as many as a branch has.
+/// Returns the mean number of subscribers over the last [`BRANCH_WEEKS`] weeks.
 fn mean_subscribers(session: &Session) -> f64 {
     let last = session.weeks().iter().rev().take(BRANCH_WEEKS as usize);
     last.map(|week| f64::from(week.individual_subscribers)).sum::<f64>() / f64::from(BRANCH_WEEKS)
 }
 
-/// Simulates four branches from a week.
+/// Simulates the four branches of a what-if from the start of a week.
 fn run_what_if(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
     let read = |edit: &str| edit.parse::<DecisionEdit>().map_err(BenchError);
     let alternatives = ALTERNATIVES.into_iter().map(|edit| Ok(vec![read(edit)?]));
@@ -68,7 +69,7 @@ fn run_what_if(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
     Ok(())
 }
 
-/// Returns the seconds until the causes of last week's change in cancellations are computed.
+/// Returns the time until the causes of last week's change in cancellations are computed, in seconds per repetition.
 fn measure_cause_analysis(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
     let folder = cause_analysis_folder(session)?;
     let once = |_| {

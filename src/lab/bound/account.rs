@@ -1,4 +1,4 @@
-//! Computes every line of the account from the plan and the parameters.
+//! The account of the upper bound: every line, computed from the plan and the parameters.
 
 use super::account_line::AccountLine;
 use super::assumptions::BoundAssumptions;
@@ -11,85 +11,85 @@ use super::{
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// A group in the account.
+/// A customer group in the account.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundGroup {
-    /// Group.
+    /// ID of the group.
     pub group: &'static str,
-    /// Customers, or seats of enterprises.
+    /// Number of customers, or seats of enterprises.
     pub customers: f64,
-    /// Price, dollars a month.
+    /// Price per customer or seat, $ per month.
     pub price: f64,
     /// Widest quality gap that targeted development must close.
     pub quality_gap: f64,
-    /// Spending that closes the gap exactly, before slack, dollars a day.
+    /// Spending that closes the gap exactly, before slack, $ per day.
     pub min_spending: f64,
-    /// Spending with slack, dollars a day.
+    /// Spending with slack, $ per day.
     pub spending: f64,
     /// Share of customers who renew, by renewal day.
     pub renewal_shares: Vec<f64>,
-    /// Revenue over all renewals, dollars.
+    /// Revenue from all renewals, dollars.
     pub revenue: f64,
 }
 
-/// A line of the account and its figures.
+/// A line of the account with its computed and published figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccountEntry {
-    /// Line.
+    /// Line of the account.
     pub line: AccountLine,
-    /// Computed figure, dollars.
+    /// Computed figure of the line, dollars.
     pub computed: f64,
-    /// Published figure, dollars.
+    /// Published figure of the line, dollars.
     pub published: f64,
-    /// Explanation of the difference.
+    /// Explanation of the difference between the two figures.
     pub explanation: String,
 }
 
-/// The complete account.
+/// The account of the upper bound.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundAccount {
-    /// Premises.
+    /// Assumptions of the account.
     pub assumptions: BoundAssumptions,
-    /// Whether the parameters have competitors.
+    /// Whether competitors are active under the parameters.
     pub has_rivals: bool,
-    /// Usage of all customers, units a day.
+    /// Usage of all customers, units per day.
     pub daily_usage: f64,
-    /// Quality lost to overload.
+    /// Quality that all customers lose to overload.
     pub overload_penalty: f64,
-    /// Groups.
+    /// Figures of each group.
     pub groups: Vec<BoundGroup>,
-    /// Lines in order.
+    /// Lines of the account, in order.
     pub lines: Vec<AccountEntry>,
 }
 
-/// A row of the sensitivity to slack.
+/// A row of the sensitivity table, which varies the slack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensitivityRow {
-    /// Slack.
+    /// Slack of the row.
     pub slack: f64,
-    /// Targeted development, dollars.
+    /// Cost of targeted development, dollars.
     pub targeted: f64,
-    /// Renewals of groups at which more than 99 % are satisfied.
+    /// Number of renewals at which more than 99 % of the group's customers are satisfied.
     pub satisfied: usize,
-    /// Renewals of groups.
+    /// Number of renewals, over all groups and renewal days.
     pub renewals: usize,
-    /// Mean renewal share over groups and days.
+    /// Mean renewal share over groups and renewal days.
     pub mean_share: f64,
-    /// Reported estimate, dollars.
+    /// Estimate that the account reports, dollars.
     pub estimate: f64,
 }
 
-/// Share above which nearly all customers of a group are satisfied.
+/// Share of satisfied customers above which a group counts as nearly fully satisfied.
 pub const SATISFIED_SHARE: f64 = 0.99;
 
 impl BoundAccount {
-    /// Returns the account of a plan.
+    /// Computes the account from the assumptions and the parameters.
     pub fn new(premises: BoundAssumptions, params: &Params) -> BoundAccount {
         let climate = shared_quality_path(&premises, params);
         BoundAccount::with_shared_quality(premises, &climate, params)
     }
 
-    /// Returns the account of a plan under given market conditions.
+    /// Computes the account with a given path of shared quality and competitor effects.
     fn with_shared_quality(
         premises: BoundAssumptions,
         climate: &SharedQualityPath,
@@ -156,7 +156,7 @@ impl BoundAccount {
         }
     }
 
-    /// Returns the revenue from enterprises or individuals, dollars.
+    /// Returns the revenue from enterprises or from individuals, dollars.
     pub(super) fn revenue_of(&self, of_companies: bool) -> f64 {
         let bound_groups = self.groups.iter().filter(|bound_group| {
             Group::parse(bound_group.group).is_some_and(|group| group.is_enterprise() == of_companies)
@@ -169,12 +169,12 @@ impl BoundAccount {
             * self.groups.iter().map(|bound_group| bound_group.spending).sum::<f64>()
     }
 
-    /// Returns the number of paying customers and seats.
+    /// Returns the number of paying individuals and seats.
     pub fn customers(&self) -> f64 {
         self.groups.iter().map(|bound_group| bound_group.customers).sum()
     }
 
-    /// Computes the figure of a line, dollars.
+    /// Returns the computed figure of a line, dollars.
     pub fn computed(&self, line: AccountLine) -> f64 {
         self.lines.iter().find(|account_entry| account_entry.line == line).map_or(0.0, |entry| entry.computed)
     }
@@ -193,11 +193,11 @@ impl BoundAccount {
     }
 }
 
-/// Returns a row for each slack.
+/// Returns the sensitivity of the account to slack, one row per value.
 pub fn sensitivity(slacks: &[f64], params: &Params) -> Vec<SensitivityRow> {
     let premises = |slack: &f64| BoundAssumptions::from_paper(*slack);
     let Some(first) = slacks.first() else { return Vec::new() };
-    // Slack does not change market conditions: competitors copy in proportion to a targeted gain.
+    // Slack does not change market conditions, because competitors copy in proportion to a targeted gain.
     let climate = shared_quality_path(&premises(first), params);
     slacks
         .iter()

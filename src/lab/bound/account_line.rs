@@ -1,6 +1,6 @@
 //! The lines of the account: names, order, and published figures.
 
-/// A line of the account.
+/// A line of the upper-bound account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AccountLine {
     /// Revenue from individuals.
@@ -9,36 +9,36 @@ pub enum AccountLine {
     Enterprises,
     /// Total revenue.
     Revenue,
-    /// Compute.
+    /// Cost of compute.
     Compute,
-    /// Capacity.
+    /// Cost of capacity.
     Capacity,
-    /// General development.
+    /// Cost of general development.
     GlobalDevelopment,
-    /// Targeted development.
+    /// Cost of targeted development.
     TargetedDevelopment,
-    /// R&D.
+    /// Cost of R&D projects.
     Research,
-    /// Ads.
+    /// Cost of advertising.
     Advertising,
-    /// Cost of leads.
+    /// Lead acquisition cost.
     LeadCosts,
-    /// Operations.
+    /// Cost of operations.
     Operations,
-    /// Finding groups.
+    /// Cost of market research, which discovers groups.
     MarketResearch,
-    /// Studying groups.
+    /// Cost of market studies of groups.
     GroupResearch,
-    /// All costs.
+    /// Total costs.
     Costs,
     /// Starting cash plus revenue minus costs.
     Subtotal,
-    /// Reported share of the subtotal.
+    /// Reported estimate: a share of the subtotal.
     Estimate,
 }
 
 impl AccountLine {
-    /// All lines in the order of the account.
+    /// All lines, in the order of the account.
     pub const ALL: [AccountLine; 16] = [
         AccountLine::Individuals,
         AccountLine::Enterprises,
@@ -58,7 +58,7 @@ impl AccountLine {
         AccountLine::Estimate,
     ];
 
-    /// Cost lines.
+    /// Lines that are costs.
     pub const COSTS: [AccountLine; 10] = [
         AccountLine::Compute,
         AccountLine::Capacity,
@@ -72,7 +72,7 @@ impl AccountLine {
         AccountLine::GroupResearch,
     ];
 
-    /// Returns the name of the line.
+    /// Returns the display name of the line.
     pub fn name(self) -> &'static str {
         match self {
             AccountLine::Individuals => "revenue, individuals",
@@ -94,7 +94,7 @@ impl AccountLine {
         }
     }
 
-    /// Returns the published figure in millions of dollars.
+    /// Returns the published figure of the line, in millions of dollars.
     pub fn published_millions(self) -> f64 {
         match self {
             AccountLine::Individuals => 1930.0,
@@ -116,7 +116,7 @@ impl AccountLine {
         }
     }
 
-    /// Returns the maximum rounding error of a published figure in millions of dollars.
+    /// Returns the maximum rounding error of the published figure, in millions of dollars.
     pub fn rounding_error(self) -> f64 {
         match self {
             AccountLine::Individuals | AccountLine::Enterprises => 5.0,

@@ -6,10 +6,10 @@ use novamind_world::identifiers::Group;
 use novamind_world::market::leads::market_cap;
 use novamind_world::params::Params;
 
-/// Steps of the numerical integration over market saturation.
+/// Number of steps of the numerical integration over market saturation.
 const INTEGRATION_STEPS: u32 = 20_000;
 
-/// Returns the ad cost of filling a group's market by the first renewal through its best channel, dollars.
+/// Returns the cost in dollars of filling a group's market by the first renewal with ads in the group's best channel.
 pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Params) -> f64 {
     let group_params = params.group(group);
     let first = premises.renewals.first().copied().unwrap_or(premises.days);
@@ -21,7 +21,8 @@ pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Para
     group_params.base_market_cap * saturation_factor(group_params.base_market_cap / market, params) / leads
 }
 
-/// Returns the mean cost per customer up to a market share relative to the first customer: yields fall as the market fills.
+/// Returns the mean cost per customer up to a market share, relative to the cost of the first customer. The cost
+/// increases as the market fills.
 fn saturation_factor(taken: f64, params: &Params) -> f64 {
     let leads = &params.leads;
     let cost = |step: u32| {
@@ -32,17 +33,17 @@ fn saturation_factor(taken: f64, params: &Params) -> f64 {
     (0..INTEGRATION_STEPS).map(cost).sum::<f64>() / f64::from(INTEGRATION_STEPS)
 }
 
-/// Returns the mean calendar factor on leads over the days up to one.
+/// Returns the mean calendar factor of leads over days 1 to `last`.
 fn mean_calendar_factor(last: u32, params: &Params) -> f64 {
     (1..=last).map(|day| params.calendar.lead_factor(day)).sum::<f64>() / f64::from(last.max(1))
 }
 
-/// Returns the customers or accounts to acquire.
+/// Returns the number of customers (individuals and enterprises) to acquire.
 pub fn account_count(params: &Params) -> f64 {
     Group::all().map(|group| params.group(group).base_market_cap).sum()
 }
 
-/// Returns the cost of leads, dollars.
+/// Returns the total cost of leads, dollars.
 pub fn lead_costs(params: &Params) -> f64 {
     account_count(params) * params.leads.lead_acquisition_cost
 }
@@ -56,7 +57,7 @@ mod tests {
         let (premises, params) = (BoundAssumptions::from_paper(3.0), Params::bundled());
         let s1 = Group::parse("S1").expect("a group");
         let taken = 1.0 / (1.0 + 0.2 * 30.0 / 365.0);
-        // The sum of 1 / (1 - x^2) up to a share is its inverse hyperbolic tangent.
+        // The integral of 1 / (1 - x^2) from 0 to a share is the inverse hyperbolic tangent of the share.
         let expected =
             272_000.0 / 0.3203613 / 0.5 / mean_calendar_factor(30, &params) * libm::atanh(taken) / taken;
         let value = advertising_cost(s1, &premises, &params);

@@ -1,35 +1,35 @@
-//! Premises of the account: the plan and its numbers from the paper.
+//! Assumptions of the account: the plan with its numbers from the paper.
 
-/// The plan whose result the account computes.
+/// The assumed plan, whose result the account computes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundAssumptions {
-    /// Slack: multiple of the required targeted development that is paid.
+    /// Slack: targeted development spending as a multiple of the required spending.
     pub slack: f64,
-    /// Days with costs.
+    /// Number of days with costs.
     pub days: u32,
-    /// Days of a run; the competitors' calendar depends on them.
+    /// Length of the run in days, on which the competitors' calendar depends.
     pub run_days: u32,
-    /// Renewal days of all customers.
+    /// Days on which all customers renew.
     pub renewals: Vec<u32>,
     /// Model tier of every plan.
     pub model_tier: u8,
-    /// Capacity tier.
+    /// Capacity tier on all days.
     pub capacity_tier: u8,
-    /// General development, dollars a day.
+    /// General development, $ per day.
     pub global_development: f64,
-    /// Highest R&D tier that is started.
+    /// Highest R&D tier; all tiers up to this tier are started.
     pub research_tiers: u8,
-    /// Start day of R&D.
+    /// Day on which the R&D projects start.
     pub research_day: u32,
-    /// Operations, dollars a day.
+    /// Fixed spending on operations, $ per day.
     pub operations: f64,
-    /// Operations per customer or seat, dollars a day.
+    /// Spending on operations per customer or seat, $ per day.
     pub operations_each: f64,
-    /// Share of a day's targeted gain that counts when spending is set; competitors drain the rest.
+    /// Share of a day's targeted gain that is assumed to remain when spending is set. Competitors drain the rest.
     pub counted_gain: f64,
     /// Study level of every group.
     pub study_level: u8,
-    /// Share of the amount before the discount that is reported.
+    /// Share of the subtotal that is reported as the estimate.
     pub reported_share: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct BoundAssumptions {
 pub const PUBLISHED_SLACK: f64 = 3.0;
 
 impl BoundAssumptions {
-    /// Returns the paper's premises with the given slack.
+    /// Returns the paper's assumptions with the given slack.
     pub fn from_paper(slack: f64) -> BoundAssumptions {
         BoundAssumptions {
             slack,
@@ -57,12 +57,12 @@ impl BoundAssumptions {
         }
     }
 
-    /// Returns the mean number of days for which a dollar of targeted development has acted at the end.
+    /// Returns the mean age, in days, of the targeted development spending at the end of the account.
     pub fn mean_spending_age(&self) -> f64 {
         f64::from(self.days) / 2.0
     }
 
-    /// Returns all assumptions of the account. Competitors are included if the parameters have them.
+    /// Returns the name and description of each assumption. Competitors are described if `has_rivals` is set.
     pub fn descriptions(&self, has_rivals: bool) -> Vec<(&'static str, String)> {
         let rivals = match has_rivals {
             true => format!(

@@ -9,7 +9,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
 impl BoundAccount {
-    /// Returns the reason why a line differs from the published one.
+    /// Explains why the figure of a line differs from the published figure.
     pub(super) fn explain_difference(&self, line: AccountLine, value: f64, params: &Params) -> String {
         let millions = value / 1e6;
         if (millions - line.published_millions()).abs() <= line.rounding_error() {
@@ -32,14 +32,14 @@ impl BoundAccount {
                 )
             }
             AccountLine::TargetedDevelopment if params.competitor.competitor_events_disabled => {
-                "no competitor raises expectations here; in the published account they do".to_owned()
+                "competitors raise expectations in the published account, but not here".to_owned()
             }
             AccountLine::TargetedDevelopment => format!(
                 "the gap of each group depends on competitors: mean over {} seeds here; the paper's method for gaps is unknown",
                 super::shared_quality::SEED_COUNT
             ),
             AccountLine::Advertising => format!(
-                "published {} of ours: ours fills every market within the first {} days, where leads become more expensive; the paper's pace is unknown",
+                "the published figure is {} of this one, which fills every market within the first {} days at rising lead costs; the paper's pace is unknown",
                 percent(ratio, 0),
                 self.assumptions.renewals.first().unwrap_or(&0)
             ),
@@ -53,7 +53,7 @@ impl BoundAccount {
                 )
             ),
             AccountLine::Operations => {
-                "supported customers and seats differ because the markets do".to_owned()
+                "supported customers and seats differ because the markets differ".to_owned()
             }
             AccountLine::MarketResearch => {
                 let unknown = Group::all().filter(|group| !group.is_initially_known()).count();
@@ -65,7 +65,7 @@ impl BoundAccount {
                 )
             }
             AccountLine::GroupResearch => format!(
-                "a study to level {} of every found group, at current prices; the levels that the paper pays for are unknown",
+                "studies of every discovered group up to level {}, at current prices; the paper's study levels are unknown",
                 self.assumptions.study_level
             ),
             AccountLine::Costs => "the sum of the costs above".to_owned(),

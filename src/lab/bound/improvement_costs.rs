@@ -3,12 +3,12 @@
 use super::assumptions::BoundAssumptions;
 use novamind_world::params::Params;
 
-/// Returns the cost of general development, dollars.
+/// Returns the cost of general development over the account's days, dollars.
 pub fn global_development_cost(premises: &BoundAssumptions) -> f64 {
     premises.global_development * f64::from(premises.days)
 }
 
-/// Returns the cost of the R&D tiers, dollars.
+/// Returns the cost of the R&D projects, dollars.
 pub fn research_cost(premises: &BoundAssumptions, params: &Params) -> f64 {
     (1..=premises.research_tiers).map(|tier| f64::from(params.research(tier).cost)).sum()
 }

@@ -8,12 +8,12 @@ pub fn compute_cost(daily_usage: f64, premises: &BoundAssumptions, params: &Para
     params.model(premises.model_tier).unit_cost * daily_usage * f64::from(premises.days)
 }
 
-/// Returns the cost of capacity, dollars.
+/// Returns the cost of capacity over the account's days, dollars.
 pub fn capacity_cost(premises: &BoundAssumptions, params: &Params) -> f64 {
     f64::from(params.capacity(premises.capacity_tier).cost_per_day) * f64::from(premises.days)
 }
 
-/// Returns the cost of operations for a number of customers and seats, dollars.
+/// Returns the cost of operations over the account's days, dollars. `customers` includes seats.
 pub fn operations_cost(customers: f64, premises: &BoundAssumptions) -> f64 {
     (premises.operations + premises.operations_each * customers) * f64::from(premises.days)
 }

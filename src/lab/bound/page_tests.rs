@@ -1,4 +1,4 @@
-//! Tests that the tables of docs/laboratory/bound.md equal the command's output.
+//! Tests that the tables of docs/laboratory/bound.md equal the output of `lab bound`.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::{BoundAccount, BoundAssumptions, bound_report, sensitivity};
 use crate::lab_report::{CellValue, LabTable};
 use novamind_world::params::Params;
 
-/// Returns the rows of a table in Markdown; numbers have one decimal.
+/// Formats the rows of a table as Markdown. Numbers have one decimal.
 fn rows_to_markdown(table: &LabTable, columns: &[usize]) -> String {
     let cell = |cell_value: &CellValue| match cell_value {
         CellValue::Text(text) => text.clone(),
@@ -23,7 +23,7 @@ fn rows_to_markdown(table: &LabTable, columns: &[usize]) -> String {
     table.rows.iter().map(row).collect()
 }
 
-/// Returns the page with the rows below each mark replaced, keeping table heads.
+/// Returns the page with new table rows below each marker. Table headings are kept.
 fn fill_tables(page: &str, tables: &[(&str, String)]) -> String {
     let (mut text, mut lines) = (String::new(), page.lines().peekable());
     while let Some(line) = lines.next() {

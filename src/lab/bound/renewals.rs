@@ -8,7 +8,8 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::product::development::targeted_development_gain;
 
-/// Returns the renewal share on each renewal day, given targeted spending (dollars a day) and overload.
+/// Returns the share of customers who renew, for each renewal day. `spending` is the group's targeted development in $
+/// per day, and `overload` is the quality lost to overload.
 pub fn renewal_shares(
     group: Group,
     spending: f64,
@@ -41,7 +42,7 @@ mod tests {
         let (premises, params) = (BoundAssumptions::from_paper(3.0), Params::bundled());
         let (s1, calm) = (Group::parse("S1").expect("a group"), shared_quality_path(&premises, &params));
         let values = renewal_shares(s1, 5000.0, 0.05, &calm, &premises, &params);
-        // Day 30: no competitor has acted, and 29 days of development have accumulated.
+        // On day 30, no competitor has moved yet, and development has accumulated for 29 days.
         let gain = 0.0225 * std::f64::consts::LN_2;
         let quality = 0.9 * (0.2 + calm.shared[30] + 29.0 * gain);
         let expected = normal_cdf((quality - 0.05 - 0.55) / 0.0125f64.sqrt());

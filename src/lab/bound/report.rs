@@ -1,4 +1,4 @@
-//! Tables of the account next to the published one, the sensitivity to slack, the groups, and the assumptions.
+//! Tables of the account next to the published account, the sensitivity to slack, the groups and the assumptions.
 
 use super::account::{BoundAccount, SATISFIED_SHARE, SensitivityRow};
 use super::account_line::AccountLine;
@@ -9,7 +9,7 @@ use crate::lab_report::{
 use novamind_base::formatting::percent;
 use novamind_report::ranking::published_results;
 
-/// Returns the account and its sensitivity to slack.
+/// Returns the report on the account and its sensitivity to slack.
 pub fn bound_report(account: &BoundAccount, slacks: &[SensitivityRow]) -> LabReport {
     let title = format!(
         "Upper bound, slack {}: the paper's account from the parameters in force",
@@ -27,8 +27,7 @@ pub fn bound_report(account: &BoundAccount, slacks: &[SensitivityRow]) -> LabRep
         exhibit.notes.push(format!("The published account has slack {PUBLISHED_SLACK}."));
     }
     exhibit.notes.push(
-        "The estimate is the published share of the amount before the discount. It does not limit what a run can reach; \
-         before the discount is the account itself."
+        "The estimate is the published share of the amount before the discount. The estimate does not limit the cash that a run can reach. The line \"before discount\" is the result of the account."
             .to_owned(),
     );
     exhibit.notes.push(format!("Published: {}.", published_results().source));
@@ -93,7 +92,7 @@ fn group_table(account: &BoundAccount) -> LabTable {
         Column::number("least_share", "least r", Measure::Share),
         Column::number("revenue", "revenue, M$", Measure::Millions),
     ];
-    let caption = "Groups: N customers or seats at price p; the gap of quality that T a day closes; r: share that renews";
+    let caption = "Groups. N: customers or seats, p: price, T: $ per day that close the quality gap, r: share that renews";
     let mut table = LabTable::new("groups", caption, columns);
     table.rows = (account.groups.iter())
         .map(|bound_group| {
@@ -121,7 +120,7 @@ fn assumption_table(account: &BoundAccount) -> LabTable {
     table
 }
 
-/// Returns a graph of renewal shares by day: mean, lowest and highest group.
+/// Returns a graph of the renewal shares by day: the mean of all groups, the lowest group and the highest group.
 fn renewal_graph(account: &BoundAccount) -> Graph {
     let days = || account.assumptions.renewals.iter().map(|day| f64::from(*day));
     let of_day = |at: usize| {

@@ -1,11 +1,11 @@
-//! mu, sigma and d: the quality required at the highest price, and its increase until a day.
+//! mu, sigma and d: the distribution of the quality required at the highest price, and the increase of the mean until a day.
 
 use super::shared_quality::SharedQualityPath;
 use novamind_world::customers::drift::{global_drift_step, group_drift_step, is_drift_day};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Returns the mean and spread of the quality required at the budget.
+/// Returns the mean and the standard deviation of the quality that a group requires at the budget.
 pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
     let group_params = params.group(group);
     (
@@ -14,8 +14,8 @@ pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
     )
 }
 
-/// Returns the quality that competitors and drift added to a group's expectations by a day, without what competitors copy of the
-/// group's own bank.
+/// Returns the increase of a group's expectations by competitors and drift until a day. Excludes the quality that
+/// competitors copy from the group's own bank.
 pub fn added_expectation(group: Group, day: u32, climate: &SharedQualityPath, params: &Params) -> f64 {
     let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
     let taste = applied * (group_drift_step(group, params).quality + global_drift_step(&params.drift));
@@ -23,7 +23,7 @@ pub fn added_expectation(group: Group, day: u32, climate: &SharedQualityPath, pa
     climate.raised_expectations[day as usize] * (1.0 + reaction) + taste
 }
 
-/// Returns the quality lost to overload.
+/// Returns the quality that customers lose to overload.
 pub fn overload_penalty(daily_usage: f64, capacity_tier: u8, params: &Params) -> f64 {
     let capacity = f64::from(params.capacity(capacity_tier).capacity_units);
     let strain = (daily_usage / capacity - params.operations.overload_reference_utilization).max(0.0);

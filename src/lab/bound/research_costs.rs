@@ -1,17 +1,17 @@
-//! Costs of finding and studying the groups.
+//! Costs of discovering and studying the groups.
 
 use super::assumptions::BoundAssumptions;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Returns the mean cost of market research until every group is found, dollars.
+/// Returns the expected cost of market research until every group is discovered, dollars.
 pub fn market_research_cost(params: &Params) -> f64 {
     let unknown = Group::all().filter(|group| !group.is_initially_known()).count() as f64;
     let research = &params.market_research;
     unknown * research.discovery_cost_level_1 / research.market_research_discover_prob
 }
 
-/// Returns the cost of a study of every found group, dollars.
+/// Returns the cost of the market studies of all discovered groups, dollars.
 pub fn group_research_cost(premises: &BoundAssumptions, params: &Params) -> f64 {
     let found = Group::all().filter(|group| !group.is_initially_known()).count() as f64;
     found * params.level(premises.study_level).cost

@@ -1,4 +1,4 @@
-//! q_shared and the competitors' reaction: means over seeds, computed with the simulator's own mechanism.
+//! q_shared and the competitors' reaction: means over seeds, computed with the functions of the simulator.
 
 use super::assumptions::BoundAssumptions;
 use novamind_world::customers::drift::DriftTotals;
@@ -9,21 +9,21 @@ use novamind_world::product::Product;
 use novamind_world::product::development::development_gain;
 use novamind_world::random::Streams;
 
-/// Number of seeds that are averaged, starting at 1.
+/// Number of seeds over which the means are taken. The first seed is 1.
 pub const SEED_COUNT: u64 = 64;
 
-/// Shared quality and competitor effects at the start of each day. List positions are days.
+/// Shared quality and competitor effects at the start of each day. The index in each list is the day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedQualityPath {
-    /// Shared quality gained.
+    /// Quality gain for all groups.
     pub shared: Vec<f64>,
-    /// Quality that competitors added to all customers' expectations.
+    /// Increase of all customers' expectations by competitors.
     pub raised_expectations: Vec<f64>,
-    /// Quality that competitors copied from a group's bank, for a targeted gain of 1 a day.
+    /// Quality that competitors copied from a group's bank, if the targeted gain is 1 per day.
     pub copied_quality: Vec<ByGroup<f64>>,
 }
 
-/// Returns the R&D gain on a day: the tiers that finish on it, at mean duration and mean gain.
+/// Returns the quality gain from the R&D projects that finish on a day, with the mean duration and mean gain of each tier.
 fn research_gain_on(day: u32, premises: &BoundAssumptions, params: &Params) -> f64 {
     let done = |tier: &u8| {
         let research_tier = params.research(*tier);
@@ -33,7 +33,7 @@ fn research_gain_on(day: u32, premises: &BoundAssumptions, params: &Params) -> f
     (1..=premises.research_tiers).filter(done).map(|tier| params.research(tier).mean_quality_boost).sum()
 }
 
-/// Returns the market conditions under the plan.
+/// Simulates shared quality and competitor effects under the plan, averaged over seeds.
 pub fn shared_quality_path(premises: &BoundAssumptions, params: &Params) -> SharedQualityPath {
     let days = premises.run_days as usize + 1;
     let mut mean = SharedQualityPath {
@@ -47,7 +47,8 @@ pub fn shared_quality_path(premises: &BoundAssumptions, params: &Params) -> Shar
     mean
 }
 
-/// Adds one seed's share to the mean. The order within a day is that of the simulator: R&D, competitors, development.
+/// Adds the contribution of one seed to the means. The order within a day equals the order in the simulator: R&D,
+/// competitors, development.
 fn add_seed(seed: u64, premises: &BoundAssumptions, params: &Params, mean: &mut SharedQualityPath) {
     let (streams, share) = (Streams::new(seed), 1.0 / SEED_COUNT as f64);
     let (mut product, mut drift, mut events) = (Product::initial(params), DriftTotals::default(), Vec::new());
@@ -82,7 +83,7 @@ mod tests {
         let quality_path = shared_quality_path(&premises, &params);
         let s1 = Group::parse("S1").expect("a group");
         assert_eq!((quality_path.raised_expectations[60], quality_path.copied_quality[60][s1]), (0.0, 0.0));
-        // Two tiers finish on day 31; development acts a day later.
+        // Two tiers finish on day 31. Development takes effect a day later.
         let gain = development_gain(40_000.0, &params.development);
         assert!((quality_path.shared[31] - 30.0 * gain).abs() < 1e-9);
         let two: f64 = 0.04 + 0.07 + 0.11;
@@ -92,7 +93,7 @@ mod tests {
             quality_path.raised_expectations[480] > quality_path.shared[480]
                 && quality_path.raised_expectations[480] < quality_path.shared[480] + 3.0
         );
-        // At the end, competitors have copied between 50 % and 90 % of a targeted gain of 1 a day.
+        // At the end, competitors have copied between 50 % and 90 % of a targeted gain of 1 per day.
         assert!((0.5..0.9).contains(&(quality_path.copied_quality[480][s1] / 479.0)));
     }
 

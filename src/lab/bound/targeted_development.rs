@@ -1,4 +1,4 @@
-//! Delta and T: the quality gap of a group and the targeted development that closes it.
+//! Delta and T: the quality gap of a group and the targeted development that closes the gap.
 
 use super::assumptions::BoundAssumptions;
 use super::required_quality::{added_expectation, required_quality};
@@ -6,8 +6,8 @@ use super::shared_quality::SharedQualityPath;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Returns the widest gap over the renewals between the mean customer's required quality and shared quality, in
-/// quality before the model's multiplier.
+/// Returns the widest gap on any renewal day between the quality that the mean customer requires and shared quality.
+/// The unit is quality before the multiplier of the model tier.
 pub fn widest_gap(
     group: Group,
     overload: f64,
@@ -24,7 +24,7 @@ pub fn widest_gap(
     premises.renewals.iter().map(gap).fold(0.0, f64::max)
 }
 
-/// Returns T0, the spending that closes a gap, dollars a day: scale (exp(gap / (counted share, mean age, gain)) - 1).
+/// Returns T0, the spending that closes a gap, $ per day: scale (exp(gap / (counted share * mean age * coefficient)) - 1).
 pub fn min_spending(gap: f64, premises: &BoundAssumptions, params: &Params) -> f64 {
     let development = &params.development;
     let counted =

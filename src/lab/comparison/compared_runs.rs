@@ -6,29 +6,29 @@ use crate::lab_report::Measure;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_report::ranking::{PublishedAgent, published_results};
 
-/// One figure for all runs.
+/// A row of the comparison: one figure with a value for each run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparisonRow {
-    /// Name.
+    /// Name of the figure.
     pub figure: String,
-    /// Group, horizon in days, or day; empty for the whole run.
+    /// Group, horizon in days, or day of the row; empty for a figure of the whole run.
     pub of: String,
-    /// Unit.
+    /// Unit of the values.
     pub unit: &'static str,
     /// Values in the order of the runs; `None` if a run has no value.
     pub values: Vec<Option<f64>>,
-    /// Published range, if any.
+    /// Range of the published values, if any.
     pub published: Option<PublishedRange>,
 }
 
 impl ComparisonRow {
-    /// Returns the measure of its values.
+    /// Returns the measure for the unit of the row.
     pub(super) fn measure(&self) -> Measure {
         measure_for_unit(self.unit)
     }
 }
 
-/// Returns the measure for a unit.
+/// Returns the measure, which formats values, for a unit.
 pub fn measure_for_unit(unit: &str) -> Measure {
     match unit {
         "dollars" => Measure::Dollars,
@@ -39,48 +39,48 @@ pub fn measure_for_unit(unit: &str) -> Measure {
     }
 }
 
-/// Range of published figures.
+/// A range of published values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PublishedRange {
-    /// Minimum.
+    /// Lowest published value.
     pub least: f64,
-    /// Maximum.
+    /// Highest published value.
     pub most: f64,
-    /// Description, because definitions differ.
+    /// Description of the published values, because definitions differ.
     pub what: &'static str,
 }
 
-/// A comparison of runs.
+/// A comparison of several runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Names of the runs.
     pub runs: Vec<String>,
-    /// Players.
+    /// Participant of each run; `None` for runs without a label.
     pub participants: Vec<Option<String>>,
     /// Indices into `runs`, best result first.
     pub order: Vec<usize>,
-    /// Last simulated day and end of each run.
+    /// Last simulated day of each run, with the reason for the end; `None` if the run is unfinished.
     pub ends: Vec<(u32, Option<RunEndReason>)>,
-    /// Figures.
+    /// Figures of the whole run or of a group.
     pub figures: Vec<ComparisonRow>,
-    /// Cash at the end of each week, dollars; `of` is the day.
+    /// Cash at the end of each week, dollars. `of` is the last day of the week.
     pub cash: Vec<ComparisonRow>,
-    /// Decisions before each week by run.
+    /// Decisions of all runs before each week.
     pub decisions: Vec<ComparedDecisions>,
-    /// Limits of comparability among the runs and with published ones.
+    /// Reasons why the runs are not comparable with each other or with published runs.
     pub caveats: Vec<String>,
 }
 
-/// Decisions of one week.
+/// The decisions of all runs before one week.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparedDecisions {
-    /// Decision day.
+    /// Decision day before the week.
     pub day: u32,
-    /// Descriptions in the order of the runs.
+    /// Descriptions of the decisions, by run.
     pub by_run: Vec<Vec<String>>,
 }
 
-/// Returns the range of a figure over the published agents.
+/// Returns the range of a figure among the published agents.
 pub(super) fn published_range(
     what: &'static str,
     of: impl Fn(&PublishedAgent) -> Option<f64>,

@@ -7,7 +7,7 @@ use novamind_report::Logbook;
 use novamind_report::ranking::published_results;
 use novamind_session::ForecastScore;
 
-/// A figure and the source of its values.
+/// A figure and the function that computes it for a run.
 pub struct ComparedFigure {
     name: &'static str,
     qualifier: &'static str,
@@ -16,13 +16,13 @@ pub struct ComparedFigure {
     published: fn() -> Option<PublishedRange>,
 }
 
-/// Returns a figure of the whole run by name and horizon. A test checks that every used name exists.
+/// Returns a figure of the whole run by its name and horizon. A test checks that all names in the code exist.
 pub fn find_figure(name: &str, of: &str) -> Option<&'static ComparedFigure> {
     FIGURES.iter().find(|figure| figure.name == name && figure.qualifier == of)
 }
 
 impl ComparedFigure {
-    /// Returns the name and horizon.
+    /// Returns the name of the figure with its horizon.
     pub fn title(&self) -> String {
         if self.qualifier.is_empty() {
             self.name.to_owned()
@@ -31,12 +31,12 @@ impl ComparedFigure {
         }
     }
 
-    /// Returns the unit.
+    /// Returns the unit of the figure.
     pub fn unit(&self) -> &'static str {
         self.unit
     }
 
-    /// Returns the value for a run, or `None` if there is none.
+    /// Returns the value of the figure for a run, or `None` if the run has no value.
     pub fn value(&self, run: &Logbook) -> Option<f64> {
         (self.value)(run)
     }
@@ -87,7 +87,7 @@ fn count_per_week(run: &Logbook, count: u32) -> Option<f64> {
 /// Nominal coverage of forecast intervals: 95 %.
 const NOMINAL_COVERAGE: PublishedRange = PublishedRange { least: 0.95, most: 0.95, what: "nominal coverage" };
 
-/// Figures of the whole run in output order.
+/// Figures of a whole run, in output order.
 pub const FIGURES: &[ComparedFigure] = &[
     compared_figure(
         "final cash",
@@ -110,7 +110,7 @@ pub const FIGURES: &[ComparedFigure] = &[
         "survival",
         "",
         "days",
-        // Survival is known once the run is over.
+        // Survival is known only after the run has ended.
         |run| run.ended.map(|_| f64::from(run.measures.survival_days)),
         || published_range("mean of three runs of each agent", |agent| Some(agent.mean_survival_days)),
     ),
@@ -258,7 +258,7 @@ fn random_channel_range() -> Option<PublishedRange> {
     Some(PublishedRange { least: share, most: share, what: "by chance" })
 }
 
-/// Returns the share of each group's ad spend on the channel with the most leads per dollar.
+/// Returns a row for each group: the share of ad spending on the channel with the most leads per dollar.
 pub(super) fn group_rows(runs: &[Logbook]) -> Vec<ComparisonRow> {
     let ads = |run: &Logbook| run.measures.channels.clone().map(|skill| skill.groups).unwrap_or_default();
     let by_run: Vec<_> = runs.iter().map(ads).collect();
@@ -278,7 +278,7 @@ pub(super) fn group_rows(runs: &[Logbook]) -> Vec<ComparisonRow> {
     groups.into_iter().map(row).collect()
 }
 
-/// Returns the cash at the end of each week that any run reached.
+/// Returns a row of cash for each week that at least one run reached.
 pub(super) fn cash_rows(runs: &[Logbook]) -> Vec<ComparisonRow> {
     let cash_of = |run: &Logbook, day: u32| {
         if day == 0 {

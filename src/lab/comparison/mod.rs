@@ -1,4 +1,4 @@
-//! Comparison of runs: result, cash by week, decisions and behavior, next to published figures.
+//! Comparison of runs with each other and with published figures, by result, weekly cash, decisions and behavior.
 
 mod compared_runs;
 mod figures;
@@ -13,7 +13,7 @@ use novamind_report::Logbook;
 use novamind_report::ranking::compare_results;
 use novamind_report::ranking_eligibility::{RankingCriteria, describe_excluded};
 
-/// Returns the comparison of runs.
+/// Compares runs.
 pub fn compare_runs(runs: &[Logbook]) -> Comparison {
     let mut figures: Vec<_> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
     figures.extend(figures::group_rows(runs));
@@ -29,7 +29,7 @@ pub fn compare_runs(runs: &[Logbook]) -> Comparison {
     }
 }
 
-/// Returns the runs ordered by result, best first; an unfinished run counts with its current cash.
+/// Returns the indices of the runs, best result first. The result of an unfinished run is its current cash.
 fn order_by_result(runs: &[Logbook]) -> Vec<usize> {
     let result = |run: &Logbook| (run.score.unwrap_or(run.cash), run.measures.survival_days);
     let mut order: Vec<usize> = (0..runs.len()).collect();
@@ -52,7 +52,7 @@ fn decisions_by_day(runs: &[Logbook]) -> Vec<ComparedDecisions> {
     decided.filter(|decided| decided.by_run.iter().any(|texts| !texts.is_empty())).collect()
 }
 
-/// Returns the reasons why figures of the runs are not comparable.
+/// Returns the reasons why the figures of the runs are not comparable with each other or with published figures.
 fn caveats(runs: &[Logbook]) -> Vec<String> {
     let Some(first) = runs.first() else { return Vec::new() };
     let mut caveats = Vec::new();

@@ -5,7 +5,7 @@ use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure, column_
 use novamind_base::formatting::grouped_number;
 use novamind_record::trajectory::record::RunEndReason;
 
-/// Columns: figure, horizon, heading; the most important first.
+/// Columns, most important first: name of the figure, horizon and heading.
 const COLUMNS: [(&str, &str, &str); 10] = [
     ("final cash", "", "cash"),
     ("calls that act, a week", "", "calls a week"),
@@ -19,7 +19,7 @@ const COLUMNS: [(&str, &str, &str); 10] = [
     ("forecast coverage", "28", "4-week coverage"),
 ];
 
-/// Returns a table with a row per run.
+/// Returns a report with one row per run, best result first.
 pub(super) fn row_per_run_report(comparison: &Comparison) -> LabReport {
     let figures: Vec<(&ComparisonRow, &str)> = COLUMNS
         .iter()
@@ -49,10 +49,10 @@ pub(super) fn row_per_run_report(comparison: &Comparison) -> LabReport {
     let rows = comparison.order.iter().enumerate().map(row).collect();
     let table = LabTable { rows, ..LabTable::new("runs", "", columns) };
     let exhibit = LabReport::with_table(format!("{} runs, best result first", comparison.runs.len()), table);
-    exhibit.with_note("Use --csv for cash by week and all figures, --json for decisions as well.")
+    exhibit.with_note("Use --csv for cash by week and all figures, --json to add decisions.")
 }
 
-/// Characters of a label that are shown, so that a row fits on one line.
+/// Maximum number of characters of a label, so that a row fits on one line.
 const LABEL_WIDTH: usize = 12;
 
 fn short_label(participant: Option<&str>) -> String {

@@ -5,12 +5,12 @@ use super::run_rows::row_per_run_report;
 use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_report::ranking::{describe_published_conditions, published_results};
 
-/// Maximum number of days with cash in the text; longer runs skip weeks.
+/// Maximum number of cash rows in the text. For longer runs, weeks are skipped.
 const MAX_CASH_ROWS: usize = 20;
 
 const MAX_LINE_WIDTH: usize = 124;
 
-/// Returns the comparison as text: runs in columns if `width` allows, otherwise one row per run.
+/// Formats the comparison as text. Runs are columns if they fit into `width`; otherwise each run is a row.
 pub fn comparison_to_text(comparison: &Comparison, width: usize) -> String {
     let table = side_by_side(comparison);
     if table.lines().any(|line| line.chars().count() > width) {
@@ -40,7 +40,7 @@ fn side_by_side(comparison: &Comparison) -> String {
     align_cells(&rows)
 }
 
-/// Returns the limits of comparability and the source of published figures.
+/// Returns the notes on comparability and the source of the published figures.
 fn footnotes(comparison: &Comparison) -> Vec<String> {
     let mut lines = comparison.caveats.clone();
     lines.push(format!("{}.", describe_published_conditions()));
@@ -81,7 +81,7 @@ fn format_value(value: f64, unit: &str) -> String {
     }
 }
 
-/// Aligns cells in columns: the first and last to the left, numbers to the right.
+/// Aligns cells in columns. The first and the last column are left-aligned, and all others are right-aligned.
 fn align_cells(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
@@ -116,7 +116,7 @@ fn decision_lines(comparison: &Comparison, line: usize) -> String {
     text + "\n"
 }
 
-/// Merges equal decisions of a week and adds their count.
+/// Merges equal decisions of a week and appends their count.
 fn count_equal(decisions: &[String]) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     for decision in decisions {
@@ -160,7 +160,7 @@ fn published_agents_text() -> String {
     align_cells(&rows) + "\n"
 }
 
-/// Returns the comparison as table rows, one per figure and day; the first row has the column names.
+/// Returns the comparison as table rows, one per figure and day. The first row contains the column names.
 pub fn comparison_to_rows(comparison: &Comparison) -> Vec<Vec<String>> {
     let mut head = ["figure", "of", "unit"].map(str::to_owned).to_vec();
     head.extend(comparison.runs.iter().cloned());

@@ -1,7 +1,7 @@
-//! Tests by playing whether two policies get the same random draws, claim by claim (docs/laboratory/consistency.md).
+//! Plays two policies and tests claim by claim whether they get the same random draws (docs/laboratory/consistency.md).
 //!
-//! Each claim is tested on two plays with the same seed. A play with another seed shows that the claim could have
-//! failed: if it gives the same values too, equality is not evidence.
+//! Each claim is tested on two plays with the same seed. A control play with another seed shows that the claim could
+//! have failed. If the control play has the same values, equal values are not evidence.
 
 mod random_draws;
 mod report;
@@ -16,30 +16,30 @@ use rayon::prelude::*;
 
 pub use random_draws::PlayEnd;
 
-/// Offset of the control seed from the tested seed.
+/// Difference between the control seed and the tested seed.
 const CONTROL_SEED_OFFSET: u64 = 1_000_003;
 
-/// The values of two plays that are compared.
+/// The selection of values that are compared between two plays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ComparedKeys {
-    /// Values that both plays have; a play with fewer attempts has fewer.
+    /// Values that both plays have. Plays can differ in the number of values, for example of attempts.
     Common,
-    /// All values until the earlier end of the two plays; a value that only one has is a difference.
+    /// All values until the earlier end of the two plays. A value that only one play has counts as a difference.
     UntilFirstEnd,
 }
 
-/// A claim on common random draws.
+/// A claim about common random draws.
 struct Claim {
     /// Text of the claim.
     statement: &'static str,
     /// Noun for the compared values, singular and plural.
     unit_names: (&'static str, &'static str),
-    /// Returns the values of a play.
+    /// Function that returns the compared values of a play.
     draws: fn(&PlayDraws) -> &DrawMap,
     compared_keys: ComparedKeys,
-    /// Whether it compares two plays of the same decisions.
+    /// Whether the claim compares two plays with the same decisions.
     same_decisions: bool,
-    /// Describes a key.
+    /// Function that formats the key of a compared value.
     format_key: fn(DrawKey) -> String,
 }
 
@@ -61,7 +61,7 @@ const CLAIMS: &[Claim] = &[
         format_key: |[group, n]| format!("customer {n} of {}", group_key_name(group)),
     },
     Claim {
-        statement: "the index of the economy does not depend on play",
+        statement: "the index of the economy does not depend on decisions",
         unit_names: ("day", "days"),
         draws: |luck| &luck.economy,
         compared_keys: ComparedKeys::UntilFirstEnd,
@@ -128,7 +128,7 @@ const CLAIMS: &[Claim] = &[
         format_key: day_key_name,
     },
     Claim {
-        statement: "the same decisions give the same company on one thread and on all",
+        statement: "the same decisions lead to the same company on one thread and on all threads",
         unit_names: ("state", "states"),
         draws: |luck| &luck.state,
         compared_keys: ComparedKeys::Common,
@@ -145,21 +145,21 @@ fn day_key_name([day, _]: DrawKey) -> String {
     format!("day {day}")
 }
 
-/// The result of a claim.
+/// The outcome of testing a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClaimOutcome {
-    /// All compared values are equal, and differ under another seed.
+    /// All compared values are equal, and they differ under another seed.
     Holds,
-    /// At least one value differs.
+    /// At least one compared value differs.
     Fails,
-    /// The plays have no common values for it.
+    /// The plays have no common values for the claim.
     NotTested,
-    /// Values are equal under another seed too: recorded draws are replayed, or nothing is random.
+    /// The values are also equal under another seed, because recorded draws are replayed or nothing is random.
     SameUnderEverySeed,
 }
 
 impl ClaimOutcome {
-    /// Returns the verdict as text.
+    /// Returns the label of the outcome in tables.
     pub fn label(self) -> &'static str {
         match self {
             ClaimOutcome::Holds => "holds",
@@ -170,39 +170,39 @@ impl ClaimOutcome {
     }
 }
 
-/// A tested claim.
+/// The result of testing a claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ClaimResult {
     /// Text of the claim.
     pub claim: &'static str,
     /// Number of compared values over all seeds.
     pub compared: usize,
-    /// Noun for the values.
+    /// Noun for the compared values, in the matching number.
     pub of: &'static str,
-    /// Number of different values.
+    /// Number of compared values that differ.
     pub different: usize,
-    /// Number of values compared with those of another seed.
+    /// Number of values that were compared with the values of another seed.
     pub compared_with_other_seed: usize,
-    /// Number of those that differ.
+    /// Number of values that differ under another seed.
     pub different_under_other_seed: usize,
     /// Description of the first difference.
     pub first_difference: Option<String>,
-    /// Verdict.
+    /// Outcome of the test.
     pub outcome: ClaimOutcome,
 }
 
-/// Two plays and the results of all claims.
+/// A check of common random draws: two policies and the results of all claims.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConsistencyCheck {
     /// Names of the two policies.
     pub policies: [String; 2],
     /// Results of both policies on the first seed.
     pub ends: [PlayEnd; 2],
-    /// Whether both plays ended in the same state, so that nothing was tested.
+    /// Whether both policies led to the same final states, in which case nothing was tested.
     pub plays_alike: bool,
-    /// Whether one policy switches demand surges off and was played with them anyway.
+    /// Whether one policy switches demand surges off but was played with demand surges.
     pub equalises_surges: bool,
-    /// Tested claims.
+    /// Results of all claims.
     pub claims: Vec<ClaimResult>,
 }
 
@@ -213,10 +213,10 @@ impl ConsistencyCheck {
     }
 }
 
-/// Returns the two default policies. They differ so much that every claim is tested.
+/// Returns the two default policies, which differ so much that every claim is tested.
 ///
 /// # Errors
-/// Fails if they are invalid; a test reads them.
+/// Fails if a bundled policy is invalid. A test checks that both policies are valid.
 pub fn contrasting_policies() -> Result<[Policy; 2], PolicyError> {
     let read = |name: &str, text: &str| {
         Policy::parse(&ParameterSource {
@@ -230,25 +230,26 @@ pub fn contrasting_policies() -> Result<[Policy; 2], PolicyError> {
     ])
 }
 
-/// Options of the test.
+/// Options of the consistency check.
 #[derive(Debug, Clone)]
 pub struct ConsistencySpec {
-    /// Seeds.
+    /// Tested seeds.
     pub seeds: Vec<u64>,
-    /// Scenario; `None`: that of the policies.
+    /// Name of the scenario; `None` for the scenario of the policies.
     pub scenario: Option<String>,
-    /// Last day that is played; the last day of the run does not change.
+    /// Last simulated day. The nominal length of the run does not change.
     pub until: Option<u32>,
 }
 
 impl ConsistencySpec {
-    /// Returns `Some(true)` if only one policy switches demand surges off; otherwise the two would play different worlds.
+    /// Returns `Some(true)` if only one policy switches demand surges off. Both policies are then played with surges,
+    /// because their worlds would otherwise differ.
     fn surges(policies: &[Policy; 2]) -> Option<bool> {
         let [one, other] = policies;
         (one.start.surges != other.start.surges).then_some(true)
     }
 
-    /// Returns the reason why two policies cannot play the same world, if there is one.
+    /// Returns the reason why two policies cannot be compared, if any.
     pub fn precondition_problem(&self, policies: &[Policy; 2]) -> Option<&'static str> {
         let [one, other] = policies.each_ref().map(|policy| &policy.start);
         match self.scenario {
@@ -299,9 +300,9 @@ struct SeedPlays {
     seed: u64,
     one: PlayDraws,
     other: PlayDraws,
-    /// First policy repeated on one thread.
+    /// The first policy, played again on one thread.
     again: PlayDraws,
-    /// First policy with another seed.
+    /// The first policy, played with the control seed.
     control: PlayDraws,
 }
 
@@ -338,7 +339,7 @@ impl SeedPlays {
     }
 }
 
-/// Counts the compared values of two plays and the differences.
+/// Counts of the compared and the different values of plays.
 #[derive(Debug, Default)]
 struct Differences {
     compared: usize,

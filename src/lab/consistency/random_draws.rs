@@ -1,4 +1,4 @@
-//! Random outcomes of a play, read from its world day by day.
+//! Random outcomes of a play, which are read from its world day by day.
 
 use std::collections::BTreeMap;
 
@@ -10,54 +10,54 @@ use novamind_session::{DayReport, HiddenState, Session};
 use novamind_tools::{Answer, DiscoveryAttempt, Rejection};
 use novamind_world::identifiers::{Channel, Group};
 
-/// Key of a value: a day, an attempt, or a customer of a group.
+/// Key of a random outcome: a day, an attempt, or a customer of a group.
 pub type DrawKey = [u32; 2];
 
-/// Value as bits.
+/// Random outcome as bit patterns of up to four numbers.
 pub type DrawValue = [u64; 4];
 
-/// Values by key.
+/// Random outcomes by key.
 pub type DrawMap = BTreeMap<DrawKey, DrawValue>;
 
-/// Random outcomes of one play.
+/// Random outcomes of one play of a policy.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PlayDraws {
-    /// Attempts of market research by their number, from 1: the group that was found, from 1, or 0.
+    /// Attempts of market research by number, from 1. The value is the discovered group, counted from 1, or 0.
     pub attempts: DrawMap,
-    /// Customers by group and running number: demand, seats, profile.
+    /// Customers by group and number in the group. The values are demand, seats and profile.
     pub customers: DrawMap,
-    /// The index of the economy by day.
+    /// Values of the economy index by day.
     pub economy: DrawMap,
-    /// Competitor events by day: size before copying, share of the bank that they can copy.
+    /// Competitor events by day. The values are the size before copying and the share of the bank that can be copied.
     pub rivals: DrawMap,
-    /// Demand surges by day: last day, factor.
+    /// Demand surges by first day. The values are the last day and the factor.
     pub surges: DrawMap,
-    /// Yields by day, group and channel, on days on which they change.
+    /// Channel yields by day, group and channel, on days on which the yields change.
     pub yields: DrawMap,
-    /// Share of failing payments by group and decision day.
+    /// Probability of a failed payment by group and decision day.
     pub failed_payments: DrawMap,
-    /// R&D projects by tier and start: days, gain.
+    /// R&D projects by tier and order of start. The values are the duration in days and the quality gain.
     pub projects: DrawMap,
-    /// Quality noise on the day after a decision.
+    /// Quality noise on the day after a decision day.
     pub noise: DrawMap,
-    /// Outage threshold of the day after a decision.
+    /// Outage threshold on the day after a decision day.
     pub outages: DrawMap,
     /// Hash of the whole state after the last day.
     pub state: DrawMap,
-    /// Result of the policy.
+    /// Result of the play.
     pub end: PlayEnd,
 }
 
-/// Result of a play.
+/// The result of a play.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlayEnd {
-    /// Last simulated day.
+    /// Last simulated day of the play.
     pub day: u32,
-    /// Cash after that day, dollars.
+    /// Cash after the last simulated day, dollars.
     pub cash: f64,
-    /// Number of leads.
+    /// Number of leads during the play.
     pub customers: u64,
-    /// Number of groups found.
+    /// Number of discovered groups.
     pub found: u32,
 }
 
@@ -89,7 +89,7 @@ pub fn play_recording_draws(
 }
 
 impl PlayDraws {
-    /// Records the result of an attempt to find a group.
+    /// Records the result of a market research attempt.
     fn record_answer(&mut self, answer: &Answer) {
         let Answer::ResearchMarket(attempt) = answer else { return };
         let found = match attempt {
@@ -99,7 +99,7 @@ impl PlayDraws {
         self.attempts.insert([self.attempts.len() as u32 + 1, 0], [found, 0, 0, 0]);
     }
 
-    /// Records draws of the next day that the world does not store.
+    /// Records the draws of the next day that the world does not store.
     fn record_next_draws(&mut self, session: &mut Session) -> Result<(), Rejection> {
         let day = session.day();
         for KeyedDraws { group, effect: follows, .. } in
@@ -147,7 +147,7 @@ impl PlayDraws {
         }
     }
 
-    /// Records the values that the world stores until the end.
+    /// Records the random outcomes that the world still stores at the end of the play.
     fn record_final_state(&mut self, session: &Session) -> Result<(), Rejection> {
         let world = session.debug_hidden_state()?.world();
         for event in &world.market.competitors {

@@ -1,10 +1,10 @@
-//! Tables of the claims on common random draws.
+//! Tables of the claims about common random draws.
 
 use super::{ClaimResult, ConsistencyCheck};
 use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure};
 
 impl ConsistencyCheck {
-    /// Returns a row per claim and the results of the two plays.
+    /// Returns a report with a row per claim and the results of the two policies.
     pub fn to_lab_report(&self) -> LabReport {
         let [one, other] = &self.policies;
         let mut exhibit = LabReport::with_table(
@@ -23,8 +23,7 @@ impl ConsistencyCheck {
             );
         }
         exhibit.with_note(
-            "Each value is read from a world in which the policy was played. Another seed shows that a claim could have failed: \
-             the last column counts what differs from the same policy under it.",
+            "Each value is read from a world in which the policy was played. A control play of the first policy with another seed shows that a claim could have failed. The last column counts the values that differ in the control play.",
         )
     }
 

@@ -7,7 +7,7 @@ use super::*;
 use novamind_world::params::{Params, bundled_sources};
 use novamind_world::random::{Part, Streams};
 
-/// Methods that draw from a stream.
+/// Names of the methods that draw from a random stream.
 const DRAW_METHODS: [&str; 12] = [
     ".uniform(",
     ".between(",
@@ -23,7 +23,7 @@ const DRAW_METHODS: [&str; 12] = [
     "word_below(",
 ];
 
-/// Counts the draws in a source, excluding comments and tests. `.index()` without an argument is a position.
+/// Counts the draws in source code, excluding comments and tests. `.index()` without an argument is not a draw.
 fn count_draws(text: &str) -> usize {
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -39,7 +39,7 @@ fn count_draws(text: &str) -> usize {
     lines.map(in_line).sum()
 }
 
-/// Counts the draws of the files in a folder, by path. `slice.fill(value)` is not a draw.
+/// Counts the draws in the source files of a folder, by path. `slice.fill(value)` is not a draw.
 fn collect_drawing_files(folder: &Path, below: &Path, found: &mut BTreeMap<String, usize>) {
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
         let path = entry.path();
@@ -70,7 +70,7 @@ fn every_simulator_draw_is_in_the_table() {
 
 #[test]
 fn every_random_part_is_in_the_table() {
-    // The wording of a post and the name of an author affect no numbers.
+    // The parts that draw the wording of a post and the name of an author affect no numbers.
     let words = [Part::Voice, Part::PersonaTemplate];
     for part in Part::ALL.iter().filter(|part| !words.contains(part)) {
         assert!(world_draws().any(|world_draw| world_draw.part == *part), "{} is missing", part.name());
@@ -101,7 +101,7 @@ fn names_are_unique_and_parameters_exist() {
     assert_eq!(names.len(), count);
 }
 
-/// Draws have the moments of their distribution. The tolerance corresponds to a chance of about 1 in 10,000.
+/// The sample moments equal the exact moments. The tolerance corresponds to a false alarm rate of about 1 in 10,000.
 #[test]
 fn simulator_draws_match_their_distributions() {
     const DRAWS: u64 = 20_000;

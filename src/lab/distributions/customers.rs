@@ -1,4 +1,4 @@
-//! Random draws of new customers: traits, channel, and misjudgment of quality.
+//! Random draws of new customers: traits, channel and judgment error.
 
 use super::distribution::{DrawDistribution, RoundingMode};
 use super::world_draw::{DrawContext, DrawFamily, WorldDraw, group_at};
@@ -13,7 +13,7 @@ use novamind_world::random::Part;
 const TRAITS_FILE: &str = "customers/traits.rs";
 const INFINITE: f64 = f64::INFINITY;
 
-/// Expected leads of the example day.
+/// Expected number of leads on the example day.
 const EXPECTED_LEADS: f64 = 12.0;
 
 fn example_traits(luck: &DrawContext, member: usize, n: u64) -> Traits {
@@ -28,7 +28,7 @@ fn normal_at_least(mean: f64, std: f64, least: f64) -> DrawDistribution {
     DrawDistribution::Normal { mean, std, min: least, max: INFINITE }
 }
 
-/// Returns the leads of a day on which every channel has the same budget for a group.
+/// Returns the lead factors of a day on which every channel has the same budget for a group.
 fn lead_factors_for_equal_budgets(params: &Params, member: usize) -> LeadFactors {
     let yields = params.starting_yields();
     let mut factors = LeadFactors::default();
@@ -38,7 +38,7 @@ fn lead_factors_for_equal_budgets(params: &Params, member: usize) -> LeadFactors
     factors
 }
 
-/// Returns the draws.
+/// Random draws of new customers.
 pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "steepness_left",

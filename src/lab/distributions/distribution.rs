@@ -1,103 +1,103 @@
-//! Distributions of the simulator, their notation and exact moments.
+//! Distributions of random draws, with their notation and exact moments.
 
 use crate::normal_distribution::normal_cdf;
 
-/// A distribution with its parameters. Values beyond an end are clamped to it.
+/// A distribution with its parameters. Values beyond a bound are clamped to the bound.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DrawDistribution {
-    /// Normal, clamped to two ends.
+    /// Normal distribution, clamped to two bounds.
     Normal {
         /// Mean before clamping.
         mean: f64,
         /// Standard deviation before clamping.
         std: f64,
-        /// Lower end; may be minus infinity.
+        /// Lower bound; may be minus infinity.
         min: f64,
-        /// Upper end; may be infinity.
+        /// Upper bound; may be infinity.
         max: f64,
     },
-    /// Normal, rounded to whole numbers.
+    /// Normal distribution, rounded to whole numbers.
     RoundedNormal {
         /// Mean before rounding.
         mean: f64,
         /// Standard deviation before rounding.
         std: f64,
-        /// Rounding.
+        /// Rounding mode.
         rounding: RoundingMode,
-        /// Lower end.
+        /// Lower bound.
         min: f64,
     },
-    /// Exponential plus an offset, clamped to two ends.
+    /// Exponential distribution plus an offset, clamped to two bounds.
     Exponential {
-        /// Mean of the exponential.
+        /// Mean of the exponential variate.
         mean: f64,
-        /// Offset.
+        /// Offset that is added to the exponential variate.
         offset: f64,
-        /// Lower end.
+        /// Lower bound.
         min: f64,
-        /// Upper end; may be infinity.
+        /// Upper bound; may be infinity.
         max: f64,
     },
-    /// Log-normal, clamped to two ends, then multiplied by a factor.
+    /// Log-normal distribution, clamped to two bounds, then multiplied by a factor.
     LogNormal {
-        /// Mean of the logarithm.
+        /// Mean of the logarithm of the variate.
         mu: f64,
-        /// Standard deviation of the logarithm.
+        /// Standard deviation of the logarithm of the variate.
         sigma: f64,
-        /// Lower end.
+        /// Lower bound before multiplication.
         min: f64,
-        /// Upper end; may be infinity.
+        /// Upper bound before multiplication; may be infinity.
         max: f64,
-        /// Factor.
+        /// Factor that multiplies the clamped value.
         factor: f64,
     },
-    /// Uniform from low to below high.
+    /// Uniform distribution, including the lower and excluding the upper bound.
     Uniform {
-        /// Lower end.
+        /// Lower bound, inclusive.
         low: f64,
-        /// Upper end.
+        /// Upper bound, exclusive.
         high: f64,
     },
-    /// Uniform whole numbers from low to high, inclusive.
+    /// Uniform distribution of whole numbers, including the bounds.
     UniformInteger {
-        /// Lower end.
+        /// Lowest value.
         low: u32,
-        /// Upper end.
+        /// Highest value.
         high: u32,
     },
-    /// 1 with a probability, otherwise 0.
+    /// Bernoulli distribution: 1 with the given probability, otherwise 0.
     Bernoulli(f64),
-    /// Poisson.
+    /// Poisson distribution with the given mean.
     Poisson(f64),
-    /// Values with weights.
+    /// Discrete distribution: values with weights.
     Discrete(Vec<(f64, f64)>),
 }
 
-/// Rounding to whole numbers.
+/// A mode of rounding to whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RoundingMode {
-    /// To the nearest.
+    /// Round to the nearest whole number.
     Nearest,
-    /// Towards zero.
+    /// Round towards zero.
     Down,
 }
 
-/// Mean and standard deviation.
+/// Mean and standard deviation of a distribution or sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
-    /// Mean.
+    /// Mean of the values.
     pub mean: f64,
-    /// Standard deviation.
+    /// Standard deviation of the values.
     pub std: f64,
 }
 
 impl Moments {
-    /// Computes them from the first two moments about zero.
+    /// Computes the moments from the first two moments about zero.
     fn from_raw_moments(first: f64, second: f64) -> Moments {
         Moments { mean: first, std: (second - first * first).max(0.0).sqrt() }
     }
 
-    /// Computes them for values with weights.
+    /// Computes the moments of values with weights.
     fn from_weighted(values: impl Iterator<Item = (f64, f64)>) -> Moments {
         let (mut total, mut first, mut second) = (0.0, 0.0, 0.0);
         for (value, weight) in values {
@@ -110,7 +110,7 @@ impl Moments {
 }
 
 impl DrawDistribution {
-    /// Returns the name.
+    /// Returns the name of the distribution.
     pub fn name(&self) -> &'static str {
         match self {
             DrawDistribution::Normal { .. } => "normal",
@@ -125,7 +125,7 @@ impl DrawDistribution {
         }
     }
 
-    /// Describes the parameters.
+    /// Describes the parameters of the distribution.
     pub fn describe_parameters(&self) -> String {
         let number = |value: &f64| ((value * 1e6).round() / 1e6).to_string();
         let ends = |least: &f64, most: &f64| match (least.is_finite(), most.is_finite()) {
@@ -165,7 +165,7 @@ impl DrawDistribution {
         }
     }
 
-    /// Returns the exact moments.
+    /// Returns the exact moments of the distribution.
     pub fn moments(&self) -> Moments {
         match *self {
             DrawDistribution::Normal { mean, std, min: least, max: most } => {
@@ -201,7 +201,7 @@ fn normal_density(z: f64) -> f64 {
     libm::exp(-z * z / 2.0) / (2.0 * std::f64::consts::PI).sqrt()
 }
 
-/// Returns the moments of a normal variable clamped to two ends.
+/// Returns the moments of a normal variable that is clamped to two bounds.
 fn clamped_normal_moments(mean: f64, std: f64, least: f64, most: f64) -> Moments {
     if std <= 0.0 {
         return Moments { mean: mean.clamp(least, most), std: 0.0 };
@@ -224,7 +224,8 @@ fn clamped_normal_moments(mean: f64, std: f64, least: f64, most: f64) -> Moments
     )
 }
 
-/// Returns the moments of a rounded normal variable from the probabilities of the whole numbers above the lower end.
+/// Returns the moments of a rounded normal variable, computed from the probability of each whole number above the
+/// lower bound.
 fn rounded_normal_moments(mean: f64, std: f64, rounding: RoundingMode, least: f64) -> Moments {
     let edge = if rounding == RoundingMode::Nearest { 0.5 } else { 1.0 };
     let below = |whole: f64| normal_cdf((whole + edge - mean) / std);
@@ -249,7 +250,7 @@ fn clamped_exponential_moments(mean: f64, offset: f64, least: f64, most: f64) ->
     Moments { mean: start + moments.mean, std: moments.std }
 }
 
-/// Returns a moment about zero of a log-normal variable clamped to two ends.
+/// Returns the moment of order `power` about zero of a log-normal variable that is clamped to two bounds.
 fn clamped_log_normal_moment(power: f64, mu: f64, sigma: f64, least: f64, most: f64) -> f64 {
     let below = |value: f64, shift: f64| match value {
         value if value <= 0.0 => 0.0,
@@ -267,7 +268,7 @@ fn clamped_log_normal_moment(power: f64, mu: f64, sigma: f64, least: f64, most: 
 mod tests {
     use super::*;
 
-    /// Returns moments by summing over the quantiles of the underlying normal or uniform variable.
+    /// Computes the moments numerically, by summing over the quantiles of the underlying normal or uniform variable.
     fn numeric_moments(value: impl Fn(f64) -> f64) -> Moments {
         let steps = 400_000;
         let at = |step: u32| (f64::from(step) + 0.5) / f64::from(steps);

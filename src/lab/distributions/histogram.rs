@@ -1,21 +1,21 @@
 //! Histograms of draws.
 
-/// Counts of draws in bins of equal width.
+/// A histogram: counts of draws in bins of equal width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
-    /// Lower end of the first bin.
+    /// Lower bound of the first bin.
     pub from: f64,
-    /// Width of a bin.
+    /// Width of each bin.
     pub width: f64,
-    /// Draws in each bin; the outer bins include everything beyond.
+    /// Number of draws in each bin. The outer bins include all draws beyond the histogram.
     pub counts: Vec<u64>,
 }
 
-/// Share of draws at each end that is merged into the outer bins, so that outliers do not flatten the rest.
+/// Share of draws at each end that the outer bins include, so that outliers do not widen all bins.
 const TAIL_SHARE: f64 = 0.001;
 
 impl Histogram {
-    /// Creates a histogram with at most `bins` bins. A small number of distinct values has one bin each.
+    /// Creates a histogram with at most `bins` bins. If the draws have few distinct values, each value has one bin.
     pub fn from_draws(draws: &[f64], bins: usize) -> Histogram {
         let mut sorted: Vec<f64> = draws.iter().copied().filter(|draw| draw.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -41,7 +41,7 @@ impl Histogram {
         Histogram { from, width, counts }
     }
 
-    /// Returns the middle of a bin.
+    /// Returns the center of a bin.
     pub fn bin_center(&self, bin: usize) -> f64 {
         self.from + (bin as f64 + 0.5) * self.width
     }

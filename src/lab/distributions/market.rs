@@ -1,4 +1,4 @@
-//! Random draws of the market: competitors, surges, economy, channels, market studies.
+//! Random draws of the market: competitors, demand surges, economy, channels and market studies.
 
 use super::distribution::DrawDistribution;
 use super::world_draw::{DrawContext, DrawFamily, WorldDraw, group_at};
@@ -24,7 +24,7 @@ fn competitor_event_chance(params: &Params) -> f64 {
     event_probability(EXAMPLE_DAY, EXAMPLE_RUN_DAYS, None, params)
 }
 
-/// Returns the size (before growth) and the copied share of an event, with its probability set to 1.
+/// Returns the size before growth and the copied share of a competitor event, whose probability is set to 1.
 fn example_competitor_event(luck: &DrawContext, n: u64) -> (f64, f64) {
     let mut stream = luck.streams.open(Part::CompetitorEvent, [n]);
     let drawn = draw_event(1.0, &luck.params.competitor, &mut stream);
@@ -35,7 +35,7 @@ fn unknown_groups() -> Vec<Group> {
     Group::all().filter(|group| !group.is_initially_known()).collect()
 }
 
-/// Returns a figure of a surge, with its probability set to 1.
+/// Returns a figure of a demand surge, whose probability is set to 1.
 fn example_surge(luck: &DrawContext, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
     let demand_surge =
         novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
@@ -49,7 +49,7 @@ fn best_yield(params: &Params, member: usize) -> f64 {
     params.starting_yields()[best_starting_channel(group, params)][group]
 }
 
-/// Returns the draws.
+/// Random draws of the market.
 pub const MARKET_DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "rival_event",

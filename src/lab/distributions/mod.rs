@@ -1,4 +1,4 @@
-//! Every distribution of the simulator with its exact moments (docs/laboratory/laws-and-curves.md).
+//! Every random draw of the simulator, with its distribution and exact moments (docs/laboratory/laws-and-curves.md).
 
 mod customers;
 mod distribution;

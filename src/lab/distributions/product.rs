@@ -16,7 +16,7 @@ fn chance_of_outage(params: &Params) -> f64 {
     outage_probability(0.0, 0.0, &params.operations)
 }
 
-/// Returns the draws.
+/// Random draws of the product.
 pub const PRODUCT_DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "outage",
@@ -154,7 +154,7 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         },
         draw: |luck, tier, n| {
             let mut stream = luck.streams.open(Part::Research, [tier as u64, n]);
-            // The duration is drawn first.
+            // The first draw of the stream is the duration.
             let (_, z) = (stream.standard_normal(), stream.standard_normal());
             project_boost(luck.params.research(tier as u8), z, &luck.params.development)
         },

@@ -1,4 +1,4 @@
-//! Reference draws of the same distributions with `rand_distr` and a separate generator.
+//! Reference draws from the same distributions, with `rand_distr` and a separate generator.
 
 use rand::distr::Distribution;
 use rand::{RngExt, SeedableRng};
@@ -10,7 +10,7 @@ use super::distribution::{DrawDistribution, RoundingMode};
 const REFERENCE_SEED: u64 = 20_000;
 
 impl DrawDistribution {
-    /// Returns a number of draws from the distribution.
+    /// Returns `count` reference draws from the distribution.
     pub fn reference_draws(&self, count: u64) -> Vec<f64> {
         let mut rng = ChaCha8Rng::seed_from_u64(REFERENCE_SEED);
         let mut many = |draw: &dyn Fn(&mut ChaCha8Rng) -> f64| (0..count).map(|_| draw(&mut rng)).collect();

@@ -1,4 +1,4 @@
-//! Table of all distributions, and one distribution with its histogram.
+//! Reports on all distributions, and on one distribution with its histogram.
 
 use super::distribution::{DrawDistribution, Moments};
 use super::histogram::Histogram;
@@ -12,10 +12,10 @@ use novamind_base::statistics::SampleStatistics;
 use novamind_report::plot::SPARKLINE_CHARS;
 
 const HISTOGRAM_BINS: usize = 40;
-/// Characters of a small histogram.
+/// Width of a small histogram, in characters.
 const SMALL_HISTOGRAM_WIDTH: usize = 12;
 
-/// Returns all distributions, each drawn `draws` times for the first member of its family.
+/// Returns a report on all random draws, each drawn `draws` times for the first member of its family.
 pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
     let columns = vec![
         Column::text("name", "name"),
@@ -61,16 +61,16 @@ pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
     );
     exhibit.tables.push(sources);
     exhibit
-        .with_note("Draws use the simulator's functions; exact moments follow from the distribution. `lab distributions NAME` shows one with its histogram, `--of MEMBER` another group or tier.")
-        .with_note("Two more streams choose only words: the wording of a post and the name of its author.")
+        .with_note("Draws use the simulator's functions; exact moments follow from the distribution. `lab distributions NAME` shows one draw with its histogram; `--of MEMBER` selects another group or tier.")
+        .with_note("Two more random streams choose only texts: the wording of a post and the name of its author.")
 }
 
-/// Returns the decimals that show three digits of a spread.
+/// Returns the number of decimals that shows three digits of a standard deviation.
 fn decimals_for_spread(spread: f64) -> usize {
     if spread > 0.0 { (2.0 - libm::floor(libm::log10(spread))).clamp(0.0, 9.0) as usize } else { 2 }
 }
 
-/// Returns the parameters and the files that draw.
+/// Describes the parameters of a draw and the source files that contain it.
 fn describe_source(world_draw: &WorldDraw) -> String {
     let mut files: Vec<&str> = world_draw.source_files.iter().map(|(file, _)| *file).collect();
     files.dedup();
@@ -84,7 +84,8 @@ fn small_histogram(histogram: &Histogram) -> String {
     histogram.counts.iter().map(level).collect()
 }
 
-/// Returns a distribution for one member of its family: histogram, sample moments, exact moments and moments of reference draws.
+/// Returns a report on one draw for a member of its family: histogram, sample moments, exact moments and moments of
+/// reference draws.
 pub fn distribution_report(
     world_draw: &WorldDraw,
     (member, name): (usize, &str),
@@ -129,7 +130,7 @@ pub fn distribution_report(
         .filter(|name| !name.is_empty())
         .collect();
     if !members.is_empty() {
-        exhibit.notes.push(format!("Values of --of: {}.", members.join(", ")));
+        exhibit.notes.push(format!("Possible values of --of: {}.", members.join(", ")));
     }
     exhibit
 }

@@ -1,4 +1,4 @@
-//! Random draws of retention: support, failed payments, reputation damage, negotiations.
+//! Random draws of retention: support, failed payments, reputation loss and negotiations.
 
 use super::distribution::{DrawDistribution, RoundingMode};
 use super::world_draw::{DrawFamily, WorldDraw, group_at};
@@ -13,7 +13,7 @@ use novamind_world::retention::renewal::{involuntary_rate, payment_rolls};
 const RENEWAL_FILE: &str = "retention/renewal.rs";
 const SUPPORT_FILE: &str = "retention/support_pools.rs";
 
-/// Mean issues that the example pool resolves a day, and its backlog.
+/// Mean number of issues that the example support pool resolves per day, and its backlog.
 const EXAMPLE_SOLVED_ISSUES: f64 = 3.0;
 const EXAMPLE_OPEN_ISSUES: usize = 8;
 /// Satisfaction of the example customer who opens an issue.
@@ -23,7 +23,7 @@ fn issue_chance(params: &Params) -> f64 {
     issue_probability(EXAMPLE_SATISFACTION, false, 1.0, &params.issues)
 }
 
-/// Returns the draws.
+/// Random draws of retention.
 pub const RETENTION_DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "issues_solved",
@@ -113,7 +113,7 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
             DrawDistribution::Bernoulli(params.group(group_at(member)).involuntary_churn_mean)
         },
         draw: |luck, member, n| {
-            // Customers at one position of their blocks, day after day.
+            // Draws for the customer at the same position of the block, on consecutive days.
             let group = group_at(member);
             let (number, day) = ((n % 97) as u32, (n / 97) as u32);
             let word =

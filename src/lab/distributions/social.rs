@@ -1,4 +1,4 @@
-//! Random draws of the social feed: authors, tone, reach, press coverage.
+//! Random draws of the social feed: authors, tone, reach and press coverage.
 
 use super::distribution::DrawDistribution;
 use super::world_draw::{DrawContext, DrawFamily, WorldDraw};
@@ -27,7 +27,7 @@ fn draw_integer(luck: &DrawContext, part: Part, n: u64, (low, high): (u32, u32))
     f64::from(luck.streams.open(part, [n]).integer(low, high))
 }
 
-/// Returns the draws.
+/// Random draws of the social feed.
 pub const SOCIAL_DRAWS: &[WorldDraw] = &[
     WorldDraw {
         name: "post_clock",

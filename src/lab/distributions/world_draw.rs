@@ -1,4 +1,5 @@
-//! Definition of a draw: description, distribution under the current parameters, and the simulator's function for it.
+//! The definition of a random draw: description, distribution under the current parameters, and the simulator function
+//! that draws.
 
 use super::distribution::DrawDistribution;
 use novamind_base::similar_names;
@@ -6,39 +7,39 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// Parameters and streams of the draws.
+/// The parameters and random streams with which draws are made.
 #[derive(Debug)]
 pub struct DrawContext {
-    /// Current parameters.
+    /// Parameters that determine the distributions.
     pub params: Params,
-    /// Random streams.
+    /// Random streams of the seed.
     pub streams: Streams,
 }
 
 impl DrawContext {
-    /// Creates the parameters and streams of a seed.
+    /// Creates the context from parameters and a seed.
     pub fn new(params: Params, seed: u64) -> DrawContext {
         DrawContext { params, streams: Streams::new(seed) }
     }
 }
 
-/// The family of items that have separate draws.
+/// The family of items for which a draw is made separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DrawFamily {
-    /// A single draw.
+    /// No family; the draw is made once.
     Single,
-    /// Groups.
+    /// All groups.
     Groups,
-    /// Groups of individuals.
+    /// All groups of individuals.
     Individuals,
-    /// Groups of enterprises.
+    /// All groups of enterprises.
     Enterprises,
-    /// R&D tiers.
+    /// All R&D tiers.
     ResearchTiers,
 }
 
 impl DrawFamily {
-    /// Returns the members: positions of groups or numbers of tiers, with names.
+    /// Returns the members of the family: the position of each group or the number of each tier, with its name.
     pub fn members(self, params: &Params) -> Vec<(usize, String)> {
         let groups = |wanted: &dyn Fn(&Group) -> bool| {
             let chosen = Group::all().filter(|group| wanted(group));
@@ -64,41 +65,41 @@ impl DrawFamily {
 /// A random draw of the simulator.
 #[derive(Debug)]
 pub struct WorldDraw {
-    /// Name.
+    /// Name of the draw.
     pub name: &'static str,
-    /// Description with unit.
+    /// Description of the draw, with its unit.
     pub description: &'static str,
-    /// Part of the simulator whose streams it uses.
+    /// Part of the simulator whose random streams the draw uses.
     pub part: Part,
-    /// Family.
+    /// Family of items for which the draw is made.
     pub family: DrawFamily,
-    /// Parameters that it depends on.
+    /// Parameters on which the distribution depends.
     pub parameters: &'static [&'static str],
-    /// Files below `src/world` that draw it, with the number of draws.
+    /// Files below `src/world` that contain the draw, with the number of occurrences.
     pub source_files: &'static [(&'static str, usize)],
-    /// Distribution for a member of the family.
+    /// Function that returns the distribution for a member of the family.
     pub distribution: fn(&Params, usize) -> DrawDistribution,
-    /// Returns the n-th draw for a member with the simulator's functions.
+    /// Function that makes the n-th draw for a member with the simulator's code.
     pub draw: fn(&DrawContext, usize, u64) -> f64,
 }
 
 impl WorldDraw {
-    /// Returns the draw with a name.
+    /// Returns the draw with the given name.
     ///
     /// # Errors
-    /// Returns the most similar names if there is none.
+    /// Returns the most similar names if no draw has this name.
     pub fn find(name: &str) -> Result<&'static WorldDraw, Vec<&'static str>> {
         let found = super::world_draws().find(|world_draw| world_draw.name == name);
         found.ok_or_else(|| similar_names(name, super::world_draws().map(|draw| draw.name)))
     }
 
-    /// Returns the first draws for a member.
+    /// Returns the first `count` draws for a member of the family.
     pub fn draws(&self, luck: &DrawContext, member: usize, count: u64) -> Vec<f64> {
         (1..=count).map(|n| (self.draw)(luck, member, n)).collect()
     }
 }
 
-/// Returns the group at a position.
+/// Returns the group at a position in the list of groups.
 pub(super) fn group_at(position: usize) -> Group {
     Group::at(position).unwrap_or_else(|| Group::all().next().expect("there are groups"))
 }

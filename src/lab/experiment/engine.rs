@@ -1,4 +1,5 @@
-//! Plays runs without a stored result on all threads until all are done or the experiment is stopped.
+//! The engine of experiments. The engine plays all runs without a stored result in parallel, until the experiment is
+//! complete or stopped.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,17 +16,17 @@ use crate::runner::{self, RunError, RunSpec};
 use novamind_record::folder::configuration::Configuration;
 use novamind_session::DayReport;
 
-/// Resources of an experiment.
+/// Resources with which an experiment is executed.
 pub struct ExperimentContext<'a> {
-    /// Scenarios and parameters.
+    /// Configuration with the scenarios and parameters.
     pub configuration: &'a Configuration,
-    /// Store of results; `None`: results are not stored.
+    /// Store of results; `None` if results are not stored.
     pub store: Option<&'a ResultStore>,
-    /// Number of threads.
+    /// Thread pool that plays the runs.
     pub pool: &'a rayon::ThreadPool,
-    /// Stop flag; active runs are abandoned.
+    /// Flag that stops the experiment. Active runs are abandoned.
     pub stop: &'a AtomicBool,
-    /// Called after every played run.
+    /// Callback after every played run.
     pub on_run: &'a (dyn Fn() + Sync),
 }
 
@@ -34,23 +35,23 @@ pub struct ExperimentContext<'a> {
 pub enum ExperimentError {
     /// A run could not start, or a tool rejected a call.
     Run {
-        /// Arm.
+        /// Name of the arm.
         arm: String,
-        /// Error.
+        /// Error of the run.
         error: Box<RunError>,
     },
     /// Results cannot be stored or read.
     Store {
-        /// Path of the file.
+        /// Path of the results file.
         path: std::path::PathBuf,
-        /// Error of the file system.
+        /// File system error.
         error: io::Error,
     },
     /// The experiment was stopped.
     Stopped {
         /// Number of stored runs.
         kept: usize,
-        /// Number of runs in the experiment.
+        /// Total number of runs in the experiment.
         of: usize,
     },
 }
@@ -76,19 +77,19 @@ impl std::error::Error for ExperimentError {}
 /// The results of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExperimentResults {
-    /// Seeds, in the order of the experiment.
+    /// Seeds of the runs, in the order of the experiment.
     pub seeds: Vec<u64>,
-    /// Results by arm and seed.
+    /// Results of the runs, by arm and seed.
     pub by_arm: Vec<Vec<RunResult>>,
 }
 
 impl ExperimentResults {
-    /// Returns a figure of an arm by seed.
+    /// Returns the values of a figure in an arm, by seed.
     pub fn figures_of_arm(&self, arm: usize, figure: impl Fn(&RunResult) -> f64) -> Vec<f64> {
         self.by_arm.get(arm).into_iter().flatten().map(figure).collect()
     }
 
-    /// Returns pairs of a figure for two arms, by seed.
+    /// Returns pairs of values of a figure in two arms, by seed.
     pub fn paired_figures(
         &self,
         arm: usize,
@@ -99,18 +100,18 @@ impl ExperimentResults {
     }
 }
 
-/// An experiment with its stored results loaded.
+/// An experiment whose stored results are loaded.
 pub struct PreparedExperiment<'a> {
     experiment: &'a Experiment,
-    /// Keys of runs by number, ordered by arm, then by seed.
+    /// Keys of the runs by run number. Runs are numbered by arm, then by seed.
     keys: Vec<String>,
-    /// Cash on day 0 by arm, dollars.
+    /// Cash on day 0, dollars, by arm.
     start_cash: Vec<f64>,
     known_results: BTreeMap<String, RunResult>,
 }
 
 impl Experiment {
-    /// Loads stored results, or none if `fresh` is set.
+    /// Loads the stored results of the experiment, or no results if `fresh` is set.
     ///
     /// # Errors
     /// Fails if an arm has an unknown scenario or an invalid parameter, or if results cannot be read.
@@ -133,7 +134,7 @@ impl Experiment {
         Ok(PreparedExperiment { experiment: self, keys, start_cash, known_results: known })
     }
 
-    /// Returns the key of each run by number. A key covers everything the result depends on.
+    /// Returns the key of each run, by run number. A key covers everything on which the result depends.
     ///
     /// # Errors
     /// Fails if an arm has an unknown scenario or an invalid parameter.
@@ -161,12 +162,12 @@ fn store_error(store: &ResultStore, error: io::Error) -> ExperimentError {
 }
 
 impl PreparedExperiment<'_> {
-    /// Counts the runs among some numbers that have no result.
+    /// Returns how many of the runs with the given numbers have no result.
     pub fn remaining_runs(&self, numbers: &[usize]) -> usize {
         self.pending_runs(numbers).len()
     }
 
-    /// Sets the result of a run that the caller knows to be identical to another run.
+    /// Adds a result for a run that the caller knows to be identical to another run.
     pub fn add_result(&mut self, arm: usize, run: &RunResult) {
         let seeds = &self.experiment.seeds;
         let place = seeds.iter().position(|seed| *seed == run.seed);
@@ -175,7 +176,7 @@ impl PreparedExperiment<'_> {
         }
     }
 
-    /// Returns the numbers of the runs to play, each once.
+    /// Returns the numbers of the runs that must be played, without duplicates.
     fn pending_runs(&self, numbers: &[usize]) -> Vec<usize> {
         let mut taken = BTreeSet::new();
         let is_left = |number: &&usize| {
@@ -185,7 +186,7 @@ impl PreparedExperiment<'_> {
         numbers.iter().filter(is_left).copied().collect()
     }
 
-    /// Returns the numbers of all runs.
+    /// Returns the numbers of all runs of the experiment.
     pub fn run_numbers(&self) -> Vec<usize> {
         (0..self.keys.len()).collect()
     }
@@ -202,10 +203,10 @@ impl PreparedExperiment<'_> {
         Ok(ExperimentResults { seeds, by_arm })
     }
 
-    /// Plays the remaining runs with these numbers and returns their results in this order.
+    /// Plays the runs among `numbers` that have no result. Returns the results of all `numbers` in the given order.
     ///
     /// # Errors
-    /// As for [`PreparedExperiment::run`].
+    /// Same errors as [`PreparedExperiment::run`].
     pub fn run_some(
         mut self,
         numbers: &[usize],
@@ -238,7 +239,7 @@ impl PreparedExperiment<'_> {
         Ok(numbers.iter().filter_map(|number| self.known_results.get(&self.keys[*number]).cloned()).collect())
     }
 
-    /// Plays a run; returns `None` if it was stopped.
+    /// Plays a run. Returns `None` if the experiment was stopped.
     fn play_run(
         &self,
         number: usize,

@@ -1,20 +1,20 @@
-//! Keys of experiment runs: a hash of everything the result depends on.
+//! Keys of experiment runs. A key is a hash of everything on which the result depends.
 
 use super::{Arm, RecordedFigures};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
-/// The common part of an arm's keys.
+/// The part of a run key that all runs of an arm have in common.
 pub(super) struct ArmKey {
-    /// Hasher of everything except the seed.
+    /// Hasher that has read everything except the seed.
     hasher: blake3::Hasher,
     /// Cash on day 0, dollars.
     pub(super) start_cash: f64,
 }
 
 impl ArmKey {
-    /// Returns the key of an arm, which does not include its name.
+    /// Creates the key of an arm. The key does not depend on the arm's name.
     ///
     /// # Errors
     /// Fails if the scenario is unknown or a parameter is invalid.
@@ -40,7 +40,7 @@ impl ArmKey {
         Ok(ArmKey { hasher, start_cash: cash })
     }
 
-    /// Returns the key of a run.
+    /// Returns the key of the arm's run with a seed.
     pub(super) fn run_key(&self, seed: u64) -> String {
         let mut hasher = self.hasher.clone();
         hasher.update(&seed.to_le_bytes());

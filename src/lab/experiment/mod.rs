@@ -1,7 +1,8 @@
-//! Arms by seeds: policies played on the same seeds in parallel. Each result is stored as soon as its run ends.
+//! Experiments: several arms, each with a policy, are played on the same seeds in parallel. Each result is stored as
+//! soon as its run ends.
 //!
-//! [`Experiment::prepare`] loads results of earlier commands, [`PreparedExperiment::run`] plays the rest. A command that was
-//! stopped and is repeated resumes and prints the same output as an uninterrupted one.
+//! [`Experiment::prepare`] loads results of earlier commands. [`PreparedExperiment::run`] plays the remaining runs. A
+//! stopped command resumes when it is repeated. The resumed command prints the same output as an uninterrupted command.
 
 mod engine;
 mod key;
@@ -26,14 +27,14 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::Params;
 
-/// One condition of an experiment.
+/// An arm: one condition of an experiment.
 #[derive(Debug, Clone)]
 pub struct Arm {
-    /// Name in tables.
+    /// Name of the arm in tables.
     pub name: String,
-    /// Policy that plays.
+    /// Policy that plays the arm.
     pub policy: Policy,
-    /// Scenario, overrides, days and cash; the seed is ignored.
+    /// Conditions of the runs: scenario, overrides, days and cash. The seed is ignored.
     pub spec: RunSpec,
 }
 
@@ -43,7 +44,7 @@ impl Arm {
         Arm { name: name.into(), policy, spec: RunSpec::for_seed(0) }
     }
 
-    /// Returns the last day, the cash on day 0 in dollars, and the parameters of its runs.
+    /// Returns the last day, the cash on day 0 in dollars, and the parameters of the arm's runs.
     ///
     /// # Errors
     /// Fails if the scenario is unknown or a parameter is invalid.
@@ -56,23 +57,23 @@ impl Arm {
     }
 }
 
-/// Figures stored for each run in addition to its end and weeks.
+/// The figures that are stored for each run in addition to its end and its weeks.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecordedFigures {
-    /// Whether to store a point for each day.
+    /// Whether to store figures for each day.
     pub daily: bool,
-    /// Days of which all figures are stored, including hidden ones (docs/interfaces/golden.md#figures).
+    /// Days for which all figures are stored, including hidden figures (docs/interfaces/golden.md#figures).
     pub figures_on: Vec<u32>,
 }
 
-/// Arms and their common seeds.
+/// An experiment: arms and their common seeds.
 #[derive(Debug, Clone)]
 pub struct Experiment {
-    /// Arms in display order.
+    /// Arms of the experiment, in display order.
     pub arms: Vec<Arm>,
-    /// Seeds.
+    /// Seeds that every arm plays.
     pub seeds: Vec<u64>,
-    /// Stored figures of each run.
+    /// Additional figures to store for each run.
     pub recorded: RecordedFigures,
 }
 
@@ -82,7 +83,7 @@ impl Experiment {
         Experiment { arms, seeds: seeds.into_iter().collect(), recorded: RecordedFigures::default() }
     }
 
-    /// Returns the arms that are played with the same policy, parameters, days and cash, in groups of two or more.
+    /// Returns groups of two or more arms with the same policy, parameters, days and cash.
     ///
     /// # Errors
     /// Fails if the scenario is unknown or a parameter is invalid.
@@ -92,7 +93,7 @@ impl Experiment {
     }
 }
 
-/// Returns the indices of equal items in groups of two or more.
+/// Returns groups of two or more indices whose items are equal.
 pub fn groups_of_equal<T: Ord>(items: Vec<T>) -> Vec<Vec<usize>> {
     let mut places: BTreeMap<T, Vec<usize>> = BTreeMap::new();
     items.into_iter().enumerate().for_each(|(at, item)| places.entry(item).or_default().push(at));

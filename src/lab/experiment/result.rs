@@ -1,4 +1,4 @@
-//! Stored results of runs.
+//! Stored results of experiment runs.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,99 +8,99 @@ use crate::runner::{PolicyRunOutcome, RunEnd};
 use novamind_record::figures::WeekFigures;
 use novamind_session::DayReport;
 
-/// The stored result of a run.
+/// The stored result of an experiment run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunResult {
-    /// Seed.
+    /// Seed of the run.
     pub seed: u64,
     /// Last possible day of the run.
     pub days: u32,
-    /// Last simulated day.
+    /// Last simulated day of the run.
     pub day: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Type of end.
+    /// Reason for the end of the run.
     pub ended: RunEnd,
-    /// Cash at the end, dollars.
+    /// Cash at the end of the run, dollars.
     pub cash: f64,
     /// Active subscriptions of individuals at the end.
     pub subscribers: u32,
     /// Seats of active enterprises at the end.
     pub seats: u32,
-    /// Monthly recurring revenue at the end of the last day, dollars.
+    /// Monthly recurring revenue after the last simulated day, dollars.
     pub mrr: f64,
-    /// Maximum of active subscriptions of individuals at the end of a day.
+    /// Highest number of active subscriptions of individuals at the end of a day.
     pub peak_subscribers: u32,
-    /// First day with that maximum.
+    /// First day on which [`RunResult::peak_subscribers`] was reached.
     pub peak_day: u32,
-    /// Hash of the last state.
+    /// Hash of the state after the last day.
     pub state_hash: String,
-    /// Figures at the end of each week.
+    /// Figures at the end of each simulated week.
     pub weeks: Vec<WeekPoint>,
     /// Figures at the end of each day, if requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub daily: Vec<DayPoint>,
-    /// All figures of requested days.
+    /// All figures of the requested days.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub figures: Vec<FigurePoint>,
 }
 
-/// Figures at the end of a week.
+/// Figures of a run at the end of a week.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WeekPoint {
     /// Last day of the week.
     pub day: u32,
-    /// Cash, dollars.
+    /// Cash at the end of the week, dollars.
     pub cash: f64,
-    /// Active subscriptions of individuals.
+    /// Active subscriptions of individuals at the end of the week.
     pub subscribers: u32,
-    /// Seats of active enterprises.
+    /// Seats of active enterprises at the end of the week.
     pub seats: u32,
-    /// Monthly recurring revenue, dollars.
+    /// Monthly recurring revenue at the end of the week, dollars.
     pub mrr: f64,
 }
 
-/// Figures of a day.
+/// Figures of a run on a day.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DayPoint {
-    /// Day.
+    /// Day of the figures.
     pub day: u32,
-    /// Cash, dollars.
+    /// Cash at the end of the day, dollars.
     pub cash: f64,
-    /// Monthly recurring revenue, dollars.
+    /// Monthly recurring revenue at the end of the day, dollars.
     pub mrr: f64,
-    /// Active subscriptions of individuals.
+    /// Active subscriptions of individuals at the end of the day.
     pub subscribers: u32,
-    /// Seats of active enterprises.
+    /// Seats of active enterprises at the end of the day.
     pub seats: u32,
-    /// Leads of individuals.
+    /// Leads of individuals on the day.
     pub individual_leads: u32,
-    /// Leads of enterprises.
+    /// Leads of enterprises on the day.
     pub enterprise_leads: u32,
-    /// New subscriptions of individuals.
+    /// New subscriptions of individuals on the day.
     pub new_subscribers: u32,
-    /// Cancellations of individuals.
+    /// Cancellations of individuals on the day.
     pub cancellations: u32,
-    /// Payments of subscribers, dollars.
+    /// Payments of subscribers on the day, dollars.
     pub payments: f64,
-    /// Running costs, dollars: capacity, compute, operations, development, advertising.
+    /// Running costs of the day, dollars: capacity, compute, operations, development and advertising.
     pub running_costs: f64,
-    /// Other changes of cash since the previous day, dollars: purchases, cost of leads, ad revenue.
+    /// Other changes of cash since the previous day, dollars: purchases, lead costs and ad revenue.
     pub other: f64,
-    /// Usage in units.
+    /// Usage of the day, units.
     pub usage: u64,
 }
 
-/// A figure of a day.
+/// The value of a figure on a day.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FigurePoint {
-    /// Day.
+    /// Day of the value.
     pub day: u32,
-    /// Name.
+    /// Name of the figure.
     pub figure: String,
-    /// Breakdown, for example a group; empty for none.
+    /// Breakdown of the figure, for example a group; empty for a total.
     pub group: String,
-    /// Value.
+    /// Value of the figure on the day.
     pub value: f64,
 }
 
@@ -110,7 +110,7 @@ impl RunResult {
         self.ended == RunEnd::Bankruptcy
     }
 
-    /// Returns a figure of a requested day.
+    /// Returns the value of a figure on a requested day.
     pub fn figure(&self, day: u32, figure: &str, group: &str) -> Option<f64> {
         let is_requested =
             |point: &&FigurePoint| point.day == day && point.figure == figure && point.group == group;
@@ -118,7 +118,7 @@ impl RunResult {
     }
 }
 
-/// Observes the days of a run.
+/// Observes the days of a run and collects its result.
 pub(super) struct RunRecorder {
     daily: Option<Vec<DayPoint>>,
     collector: Collector,
@@ -130,7 +130,7 @@ pub(super) struct RunRecorder {
 }
 
 impl RunRecorder {
-    /// Creates an observer for a run with the given starting cash.
+    /// Creates a recorder for a run with the given starting cash.
     pub(super) fn new(wanted: &RecordedFigures, start_cash: f64) -> RunRecorder {
         let collector = match wanted.figures_on.is_empty() {
             true => Collector::disabled(),
@@ -166,7 +166,7 @@ impl RunRecorder {
         (self.cash, self.mrr) = (day_figures.cash, day_figures.mrr);
     }
 
-    /// Returns the result after the end of the run.
+    /// Creates the stored result after the end of the run.
     pub(super) fn into_result(self, outcome: PolicyRunOutcome, weeks: &[WeekFigures]) -> RunResult {
         let week = |week_figures: &WeekFigures| WeekPoint {
             day: week_figures.day,

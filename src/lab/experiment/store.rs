@@ -1,5 +1,5 @@
-//! A file of results with one line per run. Several processes can write to it. A truncated or changed line is a run to play
-//! again.
+//! A file of results with one line per run. Several processes can write to the file. A run with a truncated or changed
+//! line is played again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::RunResult;
 
-/// A file of stored results.
+/// A file with the results of experiment runs.
 #[derive(Debug)]
 pub struct ResultStore {
     path: PathBuf,
@@ -22,7 +22,7 @@ pub struct ResultStore {
 struct StoredLine<R> {
     key: String,
     result: R,
-    /// Checksum of key and result as written, which detects accidental changes.
+    /// Checksum of the key and the result as written, which detects accidental changes.
     sum: String,
 }
 
@@ -45,7 +45,7 @@ fn checksum(key: &str, result: &impl Serialize) -> io::Result<String> {
 }
 
 impl ResultStore {
-    /// Opens or creates a file of results.
+    /// Opens or creates a results file.
     ///
     /// # Errors
     /// Fails if the file cannot be created or written.
@@ -53,7 +53,7 @@ impl ResultStore {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        // Devices and pipes cannot be read to an end.
+        // Devices and pipes have no end at which reading would stop.
         if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             return Err(io::Error::other(
                 "it is not a regular file. Delete it to store results in a new file",
@@ -63,13 +63,12 @@ impl ResultStore {
         Ok(ResultStore { path: path.to_owned(), file: Mutex::new(file) })
     }
 
-    /// Returns the path of the file.
+    /// Returns the path of the results file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Returns the results of these keys, the latest if there are several. Damaged lines are
-    /// skipped.
+    /// Returns the latest result of each key. Damaged lines are skipped.
     ///
     /// # Errors
     /// Fails if the file cannot be read.
@@ -88,7 +87,7 @@ impl ResultStore {
         Ok(known)
     }
 
-    /// Appends a result and syncs it to disk.
+    /// Appends a result and syncs the file to disk.
     ///
     /// # Errors
     /// Fails if the write fails; the file is then unchanged.
@@ -116,7 +115,7 @@ fn append_line(file: &mut File, mut line: Vec<u8>) -> io::Result<()> {
     }
     let written = file.write_all(&line).and_then(|()| file.sync_data());
     if written.is_err() {
-        // A partial line after a full disk would corrupt the next one.
+        // A partial line, for example after a full disk, would corrupt the next line.
         let _ = file.set_len(end);
     }
     written

@@ -1,4 +1,4 @@
-//! Experiments for tests: two threads, results not stored.
+//! Experiments for tests, with two threads and without stored results.
 
 use std::sync::atomic::AtomicBool;
 

@@ -15,7 +15,7 @@ fn experiment() -> Experiment {
     Experiment::new(vec![arm("idle", "P0"), arm("routine", "P1b")], 1..=3)
 }
 
-/// Conducts an experiment with results in a file; returns the results and the number of played runs. Stops after `most` runs.
+/// Runs an experiment with a results file. Returns the results and the number of played runs. Stops after `most` runs.
 fn run_experiment(
     experiment: &Experiment,
     path: &Path,
@@ -56,7 +56,7 @@ fn stored_results_are_reused() {
     assert_eq!((second.expect("results"), played), (first.clone(), 0));
     let (afresh, played) = run_experiment(&experiment(), &path, true, 99);
     assert_eq!((afresh.expect("results"), played), (first.clone(), 6));
-    // A new name keeps the key; a new day, parameter or figure changes it.
+    // A new name of an arm does not change its keys. A new day, parameter or figure changes the keys.
     let mut renamed = experiment();
     renamed.arms[0].name = "nothing".to_owned();
     assert_eq!(run_experiment(&renamed, &path, false, 99).1, 0);
@@ -101,7 +101,7 @@ fn truncated_file_loses_at_most_one_run() {
         let left = bytes[..cut].iter().filter(|byte| **byte == b'\n').count();
         let (results, played) = run_experiment(&experiment(), &path, false, 99);
         assert_eq!(results.expect("results"), experiment_results, "cut at {cut}");
-        // A line that lacks only its line end is complete.
+        // A line without a line terminator is complete.
         assert!(played == 6 - left || (cut + 1 == bytes.len() && played == 0), "cut at {cut}: {played}");
         let (again, played) = run_experiment(&experiment(), &path, false, 99);
         assert_eq!((again.expect("results"), played), (experiment_results.clone(), 0), "cut at {cut}");

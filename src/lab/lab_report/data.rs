@@ -1,4 +1,4 @@
-//! Exhibits as JSON and CSV, with full precision and units.
+//! Export of tables and graphs as JSON and CSV, with full precision and units.
 
 use serde_json::{Map, Value, json};
 
@@ -7,12 +7,12 @@ use novamind_base::formatting::json_number;
 use novamind_base::statistics::{CONFIDENCE_LEVEL, Interval, RESAMPLES};
 
 impl LabReport {
-    /// Returns the table with a name, or `None`.
+    /// Returns the table with the given name, or `None` if the report has no table with this name.
     pub fn table(&self, name: &str) -> Option<&LabTable> {
         self.tables.iter().find(|table| table.name == name)
     }
 
-    /// Returns one JSON object: tables with their columns, units and rows, graphs with their points, notes.
+    /// Returns the report as a JSON object: tables with columns, units and rows, graphs with points, and notes.
     pub fn to_json(&self) -> Value {
         let tables: Map<String, Value> =
             self.tables.iter().map(|table| (table.name.clone(), table.to_json())).collect();
@@ -31,7 +31,7 @@ impl LabReport {
 }
 
 impl LabTable {
-    /// Returns CSV with a header. An interval has two columns, a missing value an empty cell.
+    /// Returns CSV rows, starting with a header. An interval has two columns. The cell of a missing value is empty.
     pub fn to_csv_rows(&self) -> Vec<Vec<String>> {
         let names = |column: &Column| match column.kind {
             ColumnKind::Interval(_) => vec![format!("{}_low", column.name), format!("{}_high", column.name)],
@@ -49,7 +49,7 @@ impl LabTable {
         std::iter::once(head).chain(self.rows.iter().map(row)).collect()
     }
 
-    /// Returns the exported cells of a row with their columns.
+    /// Returns the exported cells of a row, each with its column.
     fn machine_readable_cells<'a>(
         &'a self,
         cells: &'a [CellValue],

@@ -1,4 +1,4 @@
-//! Graphs of a report as terminal text and as SVG.
+//! Graphs of a report, drawn as terminal text and as SVG.
 
 use super::LabReport;
 use super::text::wrap_text;
@@ -6,34 +6,34 @@ use novamind_report::page::{Chart, Curve, Plot, StackSeries};
 use novamind_report::plot::{AxisScale, PlotArea, PlotSeries, bars, plot_in};
 use novamind_report::svg::{AxisScales, ScaledChart, standalone_svg};
 
-/// A graph of named series.
+/// A graph with one or more named series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Graph {
-    /// Title.
+    /// Title of the graph.
     pub title: String,
-    /// Description for screen readers.
+    /// Description of the graph for screen readers.
     pub summary: String,
-    /// Horizontal axis.
+    /// Horizontal axis of the graph.
     pub x_axis: GraphAxis,
-    /// Vertical axis.
+    /// Vertical axis of the graph.
     pub y_axis: GraphAxis,
-    /// Series; bars use only the first.
+    /// Series of the graph; a bar graph uses only the first.
     pub series: Vec<Series>,
-    /// Drawing style.
+    /// Form in which the series are drawn.
     pub form: GraphForm,
 }
 
-/// An axis.
+/// An axis of a graph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GraphAxis {
-    /// Label.
+    /// Label of the axis.
     pub label: &'static str,
-    /// Scale.
+    /// Scale of the axis.
     pub scale: AxisScale,
 }
 
 impl GraphAxis {
-    /// Returns the label, marked if the scale is logarithmic.
+    /// Returns the label of the axis, with a note if the scale is logarithmic.
     fn describe(&self) -> String {
         match self.scale {
             AxisScale::Logarithmic => format!("{} (logarithmic)", self.label),
@@ -42,32 +42,32 @@ impl GraphAxis {
     }
 }
 
-/// A series of points.
+/// A named series of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name.
+    /// Name of the series.
     pub name: String,
-    /// Points from left to right.
+    /// Points of the series, from left to right.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Drawing style of series.
+/// The form in which series are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GraphForm {
-    /// Joined points.
+    /// Lines that join the points.
     Lines,
-    /// One bar per point; for histograms, x is the middle of the bin.
+    /// One bar per point. In a histogram, x is the center of the bin.
     Bars,
 }
 
-/// Characters of the series in a terminal, in order.
+/// Characters that mark the points of each series in a terminal.
 const SERIES_MARKS: [char; 16] =
     ['*', '+', 'o', 'x', '#', '~', '%', '@', '=', '&', 'a', 'b', 'c', 'd', 'e', 'f'];
 
 const MAX_BARS: usize = 40;
 
 impl Graph {
-    /// Returns text with lines of at most `width` columns and a drawing of `rows` rows.
+    /// Draws the graph as text. Lines have at most `width` columns, and the drawing has `rows` rows.
     pub fn to_text(&self, width: usize, rows: usize) -> String {
         let mut text = wrap_text(&self.title, width).join("\n") + "\n";
         match (self.form, self.series.first()) {
@@ -125,7 +125,7 @@ impl Graph {
     }
 }
 
-/// Merges neighboring bars until there are at most [`MAX_BARS`].
+/// Merges adjacent bars until at most [`MAX_BARS`] remain.
 fn merge_bars(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let together = points.len().div_ceil(MAX_BARS).max(1);
     let joined = |bars: &[(f64, f64)]| {
@@ -136,7 +136,7 @@ fn merge_bars(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 impl LabReport {
-    /// Returns its graphs as one standalone SVG, or `None` without graphs.
+    /// Returns all graphs of the report as one standalone SVG, or `None` if the report has no graphs.
     pub fn to_svg(&self) -> Option<String> {
         let parts: Vec<ScaledChart> = self.graphs.iter().map(Graph::to_scaled_chart).collect();
         (!parts.is_empty()).then(|| standalone_svg(&self.title, &parts))

@@ -1,7 +1,7 @@
-//! Output of laboratory commands: tables of typed cells, graphs, and notes.
+//! Reports of laboratory commands: tables of typed cells, graphs and notes.
 //!
 //! A report is written as terminal text ([`LabReport::to_text`]), comma-separated values ([`LabTable::to_csv_rows`]), JSON
-//! ([`LabReport::to_json`]) and SVG ([`LabReport::to_svg`]). The last three have full precision.
+//! ([`LabReport::to_json`]) and SVG ([`LabReport::to_svg`]). CSV, JSON and SVG have full precision.
 
 mod data;
 mod graph;
@@ -13,117 +13,117 @@ pub use novamind_report::plot::AxisScale;
 use novamind_base::formatting::{dollars, grouped_number, percent, short_dollars};
 use novamind_base::statistics::Interval;
 
-/// Default maximum width of a table in columns.
+/// Default maximum width of a table, in terminal columns.
 pub const DEFAULT_WIDTH: usize = 100;
 
-/// The output of a laboratory command.
+/// The report of a laboratory command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabReport {
-    /// Title.
+    /// Title of the report.
     pub title: String,
-    /// Tables; the first one is the result.
+    /// Tables of the report; the first table contains the main result.
     pub tables: Vec<LabTable>,
-    /// Graphs.
+    /// Graphs of the report.
     pub graphs: Vec<Graph>,
-    /// Notes below: assumptions, definitions and sources.
+    /// Notes below the tables: assumptions, definitions and sources.
     pub notes: Vec<String>,
 }
 
 /// A table of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabTable {
-    /// Name for programs: `--table NAME` asks for it.
+    /// Name of the table in exports, for `--table NAME`.
     pub name: String,
-    /// Caption; empty for none.
+    /// Caption of the table; can be empty.
     pub caption: String,
-    /// Columns.
+    /// Columns of the table.
     pub columns: Vec<Column>,
-    /// Cells by row, one per column.
+    /// Cells of each row, one per column.
     pub rows: Vec<Vec<CellValue>>,
-    /// Summary rows: shown below a rule in text, separate from the rows in JSON.
+    /// Summary rows. In text, summary rows follow a rule. In JSON, summary rows are separate from the rows.
     pub summary: Vec<Vec<CellValue>>,
-    /// Whether the table is too long for text, which names the export option instead.
+    /// Whether the table is too long for text. The text then names the export option instead.
     pub is_machine_readable_only: bool,
 }
 
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Name for programs, see [`column_name`].
+    /// Name of the column in exports; see [`column_name`].
     pub name: String,
-    /// Heading; it can wrap at spaces.
+    /// Heading of the column, which can wrap at spaces.
     pub heading: String,
-    /// Cell type.
+    /// Kind of the cells in the column.
     pub kind: ColumnKind,
 }
 
-/// The cell type of a column.
+/// The kind of the cells in a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColumnKind {
-    /// Text, left-aligned.
+    /// Texts, which are left-aligned.
     Text,
-    /// Numbers, right-aligned.
+    /// Numbers, which are right-aligned.
     Number(Measure),
-    /// Intervals; two numbers in exports.
+    /// Intervals, exported as two numbers.
     Interval(Measure),
-    /// Character drawings, not exported.
+    /// Character drawings, which are not exported.
     Sparkline,
 }
 
-/// The unit and display format of a number.
+/// A measure: the unit and the display format of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
-    /// Dollars.
+    /// An amount in dollars.
     Dollars,
-    /// A count.
+    /// A number of items.
     Count,
-    /// Days.
+    /// A duration in days.
     Days,
-    /// A share, 0 to 1; shown in percent.
+    /// A share from 0 to 1, shown in percent.
     Share,
-    /// Millions of dollars with one decimal.
+    /// Millions of dollars, shown with one decimal.
     Millions,
-    /// Any other number, with this many decimals.
+    /// Any other number, shown with the given number of decimals.
     Number(usize),
 }
 
 /// The content of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CellValue {
-    /// Text.
+    /// A text.
     Text(String),
-    /// A number in the column's measure.
+    /// A number in the measure of the column.
     Number(f64),
-    /// A number with its own measure, for tables whose rows have different units.
+    /// A number with a separate measure, for tables whose rows have different units.
     NumberWithMeasure(f64, Measure),
-    /// An interval in the column's measure.
+    /// An interval in the measure of the column.
     Interval(Interval),
     /// A missing value.
     Missing,
 }
 
 impl Column {
-    /// Returns a text column.
+    /// Creates a text column.
     pub fn text(name: &str, heading: &str) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Text }
     }
 
-    /// Returns a number column.
+    /// Creates a number column.
     pub fn number(name: &str, heading: &str, measure: Measure) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Number(measure) }
     }
 
-    /// Returns an interval column.
+    /// Creates an interval column.
     pub fn interval(name: &str, heading: &str, measure: Measure) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Interval(measure) }
     }
 
-    /// Returns a column of drawings, which is not exported.
+    /// Creates a column of character drawings, which is not exported.
     pub fn sparkline(name: &str, heading: &str) -> Column {
         Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Sparkline }
     }
 
-    /// Returns the measure of its numbers.
+    /// Returns the measure of the column's numbers, or `None` for other columns.
     fn measure(&self) -> Option<Measure> {
         match self.kind {
             ColumnKind::Text | ColumnKind::Sparkline => None,
@@ -132,14 +132,14 @@ impl Column {
     }
 }
 
-/// Returns the name of a column for programs: the letters and digits of a text in lower case, with underscores between its words.
+/// Returns a column name for exports: the letters and digits of `text` in lower case, with underscores between the words.
 pub fn column_name(text: &str) -> String {
     let words = text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("_").to_lowercase()
 }
 
 impl Measure {
-    /// Returns the name for programs.
+    /// Returns the name of the measure in exports.
     pub fn name(self) -> &'static str {
         match self {
             Measure::Dollars => "dollars",
@@ -151,7 +151,7 @@ impl Measure {
         }
     }
 
-    /// Formats a value.
+    /// Formats a value with the unit and decimals of the measure.
     pub fn format(self, value: f64) -> String {
         match self {
             _ if !value.is_finite() => MISSING_VALUE.to_owned(),
@@ -163,7 +163,7 @@ impl Measure {
         }
     }
 
-    /// Formats a value in few characters.
+    /// Formats a value of the measure with as few characters as possible.
     fn format_short(self, value: f64) -> String {
         match self {
             Measure::Dollars if value.is_finite() && value.abs() >= 100_000.0 => short_dollars(value),
@@ -175,17 +175,17 @@ impl Measure {
 const MISSING_VALUE: &str = "–";
 
 impl CellValue {
-    /// Text.
+    /// Creates a text cell.
     pub fn text(text: impl Into<String>) -> CellValue {
         CellValue::Text(text.into())
     }
 
-    /// Returns a number cell, or a missing value.
+    /// Creates a number cell, or a missing value for `None`.
     pub fn number(value: impl Into<Option<f64>>) -> CellValue {
         value.into().filter(|value| value.is_finite()).map_or(CellValue::Missing, CellValue::Number)
     }
 
-    /// Returns an interval cell, or a missing value.
+    /// Creates an interval cell, or a missing value for `None`.
     pub fn interval(interval: Option<Interval>) -> CellValue {
         interval.map_or(CellValue::Missing, CellValue::Interval)
     }
@@ -214,7 +214,7 @@ impl LabReport {
         LabReport { title: title.into(), tables: vec![table], graphs: Vec::new(), notes: Vec::new() }
     }
 
-    /// Adds a note.
+    /// Adds a note to the report.
     pub fn with_note(mut self, note: impl Into<String>) -> LabReport {
         self.notes.push(note.into());
         self

@@ -74,7 +74,7 @@ fn wrapped_columns_repeat_the_row_names() {
     assert_eq!(text.matches("as shipped").count(), 3, "the scenario is sufficient:\n{text}");
     let rules = text.lines().filter(|line| line.starts_with('─')).count();
     assert_eq!(rules, 4, "a head and a summary in each panel:\n{text}");
-    // If three names do not fit next to a figure, row numbers identify the rows in every panel.
+    // If the three columns of row names do not fit next to a figure, row numbers identify the rows in every panel.
     table.rows[0][2] = CellValue::text("without surges");
     table.rows[1][1] = CellValue::text("default");
     let text = LabReport::with_table("Arms", table).to_text(41);

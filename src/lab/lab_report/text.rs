@@ -1,4 +1,4 @@
-//! Exhibits as terminal text. Wide tables are first shortened, then wrapped, then split into panels.
+//! Reports as terminal text. Wide tables are first narrowed, then wrapped, then split into panels.
 
 use unicode_width::UnicodeWidthStr;
 
@@ -11,7 +11,7 @@ const MIN_TEXT_WIDTH: usize = 12;
 const GRAPH_ROWS: usize = 16;
 
 impl LabReport {
-    /// Returns text with lines of at most `width` columns (minimum 40).
+    /// Formats the report as text. Lines have at most `width` columns (at least 40).
     pub fn to_text(&self, width: usize) -> String {
         let width = width.max(40);
         let mut parts = vec![wrap_text(&self.title, width).join("\n")];
@@ -34,11 +34,11 @@ impl LabReport {
 }
 
 impl LabTable {
-    /// Returns text with lines of at most `width` columns.
+    /// Formats the table as text. Lines have at most `width` columns.
     fn to_text(&self, width: usize) -> String {
         let full = TextLayout::new(self, false);
         let sheet = if full.fits(width) { full } else { TextLayout::new(self, true).narrow(width) };
-        // If the row names do not fit in every panel, numbers identify the rows.
+        // If the row names do not fit into every panel, numbers identify the rows.
         let is_nameless = sheet.column_panels(width).len() > 1
             && sheet.row_name_columns(width) < sheet.identifying_columns();
         let numbers = Column::text("number", "#");
@@ -58,7 +58,7 @@ impl LabTable {
 struct TextLayout<'a> {
     columns: &'a [Column],
     cells: Vec<Vec<String>>,
-    /// Number of rows; the remaining ones are summary rows.
+    /// Number of rows before the summary rows.
     rows: usize,
     widths: Vec<usize>,
 }
@@ -87,8 +87,8 @@ impl<'a> TextLayout<'a> {
         self.total_width() <= width
     }
 
-    /// Wraps the widest text columns as far as needed. If the table is still too wide, wraps those
-    /// that name the rows, so that the others fit after them.
+    /// Narrows the widest text columns until the table fits. If the table cannot fit, narrows only the columns that
+    /// name the rows, so that each other column fits next to these columns.
     fn narrow(mut self, width: usize) -> TextLayout<'a> {
         let least = |at: usize| match self.columns[at].kind {
             ColumnKind::Text => self.widths[at].min(MIN_TEXT_WIDTH),
@@ -127,7 +127,7 @@ impl<'a> TextLayout<'a> {
         TextLayout { columns, cells, rows, widths }
     }
 
-    /// Returns how many leading text columns identify all rows; 1 if they do not.
+    /// Returns how many leading text columns are needed to identify each row. Returns 1 if all of them are not sufficient.
     fn identifying_columns(&self) -> usize {
         let is_words =
             |at: &usize| self.columns.get(*at).is_some_and(|column| column.kind == ColumnKind::Text);
@@ -140,18 +140,19 @@ impl<'a> TextLayout<'a> {
         (1..=words).find(tells_apart).unwrap_or(1)
     }
 
-    /// Returns the leading columns that name a row, if there is room next to them.
+    /// Returns the number of leading columns that name a row in each panel. Returns 1 if these columns leave no room
+    /// for another column.
     fn row_name_columns(&self, width: usize) -> usize {
         let telling = self.identifying_columns();
         if self.width_of_first(telling) + self.widest_column_from(telling) <= width { telling } else { 1 }
     }
 
-    /// Returns the width of the widest column from a given one.
+    /// Returns the width of the widest column, starting with column `first`.
     fn widest_column_from(&self, first: usize) -> usize {
         self.widths.iter().skip(first).copied().max().unwrap_or(0)
     }
 
-    /// Returns the width of the first columns including gaps.
+    /// Returns the total width of the first `count` columns, including gaps.
     fn width_of_first(&self, count: usize) -> usize {
         self.widths.iter().take(count).map(|number| number + COLUMN_GAP).sum()
     }
@@ -183,7 +184,7 @@ impl<'a> TextLayout<'a> {
         let heads: Vec<Vec<String>> =
             panel.iter().map(|at| wrap_text(&self.columns[*at].heading, self.widths[*at])).collect();
         let height = heads.iter().map(Vec::len).max().unwrap_or(0);
-        // Headings are aligned to the rule at the bottom.
+        // Headings are bottom-aligned above the rule.
         let heads: Vec<Vec<String>> = heads
             .into_iter()
             .map(|texts| [vec![String::new(); height - texts.len()], texts].concat())
@@ -203,7 +204,7 @@ impl<'a> TextLayout<'a> {
         text
     }
 
-    /// Writes a row of multi-line cells.
+    /// Formats a row of cells with several lines.
     fn format_rows(&self, panel: &[usize], cells: &[Vec<String>]) -> String {
         let mut text = String::new();
         for line in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
@@ -228,8 +229,8 @@ fn longest_word(text: &str) -> usize {
     text.split(' ').map(UnicodeWidthStr::width).max().unwrap_or(0)
 }
 
-/// Wraps a text at spaces; a longer word is broken after a joining character, otherwise anywhere.
-/// Returns no lines for an empty text.
+/// Wraps a text at spaces. A word that is too long is broken after a punctuation character, or anywhere if it contains
+/// none. Returns no lines for an empty text.
 pub(super) fn wrap_text(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {
@@ -255,7 +256,7 @@ fn split_word(word: &str, width: usize) -> Vec<String> {
     pieces
 }
 
-/// Appends characters to the last piece, starting a new one when it is full.
+/// Appends characters to the last piece. Starts a new piece when the last piece is full.
 fn push_chars(part: &str, width: usize, pieces: &mut Vec<String>) {
     for letter in part.chars() {
         let mut bytes = [0; 4];

@@ -1,4 +1,4 @@
-//! Figures of the market: economy, posts, notices, negotiations and deals.
+//! Figures of the market: economy, posts, notifications, negotiations and deals.
 
 use super::{
     Aggregation, DailyValue, MetricsDay, initial_groups, push_by_group, push_latest, push_sum, push_value,
@@ -6,7 +6,7 @@ use super::{
 use novamind_world::events::{DealClosed, EndCause, Notice, Post, Sentiment, SubscriptionStatus, ThreadKind};
 use novamind_world::identifiers::{Group, Plan};
 
-/// A value that is averaged over deals.
+/// Function that returns a value of a deal, for a mean over deals.
 type DealFigureFn = fn(&DealClosed) -> f64;
 
 impl MetricsDay<'_> {
@@ -90,7 +90,7 @@ impl MetricsDay<'_> {
         for kind in ThreadKind::ALL {
             let begun = facts.turns.iter().filter(|turn| turn.number == 0);
             let opened = match kind {
-                // Threads that the player started between two days count for the next day.
+                // A thread that the player started between two days is counted on the next day.
                 ThreadKind::Renegotiation => f64::from(self.threads_opened) - begun.count() as f64,
                 _ => begun.filter(|turn| turn.kind == kind).count() as f64,
             };

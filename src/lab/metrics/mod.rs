@@ -1,4 +1,4 @@
-//! Daily figures of a run, including hidden ones (docs/interfaces/golden.md#figures).
+//! Daily figures of a run, including hidden figures (docs/interfaces/golden.md#figures).
 
 mod market;
 
@@ -9,31 +9,31 @@ use novamind_world::events::{Category, EndCause, Source, SubscriptionEnded, Subs
 use novamind_world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_world::market::economy::Dimension;
 
-/// One value.
+/// A value of a figure on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MetricValue {
-    /// Day.
+    /// Day of the value.
     pub day: u32,
-    /// Name.
+    /// Name of the figure.
     pub figure: &'static str,
-    /// Breakdown, for example a group; empty for none.
+    /// Breakdown of the figure, for example a group; empty for a total.
     pub group: &'static str,
-    /// Value.
+    /// Value of the figure on the day.
     pub value: f64,
 }
 
-/// Aggregation of daily values into a figure.
+/// How daily values are aggregated into a figure.
 #[derive(Clone, Copy, PartialEq)]
 enum Aggregation {
-    /// Value at the end of the day.
+    /// The value of the day itself.
     Latest,
-    /// Sum over all days so far.
+    /// Sum over all days up to the current day.
     Sum,
-    /// Mean over the last 30 days.
+    /// Mean over the 30 days up to the current day.
     Last30Days,
-    /// Sum over all days so far divided by the sum of a weight, for example per deal.
+    /// Weighted mean over all days up to the current day, for example per deal.
     Mean {
-        /// Weight of the day.
+        /// Weight of the day's value.
         weight: f64,
     },
 }
@@ -42,23 +42,23 @@ struct DailyValue {
     figure: &'static str,
     group: &'static str,
     kind: Aggregation,
-    /// `None` if undefined, for example a mean over no customers.
+    /// Value of the day; `None` if undefined, for example a mean over no customers.
     value: Option<f64>,
 }
 
-/// Collects the figures of a run.
+/// Collects the daily figures of a run.
 #[derive(Default)]
 pub struct Collector {
-    /// Days whose figures are kept; `None`: all.
+    /// Days whose figures are kept; `None` to keep all days.
     recorded_days: Option<Vec<u32>>,
     sums: Vec<f64>,
     weights: Vec<f64>,
     windows: Vec<VecDeque<f64>>,
-    /// Counts that exist only as sums.
+    /// Running total of open issues.
     open_issues: f64,
-    /// Cancellations of enterprises by the day on which the subscription ends, which can be in the future.
+    /// Cancelled enterprises, by the day on which the subscription ends. This day can be in the future.
     lost_enterprises: BTreeMap<u32, ByGroup<f64>>,
-    /// Number of the next thread on the previous day.
+    /// Number of the next thread at the end of the previous day.
     next_thread: u32,
     figures: Vec<MetricValue>,
     last_day: u32,
@@ -72,12 +72,12 @@ impl Collector {
         Collector { is_disabled: true, ..Collector::default() }
     }
 
-    /// Creates a collector for all days or for the given ones.
+    /// Creates a collector for the days in `wanted`, or for all days.
     pub fn new(wanted: Option<Vec<u32>>) -> Collector {
         Collector { recorded_days: wanted, ..Collector::default() }
     }
 
-    /// Adds a day.
+    /// Adds the figures of a day.
     pub fn add_day(&mut self, report: &DayReport<'_>) {
         let Some(xray) = report.xray.filter(|_| !self.is_disabled) else { return };
         self.last_day = report.figures.day;
@@ -131,7 +131,8 @@ impl Collector {
         }
     }
 
-    /// Returns all figures. After a bankruptcy, the days up to `until` contain only the bankruptcy.
+    /// Returns all collected figures. After a bankruptcy, the days up to `until` contain only the figures `alive` and
+    /// `bankruptcy_day`.
     pub fn finish(mut self, until: u32) -> Vec<MetricValue> {
         if let Some(bankrupt) = self.bankrupt {
             for day in self.last_day + 1..=until {
@@ -146,7 +147,7 @@ impl Collector {
     }
 }
 
-/// Returns the groups with separate figures.
+/// Returns the initially known groups, which have separate figures.
 fn initial_groups() -> impl Iterator<Item = Group> {
     Group::all().filter(|group| group.is_initially_known())
 }
@@ -155,9 +156,9 @@ struct MetricsDay<'a> {
     report: &'a DayReport<'a>,
     xray: HiddenState<'a>,
     open_issues: f64,
-    /// Returns the enterprises whose subscription ends on the day.
+    /// Enterprises whose subscription ends on the day, by group.
     companies_left: ByGroup<f64>,
-    /// Returns the new threads of all kinds since the previous day, including the player's.
+    /// Number of threads opened since the previous day, including threads that the player started.
     threads_opened: u32,
 }
 
@@ -166,7 +167,7 @@ fn is_lost_enterprise(ending: &SubscriptionEnded) -> bool {
 }
 
 impl MetricsDay<'_> {
-    /// Returns the values of the day in the order of docs/interfaces/golden.md#figures.
+    /// Returns the values of the day, in the order of docs/interfaces/golden.md#figures.
     fn values(&self) -> Vec<DailyValue> {
         let mut list = Vec::with_capacity(220);
         self.push_company(&mut list);
@@ -413,7 +414,8 @@ fn push_last_30_days(list: &mut Vec<DailyValue>, figure: &'static str, value: f6
     push_value(list, figure, "", Aggregation::Last30Days, Some(value));
 }
 
-/// Returns one value per initial group, and sums over the discoverable individual and enterprise groups.
+/// Appends one value per initially known group, and two sums: discoverable groups of individuals and discoverable
+/// groups of enterprises.
 fn push_by_group(
     list: &mut Vec<DailyValue>,
     figure: &'static str,

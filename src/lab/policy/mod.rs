@@ -15,53 +15,53 @@ use super::enterprise_answers::EnterpriseRule;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::ParameterSource;
 
-/// A program that plays a run.
+/// A policy: a program that plays a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
-    /// Name.
+    /// Name of the policy.
     pub name: String,
-    /// Description.
+    /// Description of the policy.
     pub description: String,
-    /// Start of the run; the command line overrides it.
+    /// Settings of the run at its start. The command line overrides these settings.
     pub start: Start,
     /// The weekly routine of the paper's baseline.
     pub rule_based: Option<RuleBased>,
-    /// Calls of tools on given days.
+    /// Tool calls on given days.
     pub calls: Vec<ScheduledCall>,
-    /// Answers to enterprises.
+    /// Rule that answers enterprises.
     pub enterprise: Option<EnterpriseRule>,
 }
 
-/// Start of the run.
+/// The settings of a run at its start.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Start {
     /// Cash on day 0, dollars.
     pub cash: Option<f64>,
-    /// Demand surges; `None`: from the scenario.
+    /// Whether demand surges occur; `None` to use the scenario's value.
     pub surges: Option<bool>,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: Option<String>,
-    /// Last day.
+    /// Last day of the run.
     pub days: Option<u32>,
 }
 
-/// A call on one or more decision days.
+/// A tool call on one or more decision days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScheduledCall {
-    /// First decision day.
+    /// First decision day of the call.
     pub day: u32,
-    /// Tool.
+    /// Name of the called tool.
     pub tool: String,
-    /// Arguments. Symbols are resolved at call time.
+    /// Arguments of the call. Symbols are resolved at the time of the call.
     pub arguments: serde_json::Value,
-    /// Number of calls on each of its days.
+    /// Number of calls on each day.
     pub repeat: u32,
-    /// Interval of repetition in weeks; `None`: once.
+    /// Interval between repetitions in weeks; `None` if the call is not repeated.
     pub every_weeks: Option<u32>,
-    /// Last day, inclusive.
+    /// Last day of the repetitions, inclusive.
     pub until_day: Option<u32>,
-    /// Whether a rejection is ignored instead of stopping the run.
+    /// Whether a rejection of the call is ignored instead of stopping the run.
     pub may_fail: bool,
 }
 
@@ -111,16 +111,16 @@ fn default_repeat() -> u32 {
     1
 }
 
-/// A problem in a policy file and its location.
+/// An error in a policy file, with its location.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PolicyError {
-    /// File.
+    /// Name of the policy file.
     pub source: String,
-    /// Line, if known.
+    /// Line of the error, if known.
     pub line: Option<usize>,
-    /// Problem.
+    /// Description of the error.
     pub problem: String,
-    /// Whether no file of the requested name exists.
+    /// Whether no policy with the requested name exists.
     pub is_unknown: bool,
 }
 
@@ -136,8 +136,8 @@ impl fmt::Display for PolicyError {
 impl std::error::Error for PolicyError {}
 
 impl Policy {
-    /// Returns a policy by name (the user's folder first, then the bundled ones) or by path: anything with a
-    /// separator, or ending in .toml.
+    /// Finds a policy by name, first in the user's folder and then among the bundled policies. A name with a path
+    /// separator or the ending .toml is read as a path.
     ///
     /// # Errors
     /// Fails if the policy does not exist or is invalid.
@@ -169,10 +169,10 @@ impl Policy {
         }
     }
 
-    /// Parses a policy file.
+    /// Parses the text of a policy file.
     ///
     /// # Errors
-    /// Fails on unknown keys, days that are not decision days, unknown tools or arguments, and contradictions.
+    /// Fails on unknown keys, days that are not decision days, unknown tools or arguments, and contradictory settings.
     pub fn parse(source: &ParameterSource) -> Result<Policy, PolicyError> {
         let at = |span: Option<std::ops::Range<usize>>, problem: String| PolicyError {
             source: source.name.clone(),

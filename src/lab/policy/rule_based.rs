@@ -4,26 +4,26 @@ use serde::Deserialize;
 
 use novamind_world::identifiers::Plan;
 
-/// Cash floor that never stops spending.
+/// Value of the cash floor with which spending is never stopped.
 const NO_CASH_FLOOR: f64 = -1.0;
 
 /// Settings of the weekly routine. The defaults are the paper's best configuration.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RuleBased {
-    /// Prices, tiers and quotas.
+    /// Prices, model tiers and quotas.
     pub price_book: PriceBook,
-    /// Groups that receive development and ads.
+    /// Groups that receive targeted development and ads.
     pub target: Target,
     /// Budgets of the target groups.
     pub spend: Spend,
-    /// Cash above which spending is on, dollars; -1: always.
+    /// Cash above which spending is on, dollars; -1 for always.
     pub cash_floor: f64,
-    /// General development while spending is on, dollars a day.
+    /// General development while spending is on, $ per day.
     pub global_development: f64,
-    /// Operations.
+    /// Rule for the operations budget.
     pub operations: OperationsRule,
-    /// Capacity.
+    /// Rule for the capacity tier.
     pub capacity: CapacityRule,
 }
 
@@ -42,10 +42,10 @@ impl Default for RuleBased {
 }
 
 impl RuleBased {
-    /// Returns the routine if its amounts are valid.
+    /// Returns the routine if all its amounts are valid.
     ///
     /// # Errors
-    /// Names the key with an invalid amount.
+    /// Returns a message that names the key with an invalid amount.
     pub(super) fn validated(self) -> Result<RuleBased, String> {
         let amounts = |spend: &Spend| {
             let (s1, s3) = spend.budgets();
@@ -70,19 +70,19 @@ impl RuleBased {
     }
 }
 
-/// Prices, tiers and quotas of the three plans.
+/// The prices, model tiers and quotas of the three plans.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "price_book must be cheap, mid or a table of prices, tiers and quotas by plan")]
 pub enum PriceBook {
     /// A price book of the paper.
     Named(BookName),
-    /// Custom values.
+    /// A custom price book.
     Own {
-        /// Dollars a month.
+        /// List prices, $ per month.
         prices: PerPlan<f64>,
-        /// Model tiers.
+        /// Model tiers of the plans.
         tiers: PerPlan<u8>,
-        /// Units a day.
+        /// Quotas, units per day.
         quotas: PerPlan<u64>,
     },
 }
@@ -91,29 +91,29 @@ pub enum PriceBook {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BookName {
-    /// A $8 / T1 / 50K, B $18 / T2 / 200K, C $40 / T3 / 1M.
+    /// Plan A $8 / T1 / 50K, B $18 / T2 / 200K, C $40 / T3 / 1M: price, model tier and quota.
     Cheap,
-    /// A $12 / T1 / 60K, B $25 / T2 / 250K, C $55 / T4 / 1.2M.
+    /// Plan A $12 / T1 / 60K, B $25 / T2 / 250K, C $55 / T4 / 1.2M: price, model tier and quota.
     Mid,
 }
 
-/// One value per plan.
+/// A value for each plan.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PerPlan<T> {
-    /// Plan A.
+    /// Value for plan A.
     #[serde(rename = "A")]
     pub a: T,
-    /// Plan B.
+    /// Value for plan B.
     #[serde(rename = "B")]
     pub b: T,
-    /// Plan C.
+    /// Value for plan C.
     #[serde(rename = "C")]
     pub c: T,
 }
 
 impl<T: Copy> PerPlan<T> {
-    /// The value of a plan.
+    /// Returns the value for a plan.
     pub fn get(&self, plan: Plan) -> T {
         match plan {
             Plan::A => self.a,
@@ -124,7 +124,7 @@ impl<T: Copy> PerPlan<T> {
 }
 
 impl PriceBook {
-    /// Prices, tiers and quotas.
+    /// Returns the prices, model tiers and quotas of the plans.
     pub fn prices_tiers_and_quotas(&self) -> (PerPlan<f64>, PerPlan<u8>, PerPlan<u64>) {
         match self {
             PriceBook::Named(BookName::Cheap) => (
@@ -142,59 +142,59 @@ impl PriceBook {
     }
 }
 
-/// Groups that receive development and ads.
+/// The groups that receive targeted development and ads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
-    /// S1.
+    /// Only group S1.
     S1Only,
-    /// S1, and S3 from day 30 on.
+    /// Group S1, and group S3 from day 30 on.
     S1ThenS3,
-    /// No groups.
+    /// No target groups.
     None,
 }
 
-/// Budgets of the target groups.
+/// The budgets of the target groups.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "spend must be light, medium, heavy or a table with the budgets of S1 and S3")]
 pub enum Spend {
-    /// A package of the paper.
+    /// A budget package of the paper.
     Named(SpendName),
-    /// Custom budgets.
+    /// Custom budgets per group.
     Own {
-        /// S1.
+        /// Budgets of group S1.
         #[serde(rename = "S1")]
         s1: Budget,
-        /// S3.
+        /// Budgets of group S3.
         #[serde(rename = "S3")]
         s3: Budget,
     },
 }
 
-/// The paper's packages.
+/// The paper's budget packages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SpendName {
-    /// S1 $2,000 development and $250 ads a day, S3 $1,500 and $600.
+    /// Development and ads per day: $2,000 and $250 for S1, $1,500 and $600 for S3.
     Light,
-    /// S1 $4,000 and $500, S3 $3,000 and $1,200.
+    /// Development and ads per day: $4,000 and $500 for S1, $3,000 and $1,200 for S3.
     Medium,
-    /// S1 $6,000 and $750, S3 $4,500 and $1,800.
+    /// Development and ads per day: $6,000 and $750 for S1, $4,500 and $1,800 for S3.
     Heavy,
 }
 
-/// Budgets of one group, dollars a day.
+/// The budgets of one group, $ per day.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
-    /// Targeted development.
+    /// Targeted development budget of the group.
     pub development: f64,
-    /// Advertising.
+    /// Advertising budget of the group.
     pub ads: f64,
 }
 
 impl Spend {
-    /// Budgets of S1 and S3.
+    /// Returns the budgets of groups S1 and S3.
     pub fn budgets(&self) -> (Budget, Budget) {
         let package = |s1: (f64, f64), s3: (f64, f64)| {
             (Budget { development: s1.0, ads: s1.1 }, Budget { development: s3.0, ads: s3.1 })
@@ -208,30 +208,30 @@ impl Spend {
     }
 }
 
-/// Rule for the operations budget.
+/// The rule for the operations budget.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
 pub enum OperationsRule {
-    /// max(100, 0.05 x active subscriptions).
+    /// A rule by name: max(100, 0.05 * active subscriptions), $ per day.
     Named(OperationsName),
-    /// A fixed number of dollars a day.
+    /// A fixed budget, $ per day.
     Fixed(f64),
 }
 
-/// Name of the rule for operations.
+/// The name of a rule for the operations budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OperationsName {
-    /// Proportional to subscribers.
+    /// A budget proportional to the number of subscribers.
     Subscribers,
 }
 
-/// Rule for capacity.
+/// The rule for the capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CapacityRule {
-    /// Moves one tier a week towards the smallest tier that serves the week's usage at 80 % utilization.
+    /// Changes capacity by one tier per week, towards the smallest tier that serves the week's usage at 80 % utilization.
     Utilisation,
-    /// Never changes the tier.
+    /// Never changes the capacity tier.
     Fixed,
 }

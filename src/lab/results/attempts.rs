@@ -1,27 +1,27 @@
-//! Several attempts of one program, and the selected one by the rule of the published table.
+//! Several attempts of one program. One attempt is selected by the rule of the published table.
 
 use super::{FinishedRun, best_run};
 use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure};
 use novamind_base::statistics::SampleStatistics;
 
-/// A new run for a program.
+/// One attempt: a new run for a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttemptResult {
-    /// Number, from 1.
+    /// Number of the attempt, from 1.
     pub number: u32,
-    /// Name of the run.
+    /// Name of the attempt's run.
     pub run: String,
     /// Number of starts of the program.
     pub starts: u32,
-    /// Exit code of the last start; `None` if a signal ended it.
+    /// Exit code of the program after its last start; `None` if a signal ended the program.
     pub exit_code: Option<i32>,
     /// Last simulated day.
     pub day: u32,
-    /// Result of the run; `None` if it is unfinished.
+    /// Result of the run; `None` if the run is unfinished.
     pub result: Option<FinishedRun>,
 }
 
-/// Returns a table of the attempts under a title that names the program.
+/// Returns a report on the attempts. `title` names the program.
 pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
     let columns = vec![
         Column::number("try", "try", Measure::Count),
@@ -40,7 +40,7 @@ pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
     let rows = tries.iter().map(|result| row_cells(result, best.as_deref())).collect();
     let mut exhibit = LabReport::with_table(title, LabTable { rows, ..LabTable::new("tries", "", columns) });
     exhibit.notes.push(
-        "Selected: the run with the most final cash; if all runs went bankrupt, the one with the longest life.".to_owned(),
+        "Selected: the run with the most final cash; if all runs went bankrupt, the run that survived longest.".to_owned(),
     );
     let unfinished = tries.len() - finished.len();
     if unfinished > 0 {
@@ -50,8 +50,7 @@ pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
         let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
         let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
         exhibit.notes.push(format!(
-            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` compares runs that have the published length and starting \
-             cash with published ones.",
+            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` compares runs that have the published length and starting cash with published runs.",
             finished.len(),
             SampleStatistics::from_values(&lives).mean
         ));

@@ -1,5 +1,5 @@
-//! The paper's results table for own runs: bankruptcies, best run, survival, and calls a week, next to the
-//! published rows (docs/laboratory/results-table.md).
+//! The paper's results table for the user's runs, next to the published rows: bankruptcies, best run, survival, and
+//! calls per week (docs/laboratory/results-table.md).
 
 #[cfg(feature = "server")]
 mod attempts;
@@ -22,29 +22,29 @@ use novamind_session::Session;
 #[cfg(feature = "server")]
 pub use attempts::{AttemptResult, attempts_report};
 
-/// A finished run with a score.
+/// The result of a finished run with a score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRun {
-    /// Name.
+    /// Name of the run.
     pub run: String,
     /// Label of the participant, if any.
     pub participant: Option<String>,
     /// Name of the policy that played, if any.
     pub policy: Option<String>,
-    /// Seed.
+    /// Seed of the run.
     pub seed: u64,
     /// Cash after the last day, dollars; 0 after a bankruptcy.
     pub score: f64,
     /// Whether the run went bankrupt.
     pub is_bankrupt: bool,
-    /// Survival in days.
+    /// Number of days that the company survived.
     pub survival_days: u32,
     /// Accepted state-changing calls per simulated week.
     pub calls_per_week: f64,
 }
 
 impl FinishedRun {
-    /// Returns the result of a run, or `None` if it has no score.
+    /// Returns the result of a run, or `None` if the run has no score.
     pub fn from_session(session: &Session, lines: &[Line]) -> Option<FinishedRun> {
         let manifest = session.manifest();
         Some(FinishedRun {
@@ -60,27 +60,27 @@ impl FinishedRun {
     }
 }
 
-/// Grouping of runs into rows.
+/// How runs are grouped into rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResultsGrouping {
-    /// By player: participants, and policies by name.
+    /// One row per player. A player is a participant or a policy.
     Participant,
-    /// By policy; runs played by people are excluded.
+    /// One row per policy. Runs that people played are excluded.
     Policy,
 }
 
-/// The player of a row. The kind is part of it, because a participant's label can equal another name.
+/// The kind of player in a row. The kind is part of the row's key, because a participant's label can equal another name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RowSource {
-    /// A participant.
+    /// A participant with a label.
     Participant,
-    /// A player without a label.
+    /// A participant without a label.
     Unnamed,
     /// A policy.
     Policy,
-    /// The idle company, played for the table.
+    /// The idle company, which is played for the table.
     IdleCompany,
-    /// An agent of the paper, by its published name.
+    /// An agent of the paper with its published name.
     PublishedAgent,
     /// The rule-based company of the paper.
     PublishedBaseline,
@@ -112,28 +112,28 @@ impl ResultsGrouping {
     }
 }
 
-/// A row of the table: the runs of a player.
+/// A row of the results table: the runs of a player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsRow {
-    /// Name of the player.
+    /// Display name of the player.
     pub name: String,
-    /// Kind of player.
+    /// Kind of the player.
     pub source: RowSource,
-    /// Number of runs.
+    /// Number of runs of the player.
     pub runs: u32,
     /// Number of bankruptcies; `None` if not published.
     pub bankruptcies: Option<u32>,
     /// Final cash of the best run, dollars.
     pub best_cash: f64,
-    /// Name of the best run, for own runs.
+    /// Name of the best run; `None` for published rows and the idle company.
     pub best_run: Option<String>,
-    /// Longest survival, days.
+    /// Longest survival of a run, days.
     pub max_survival_days: Option<f64>,
-    /// Mean survival, days.
+    /// Mean survival of the runs, days.
     pub mean_survival_days: Option<f64>,
-    /// Standard deviation of survival over all runs.
+    /// Standard deviation of survival over all runs, days.
     pub std_survival_days: Option<f64>,
-    /// Calls a week: state-changing calls of own runs, published turns of agents.
+    /// Calls per week: state-changing calls of own runs, or turns of published agents.
     pub calls_per_week: Option<f64>,
     /// Number of published best runs with less final cash.
     pub beaten_count: usize,
@@ -142,13 +142,13 @@ pub struct ResultsRow {
 /// The results table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsTable {
-    /// Rows, best first.
+    /// Rows of the table, best result first.
     pub rows: Vec<ResultsRow>,
     /// Notes below the table.
     pub notes: Vec<String>,
 }
 
-/// Policy that makes no calls.
+/// Name of the policy that makes no calls.
 pub const IDLE_POLICY: &str = "P0";
 
 /// Name of the row of players without a label.
@@ -176,7 +176,8 @@ pub fn play_idle_company(policy: &Policy, configuration: &Configuration) -> Resu
 }
 
 impl ResultsTable {
-    /// Returns own runs and the idle company with the published rows. For incomparable runs, notes list the reasons.
+    /// Creates the table of own runs, the idle company and the published rows. Notes list the reasons why runs are not
+    /// comparable.
     pub fn new(
         runs: &[FinishedRun],
         left_out: &[Vec<RankingObstacle>],
@@ -201,7 +202,7 @@ impl ResultsTable {
             .map(|((_, name), _)| name.as_str())
             .collect();
         let again = (!again.is_empty()).then(|| {
-            format!("Several runs of one seed: {}. A person who repeats a seed knows its future; a policy plays the same again.", again.join(", "))
+            format!("Several runs of one seed: {}. A person who repeats a seed knows its future; a policy repeats its play.", again.join(", "))
         });
         let mut rows: Vec<ResultsRow> = groups
             .into_iter()
@@ -237,7 +238,7 @@ impl ResultsTable {
 
 fn best_run<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
     let result = |run: &FinishedRun| (run.score, run.survival_days);
-    // Ties: first by name.
+    // Ties are broken by name.
     let order = |one: &&FinishedRun, other: &&FinishedRun| {
         compare_results(result(one), result(other)).then_with(|| other.run.cmp(&one.run))
     };
@@ -304,18 +305,15 @@ fn published_rows() -> Vec<ResultsRow> {
     rows
 }
 
-/// Returns the notes that define the figures.
+/// Returns the notes that define the figures of the table.
 fn table_notes() -> Vec<String> {
     vec![
-        "The best run has the most final cash; if all runs went bankrupt, the longest life. The spread of lives is \
-         that of all runs, not of a sample."
+        "The best run has the most final cash; if all runs went bankrupt, it has the longest life. The spread of lives is the population standard deviation."
             .to_owned(),
-        "Calls a week: for own runs, accepted calls that changed something, averaged over runs; published figures are turns of an \
-         agent, which may hold several calls."
+        "Calls a week: for own runs, accepted calls that changed something, averaged over runs; published figures are turns of an agent, which can contain several calls."
             .to_owned(),
         format!(
-            "{IDLE_ROW}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. beats: published best runs \
-             that ended with less, of {}.",
+            "{IDLE_ROW}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. Beats: how many of the {} published best runs ended with less cash.",
             published_results().agent.len()
         ),
     ]
@@ -362,7 +360,7 @@ mod tests {
         let first = find_row(&table, "P01");
         assert_eq!((first.bankruptcies, first.runs, first.best_run.as_deref()), (Some(1), 3, Some("a2")));
         assert_eq!((first.best_cash, first.beaten_count), (3e6, 14));
-        // Published survival and spread of an agent with one bankruptcy in three runs.
+        // Published mean survival and standard deviation of an agent with one bankruptcy in three runs.
         assert_eq!(first.mean_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(461.7));
         assert_eq!(first.std_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(54.2));
         let second = find_row(&table, "P02");
@@ -372,7 +370,7 @@ mod tests {
         let policies = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Policy);
         assert_eq!(find_row(&policies, "mine").source, RowSource::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
-        // A participant's label never merges its runs with those of a policy or with published ones.
+        // A participant's runs are never merged with a policy's runs or with published runs that have the same name.
         let named_so = [run("e1", Some("mine"), 9e6, 500), run("e2", Some("idle company"), 8e6, 500)];
         let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
         let table = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Participant);

@@ -6,7 +6,7 @@ use crate::lab_report::{
 };
 
 impl ResultsTable {
-    /// Returns the table and a bar graph of the best runs.
+    /// Returns a report with the results table and a bar graph of the best runs.
     pub fn to_lab_report(&self) -> LabReport {
         let columns = vec![
             Column::text("name", "who"),

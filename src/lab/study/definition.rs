@@ -1,4 +1,4 @@
-//! Parses and checks study files and expands them into arms.
+//! Study files: parser, checks and expansion into arms.
 
 use std::path::Path;
 
@@ -16,18 +16,18 @@ use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
 
 const MAX_RUNS: u64 = 1_000_000;
 
-/// A parsed study, in the order of its rows.
+/// A parsed study file, with its arms in the order of the rows.
 #[derive(Debug, Clone)]
 pub struct StudyPlan {
-    /// Name: letters, digits, hyphens and underscores.
+    /// Name of the study: letters, digits, hyphens and underscores.
     pub name: String,
     /// Names of the columns that identify a run: policy, scenario, and varied settings.
     pub factors: Vec<String>,
-    /// Values of the factors by arm.
+    /// Values of the factors for each arm.
     pub levels: Vec<Vec<String>>,
-    /// Whether a scenario replays recorded draws.
+    /// Whether a scenario of the study replays recorded draws.
     pub replays_a_record: bool,
-    /// Arms and seeds.
+    /// Arms and seeds of the study.
     pub experiment: Experiment,
 }
 
@@ -69,7 +69,7 @@ struct OverrideSet {
     set: Table,
 }
 
-/// A study file with its text, to locate problems.
+/// A study file with its text, which is needed to locate errors.
 struct StudySource<'a> {
     name: String,
     text: &'a str,
@@ -80,7 +80,7 @@ impl StudySource<'_> {
         ParameterError::for_key(&self.name, self.text, key, problem)
     }
 
-    /// Returns an error at the first line of the table that names an override.
+    /// Returns an error at the first line of the table `within` that names the overridden key.
     fn override_error(&self, within: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         let from = line_of_key(self.text, within).unwrap_or(1);
         let names = |line: &&str| line.contains(key) || line.contains(key.rsplit('.').next().unwrap_or(key));
@@ -115,10 +115,10 @@ impl StudySource<'_> {
 }
 
 impl StudyPlan {
-    /// Reads a study file. Paths of policy files are relative to it.
+    /// Reads a study file. Paths of policy files are relative to the study file.
     ///
     /// # Errors
-    /// Returns the first problem with its line and key.
+    /// Returns the first error with its line and key.
     pub fn read(
         path: &Path,
         daily: bool,
@@ -182,7 +182,7 @@ impl StudyPlan {
         })
     }
 
-    /// Returns the indices of the arm and the seed of a run.
+    /// Returns the factor levels of a run's arm, and the run's seed.
     pub(super) fn arm_and_seed(&self, number: usize) -> (&[String], u64) {
         let seeds = &self.experiment.seeds;
         (&self.levels[number / seeds.len()], seeds[number % seeds.len()])
@@ -208,7 +208,8 @@ impl StudyFile {
     }
 }
 
-/// Returns the scenarios of a policy: those of the study, otherwise its own.
+/// Returns the scenarios in which a policy plays: the scenarios of the study, or the policy's scenario if the study
+/// lists none.
 fn scenarios_for(study_file: &StudyFile, policy: &Policy) -> Vec<String> {
     match study_file.scenarios.is_empty() {
         true => vec![policy.start.scenario.clone().unwrap_or(DEFAULT_SCENARIO.to_owned())],
@@ -256,7 +257,7 @@ fn check_scenarios(source: &StudySource<'_>, study_file: &StudyFile) -> Result<(
     }
 }
 
-/// Parameters that a study or policy sets by separate keys. Values in a grid or in overrides would have no effect.
+/// Parameters for which studies and policies have separate keys. Values in a grid or in overrides would have no effect.
 const RESERVED_PARAMETERS: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
 
 fn check_reserved_parameters<'a>(
@@ -274,7 +275,7 @@ fn check_reserved_parameters<'a>(
     }
 }
 
-/// Returns whether two values are equal; 0 equals 0.0.
+/// Returns whether two TOML values are equal. The integer 0 equals the float 0.0.
 fn are_equal_values(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     match (number(one), number(other)) {
@@ -283,7 +284,7 @@ fn are_equal_values(one: &Value, other: &Value) -> bool {
     }
 }
 
-/// The varied parameters and their combinations.
+/// The factors that a study varies, with all combinations of their values.
 struct VariedFactors {
     names: Vec<String>,
     all: Vec<FactorLevel>,
@@ -320,7 +321,7 @@ fn varied_factors(source: &StudySource<'_>, study_file: &StudyFile) -> Result<Va
     let is_set =
         |key: &String| all.iter().any(|level| level.overrides.iter().any(|(parameter, _)| parameter == key));
     if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
-        let problem = "a set of overrides sets it too: vary it either there or in the grid";
+        let problem = "a set of overrides also sets it: vary it either there or in the grid";
         return Err(source.override_error("grid", key, problem));
     }
     for (key, values) in grid {
@@ -399,7 +400,7 @@ fn check_days_and_cash(source: &StudySource<'_>, study_file: &StudyFile) -> Resu
     }
 }
 
-/// Checks that the runs of an arm can start.
+/// Returns the parameters of an arm. Returns an error if the runs of the arm cannot start.
 fn validated_parameters(
     source: &StudySource<'_>,
     study_file: &StudyFile,
@@ -408,7 +409,7 @@ fn validated_parameters(
 ) -> Result<Params, ParameterError> {
     let error = match (arm.run_conditions(configuration), study_file.until) {
         (Ok((days, ..)), Some(until)) if until > days => {
-            return Err(source.error_at_key("until", format!("its runs end on day {days}")));
+            return Err(source.error_at_key("until", format!("the runs of the study end on day {days}")));
         }
         (Ok((.., params)), _) => return Ok(params),
         (Err(error), _) => error,

@@ -1,17 +1,17 @@
-//! Combinations of a study's varied settings.
+//! Combinations of the varied settings of a study.
 
 use toml::{Table, Value};
 
-/// A combination of settings.
+/// A combination of varied settings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct FactorLevel {
-    /// One text for each column.
+    /// Texts of the settings, one for each factor column.
     pub labels: Vec<String>,
-    /// `(table.key, value as TOML)`.
+    /// Parameter overrides, as `(table.key, value as TOML)`.
     pub overrides: Vec<(String, String)>,
 }
 
-/// Returns the product of two lists of combinations; the second varies fastest.
+/// Returns the Cartesian product of two lists of combinations. The second list varies fastest.
 pub(super) fn cross_levels(slow: &[FactorLevel], fast: &[FactorLevel]) -> Vec<FactorLevel> {
     let both = |slow: &FactorLevel, fast: &FactorLevel| FactorLevel {
         labels: slow.labels.iter().chain(&fast.labels).cloned().collect(),
@@ -20,7 +20,7 @@ pub(super) fn cross_levels(slow: &[FactorLevel], fast: &[FactorLevel]) -> Vec<Fa
     slow.iter().flat_map(|one| fast.iter().map(move |other| both(one, other))).collect()
 }
 
-/// Returns the entries of a table by `table.key`, from quoted keys and from nested tables.
+/// Returns the values of a table by `table.key`, which can be written as a quoted key or as a nested table.
 pub(super) fn flatten_table(table: &Table) -> Vec<(String, &Value)> {
     let mut all = Vec::new();
     for (key, value) in table {
@@ -34,7 +34,7 @@ pub(super) fn flatten_table(table: &Table) -> Vec<(String, &Value)> {
     all
 }
 
-/// Returns the text of a value for an override.
+/// Formats a TOML value for an override.
 pub(super) fn override_text(value: &Value) -> String {
     value.to_string()
 }

@@ -1,4 +1,5 @@
-//! Merges the shards of a study: checks that all are present once and undamaged, and writes their rows in the order of the runs.
+//! Merging of the shards of a study. Every shard must be present exactly once and undamaged. The rows are written in
+//! the order of the runs.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::shard::{Shard, ShardHead};
 
-/// All problems that prevent a merge, with file names.
+/// The reasons why shards cannot be merged, with file names.
 #[derive(Debug)]
 pub struct MergeError(Vec<String>);
 
@@ -26,14 +27,14 @@ impl MergeError {
     }
 }
 
-/// A complete set of undamaged shards, in order.
+/// A complete set of undamaged shards of one study, in order.
 #[derive(Debug)]
 pub struct ShardSet {
     files: Vec<PathBuf>,
 }
 
 impl ShardSet {
-    /// Finds the shards in files and folders and checks that they belong together.
+    /// Finds the shards in the given files and folders, and checks that they are the complete set of one study.
     ///
     /// # Errors
     /// Fails if a file is not a shard, is damaged or belongs to another study, or if a shard is missing or present twice.
@@ -90,12 +91,12 @@ impl ShardSet {
         }
     }
 
-    /// Returns the files in the order of their shards.
+    /// Returns the shard files, in the order of the shards.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// Writes a header and the rows of all shards, ordered by run.
+    /// Writes the header and the rows of all shards, in the order of the runs.
     ///
     /// # Errors
     /// Fails if a file cannot be read or the output cannot be written.
@@ -132,7 +133,7 @@ impl ShardSet {
     }
 }
 
-/// Lists the first names and the number of others.
+/// Joins the first names and adds the number of the remaining names.
 fn abbreviate_names(names: &[String]) -> String {
     const MAX_NAMES: usize = 10;
     match names.len() {
@@ -141,10 +142,10 @@ fn abbreviate_names(names: &[String]) -> String {
     }
 }
 
-/// A reader of a shard's rows.
+/// A reader of the rows of a shard.
 struct RowReader {
     lines: BufReader<File>,
-    /// Current row with its line end; empty at the end.
+    /// Current row with its line terminator; empty at the end of the file.
     line: Vec<u8>,
 }
 
@@ -160,7 +161,7 @@ impl RowReader {
     }
 }
 
-/// Returns the given files, and the files in given folders whose names are shard names.
+/// Returns the given files, and the files in the given folders that have the name of a shard.
 fn shard_files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
     let mut all = Vec::new();
     for place in places {
@@ -175,7 +176,7 @@ fn shard_files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
         paths.sort_unstable();
         all.extend(paths);
     }
-    // A file that is given twice counts once.
+    // A file that is given twice is used once.
     let mut seen = std::collections::BTreeSet::new();
     all.retain(|path| seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())));
     Ok(all)
@@ -190,21 +191,21 @@ fn is_named_as_shard(path: &Path) -> bool {
         .is_some_and(|(shard, of)| is_number(shard) && is_number(of))
 }
 
-/// A shard with a valid first line.
+/// The state of a shard file with a valid first line.
 enum ShardState {
-    /// The rows match the checksum.
+    /// The rows match the checksum in the first line.
     Intact(ShardHead),
-    /// The rows do not match.
+    /// The rows do not match the checksum in the first line.
     Damaged(ShardHead),
 }
 
-/// Returns the head of a shard and whether its rows match.
+/// Reads the first line of a shard file and compares the rows with the checksum.
 fn read_head(file: &Path) -> Result<ShardState, String> {
     if std::fs::metadata(file).is_ok_and(|found| !found.is_file()) {
         return Err("it is not a file".to_owned());
     }
     let mut reader = BufReader::new(File::open(file).map_err(|error| error.to_string())?);
-    // First lines are short, so a file without line ends is not a shard.
+    // The first line of a shard is short, so the read is limited. A file without line terminators is not a shard.
     let mut line = Vec::new();
     reader.by_ref().take(4096).read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
     let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHead::parse(line.trim_end()));

@@ -1,7 +1,7 @@
 //! Studies of policies by scenarios, parameters and seeds, optionally split into shards (docs/laboratory/study.md).
 //!
-//! A study file defines numbered runs. Shard i of n plays the runs i, i + n, i + 2n, …, and
-//! `lab merge` writes the rows of all shards in the order of their runs. The result equals that of the unsplit study.
+//! A study file defines numbered runs. Shard i of n plays the runs i, i + n, i + 2n, …, and `lab merge` writes the
+//! rows of all shards in the order of the runs. The merged file equals the output of the unsplit study.
 
 mod definition;
 mod grid;

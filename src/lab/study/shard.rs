@@ -1,4 +1,4 @@
-//! Shards: the assignment of runs, and the first line of a shard file, which describes its rows.
+//! Shards of a study: the assignment of runs to shards, and the first line of a shard file.
 
 use std::fmt;
 
@@ -9,13 +9,13 @@ use crate::experiment::ExperimentError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
-/// Prefix of a shard's first line.
+/// Prefix of the first line of a shard file.
 const SHARD_PREFIX: &str = "# novamind study shard ";
 
-/// One of several parts of a study.
+/// A shard: one of several parts of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Number, from 1.
+    /// Number of the shard, from 1.
     pub shard: usize,
     /// Total number of shards.
     pub of: usize,
@@ -29,7 +29,7 @@ impl fmt::Display for Shard {
 
 const MAX_SHARDS: usize = 100_000;
 
-/// Parses `2/4`.
+/// Parses a shard: `2/4` is the second of four shards.
 ///
 /// # Errors
 /// Fails if the text is not a valid shard.
@@ -42,28 +42,28 @@ pub fn parse_shard(text: &str) -> Result<Shard, String> {
 }
 
 impl Shard {
-    /// Returns the indices of its runs.
+    /// Returns the indices of the runs that belong to the shard.
     pub fn run_numbers(self, runs: usize) -> Vec<usize> {
         (self.shard - 1..runs).step_by(self.of).collect()
     }
 }
 
-/// The description of a shard in its first line.
+/// The description of a shard in the first line of its file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardHead {
     /// Name of the study.
     pub study: String,
-    /// Digest of everything its rows depend on: program, mechanics, parameters, policies, seeds, columns.
+    /// Digest of everything on which the rows depend: program, mechanics, parameters, policies, seeds and columns.
     pub digest: String,
-    /// Part of the study.
+    /// Shard whose rows the file contains.
     #[serde(flatten)]
     pub part: Shard,
-    /// BLAKE3 hash of the following lines.
+    /// BLAKE3 hash of the lines after the first line.
     pub checksum: String,
 }
 
 impl ShardHead {
-    /// Returns the content of a shard file: first line, header, rows.
+    /// Returns the content of a shard file: first line, header and rows.
     pub fn with_checksum(study: &str, digest: &str, part: Shard, rows: &str) -> String {
         let head = ShardHead {
             study: study.to_owned(),
@@ -74,21 +74,21 @@ impl ShardHead {
         format!("{SHARD_PREFIX}{}\n{rows}", serde_json::to_string(&head).expect("plain values"))
     }
 
-    /// Parses the first line of a file; returns `None` if it is not a shard.
+    /// Parses the first line of a shard file. Returns `None` if the line has another format.
     pub(super) fn parse(line: &str) -> Option<ShardHead> {
         let head: ShardHead = serde_json::from_str(line.strip_prefix(SHARD_PREFIX)?).ok()?;
         (head.part.shard >= 1 && head.part.shard <= head.part.of && head.part.of <= MAX_SHARDS)
             .then_some(head)
     }
 
-    /// Returns the file name of a shard.
+    /// Returns the file name of a shard of a study.
     pub fn file_name(study: &str, part: Shard) -> String {
         format!("{study}.{}-of-{}.csv", part.shard, part.of)
     }
 }
 
 impl StudyPlan {
-    /// Returns the digest of everything that the rows of the study depend on.
+    /// Returns the digest of everything on which the rows of the study depend.
     ///
     /// # Errors
     /// Fails if an arm cannot start.

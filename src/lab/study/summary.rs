@@ -14,7 +14,7 @@ use novamind_report::pluralize;
 const MAX_CURVES: usize = 8;
 const MAX_NAMES: usize = 6;
 
-/// Returns the final figures of each arm. `results` has all runs in order.
+/// Returns a report on the final figures of each arm. `results` contains all runs in order.
 pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
     let seeds = plan.experiment.seeds.len();
     let by_arm: Vec<&[RunResult]> = results.chunks(seeds).collect();
@@ -53,8 +53,7 @@ pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
     let luck = match plan.replays_a_record {
         false => "Common seeds: runs with the same seed have the same random draws in every arm.",
         true => {
-            "Common seeds, but a scenario that replays recorded draws does not share them with the others, and its seeds differ \
-             only in what is not recorded."
+            "Common seeds: runs with the same seed have the same random draws, except in scenarios that replay recorded draws. The seeds of such a scenario differ only in draws that are not recorded."
         }
     };
     let interval = format!(
@@ -71,7 +70,7 @@ pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
     exhibit.with_note(luck).with_note(interval)
 }
 
-/// Returns a warning for each group of arms that have the same policy, parameters, days and cash.
+/// Returns a warning for each group of arms with the same policy, parameters, days and cash.
 ///
 /// # Errors
 /// Fails if a scenario is unknown or a parameter is invalid.
@@ -80,7 +79,7 @@ pub fn equal_arm_warnings(plan: &StudyPlan, configuration: &Configuration) -> Re
     Ok(plan.experiment.equal_arms(configuration)?.iter().map(warning).collect())
 }
 
-/// Returns a warning for each group of arms whose runs ended in the same state with every seed. `results` has all
+/// Returns a warning for each group of arms whose runs ended in the same state for every seed. `results` contains all
 /// runs in order.
 pub fn equal_outcome_warnings(plan: &StudyPlan, results: &[RunResult]) -> Vec<String> {
     let states = |runs: &[RunResult]| runs.iter().map(|run| run.state_hash.clone()).collect::<Vec<_>>();
@@ -94,7 +93,7 @@ pub fn equal_outcome_warnings(plan: &StudyPlan, results: &[RunResult]) -> Vec<St
     groups_of_equal(by_arm).iter().map(warning).collect()
 }
 
-/// Lists the first arms and the number of others.
+/// Lists the names of the first arms and the number of the remaining arms.
 fn arm_names(plan: &StudyPlan, arms: &[usize]) -> String {
     let names: Vec<String> = arms.iter().take(MAX_NAMES).map(|arm| plan.levels[*arm].join(" / ")).collect();
     let more = arms.len() - names.len();
@@ -108,7 +107,7 @@ pub fn describe_size(plan: &StudyPlan) -> String {
     format!("{} by {}", pluralize(arms.len() as u32, "arm"), pluralize(seeds.len() as u32, "seed"))
 }
 
-/// Returns the arms in the graph: those with the highest final cash, in the order of the study.
+/// Returns the arms that the graph shows: the arms with the highest final cash, in the order of the study.
 fn arms_to_plot(by_arm: &[&[RunResult]]) -> Vec<usize> {
     let middle = |arm: &usize| {
         let cash: Vec<f64> = by_arm[*arm].iter().map(|run| run.cash).collect();
@@ -128,7 +127,7 @@ fn cash_graph(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
         days.sort_unstable();
         days.dedup();
         let cash = |day: u32| -> Vec<f64> {
-            // An ended run keeps its final cash.
+            // A run that ended early keeps its final cash.
             let at = |run: &RunResult| run.weeks.iter().rfind(|week| week.day <= day).map(|week| week.cash);
             runs.iter().filter_map(at).collect()
         };

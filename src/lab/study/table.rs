@@ -34,14 +34,14 @@ const DAY_COLUMNS: [&str; 13] = [
     "usage",
 ];
 
-/// Returns the names of the columns.
+/// Returns the names of the columns in the table of a study.
 pub fn column_names(plan: &StudyPlan) -> Vec<String> {
     let texts: &[&str] = if plan.experiment.recorded.daily { &DAY_COLUMNS } else { &RUN_COLUMNS };
     let before = std::iter::once("run".to_owned()).chain(plan.factors.iter().cloned());
     before.chain(["seed".to_owned()]).chain(texts.iter().map(|name| (*name).to_owned())).collect()
 }
 
-/// Returns the rows of a run, given its index. Numbers have the shortest form that parses to the same value.
+/// Returns the table rows of the run with a given index. Numbers have the shortest form that parses to the same value.
 pub fn rows(plan: &StudyPlan, number: usize, result: &RunResult) -> Vec<Vec<String>> {
     let (levels, seed) = plan.arm_and_seed(number);
     let mut before = vec![(number + 1).to_string()];

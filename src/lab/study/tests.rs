@@ -176,7 +176,7 @@ fn shards_parse_and_partition_the_runs() {
     }
 }
 
-/// Writes the shards of a study; each run has one row, or as many as its number.
+/// Writes the shards of a study. Each run has one row or, with `has_many`, as many rows as its number.
 fn write_shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (String, Vec<PathBuf>) {
     let rows = |run: usize| -> String {
         let count = if has_many { run % 3 + 1 } else { 1 };

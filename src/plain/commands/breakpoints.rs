@@ -1,4 +1,5 @@
-//! `break`, `run`, `since`, `find` and `who`: breakpoints, conditions over time, and what changed a figure (docs/debugging.md).
+//! `break`, `run`, `since`, `find` and `who`: breakpoints, conditions over time, and the mechanisms that changed a
+//! figure (docs/debugging.md).
 
 use serde_json::{Value, json};
 
@@ -16,7 +17,7 @@ use novamind_report::inspection::{
 use novamind_session::ReputationCause;
 
 impl Interpreter {
-    /// `break`, `break CONDITION`, `break clear N|all`. `column` is where the rest begins.
+    /// Executes `break`, `break CONDITION` and `break clear N|all`. `column` is the column at which `rest` begins.
     pub(super) fn breakpoint_command(
         &mut self,
         rest: &str,
@@ -54,7 +55,10 @@ impl Interpreter {
                     let next = match self.session.ended() {
                         None => "run DAYS stops there".to_owned(),
                         Some(_) => {
-                            format!("since {} shows since when it is true or false", breakpoint.number)
+                            format!(
+                                "since {} shows since when the condition is true or false",
+                                breakpoint.number
+                            )
                         }
                     };
                     let text = format!("breakpoint {}: {}; {next}", breakpoint.number, breakpoint.condition);
@@ -65,7 +69,7 @@ impl Interpreter {
         Ok(shown.unwrap_or_else(|refusal| CommandResponse::rejected("break", refusal)))
     }
 
-    /// `run DAYS`, `run DAYS until CONDITION`, which sets the condition as `break` does.
+    /// Executes `run DAYS` and `run DAYS until CONDITION`. The condition becomes a breakpoint, as with `break`.
     pub(super) fn run_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         if let Err(refusal) = self.session.check_inspection() {
             return Ok(CommandResponse::rejected("run", refusal));
@@ -111,7 +115,7 @@ impl Interpreter {
         })
     }
 
-    /// `since`, `since N`, `since CONDITION`
+    /// Executes `since`, `since N` and `since CONDITION`.
     pub(super) fn run_back(
         &mut self,
         word: &str,
@@ -148,12 +152,12 @@ impl Interpreter {
         })
     }
 
-    /// `find CONDITION`
+    /// Executes `find CONDITION`.
     pub(super) fn find_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         self.run_debug_command("find", || InspectionCommand::parse_find(rest, column))
     }
 
-    /// `who FIGURE [DAY]`
+    /// Executes `who FIGURE [DAY]`.
     pub(super) fn find_writers(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         self.run_debug_command("who", || InspectionCommand::parse_who(rest, column))
     }
@@ -167,12 +171,12 @@ fn parse_condition(text: &str, column: usize) -> Result<Condition, ParseError> {
     text.parse().map_err(|problem| at_column(problem, column))
 }
 
-/// Shifts a problem in the rest of a line to the columns of the line.
+/// Converts an error in the rest of a line that begins at `column` to an error with columns of the whole line.
 fn at_column(problem: ConditionParseError, column: usize) -> ParseError {
     ParseError { text: problem.message, column: column + problem.column - 1 }
 }
 
-/// Parses the number of a breakpoint. Returns `None` for all of them.
+/// Parses the number of a breakpoint. Returns `None` for `all`.
 fn parse_number_or_all(word: &str, column: usize) -> Result<Option<u32>, ParseError> {
     match (word, word.parse()) {
         ("all", _) => Ok(None),

@@ -1,4 +1,4 @@
-//! `check CALL`: previews the effect and cost of a call.
+//! `check CALL`: previews the effect and cost of a tool call.
 
 use serde_json::{Value, json};
 
@@ -18,7 +18,7 @@ use novamind_session::identifiers::ByPlan;
 use novamind_tools::ToolId;
 
 impl Interpreter {
-    /// Parses the call in a line that begins with `check`, so that columns are those of the line.
+    /// Parses and previews the tool call in a line that begins with `check`. Errors report columns of the whole line.
     pub(super) fn check_command(&self, line: &str) -> Result<CommandResponse, ParseError> {
         let call = line.replacen("check", "     ", 1);
         let ParsedLine::Call { word, column, arguments } = grammar::parse_line(&call)? else {
@@ -34,7 +34,7 @@ impl Interpreter {
     }
 
     fn preview_response(&self, preview: &Preview, arguments: &Value) -> CommandResponse {
-        let mut lines = vec![format!("{} would be accepted; it was not made", preview.tool)];
+        let mut lines = vec![format!("{} would be accepted; nothing was changed", preview.tool)];
         lines.extend(preview.changes.iter().map(|change| format!("  {}", describe_setting_change(change))));
         lines.extend(cost_line(preview).map(|line| format!("  {line}")));
         let notes = preview
@@ -56,7 +56,7 @@ impl Interpreter {
         Some(describe_peak_and_tier(self.session.weeks(), u32::from(capacity_tier.tier), capacity_tier.units))
     }
 
-    /// Describes the level that a study reaches.
+    /// Describes the study level before and after a market study.
     fn describe_study_level(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let group = arguments.get("group_id").filter(|_| tool == ToolId::ResearchGroup)?.as_str()?;
         let terms = self.session.company().tool_limits();
@@ -81,7 +81,7 @@ impl Interpreter {
         ))
     }
 
-    /// Returns the margins after a call. Returns an empty list if its tool does not affect them.
+    /// Describes the gross margins after a tool call. Returns an empty list if the tool does not affect margins.
     fn describe_margins(&self, tool: ToolId, arguments: &Value) -> Vec<String> {
         let Some(lever) = MarginSetting::from_tool(tool) else { return Vec::new() };
         let core = self.session.settings().core;
@@ -100,7 +100,7 @@ impl Interpreter {
     }
 }
 
-/// Returns the problem of a word that is not a tool.
+/// Returns the error for a word that is not the name of a tool.
 fn not_a_tool(word: &str, column: usize) -> ParseError {
     if !COMMANDS.iter().any(|(name, _)| *name == grammar::current_name(word)) {
         return unknown_command(word, column);

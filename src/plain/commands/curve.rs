@@ -16,7 +16,7 @@ use novamind_session::identifiers::{Group, Plan};
 
 const USAGE: &str = "give a group, and optionally a price and a quality: curve S1, curve S1 30 0.4";
 
-/// A group, and optionally a price and a quality.
+/// Group, and optionally price and quality.
 type CurveRequest = (Group, Option<(f64, f64)>);
 
 impl Interpreter {

@@ -1,4 +1,4 @@
-//! `find`, `who`, `diff` and `set`: commands that the console offers, too (docs/debugging.md).
+//! Runs `find`, `who`, `diff` and `set`, which are also commands of the console (docs/debugging.md).
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use super::breakpoints::{judged_to_json, writers_to_json};
 use novamind_report::inspection::{InspectionCommand, InspectionOutput, difference_to_json};
 
 impl Interpreter {
-    /// Answers a command. The permission is checked before anything is parsed.
+    /// Executes a debug command. Checks the permission before parsing the arguments.
     pub(super) fn run_debug_command(
         &mut self,
         word: &str,

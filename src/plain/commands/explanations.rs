@@ -1,4 +1,4 @@
-//! `explain` and `glossary`: the meaning of terms.
+//! `explain` and `glossary`: show the meaning of terms.
 
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use novamind_report::term_picture::term_picture_for_session;
 use novamind_session::Session;
 use novamind_tools::ParameterNumbers;
 
-/// `explain TERM` and `what TERM`.
+/// Executes `explain TERM` and `what TERM`.
 pub(super) fn explain(command: &str, words: &str, numbers: &ParameterNumbers) -> CommandResponse {
     let column = command.chars().count() + 2;
     if words.is_empty() {
@@ -29,7 +29,7 @@ pub(super) fn explain(command: &str, words: &str, numbers: &ParameterNumbers) ->
     }
 }
 
-/// Returns the explanation of a subject.
+/// Returns the response that explains a term, tool, argument, table or column.
 pub(super) fn explain_subject(
     command: &str,
     subject: Subject,
@@ -52,7 +52,7 @@ pub(super) fn explain_subject(
     CommandResponse::success(command, explanation.to_text(), data)
 }
 
-/// `glossary [WORD]`. If the word is a term with a picture, the picture follows.
+/// Executes `glossary [WORD]`. If the word is a term with a picture, appends the picture.
 pub(super) fn glossary(word: &str, session: &Session) -> CommandResponse {
     let wanted = word.to_lowercase();
     let holds = |term: &&Term| {
@@ -62,7 +62,7 @@ pub(super) fn glossary(word: &str, session: &Session) -> CommandResponse {
     let found: Vec<&Term> = terms().iter().filter(holds).collect();
     if found.is_empty() {
         return CommandResponse::syntax_error(
-            format!("no term contains {word}; glossary lists them all"),
+            format!("no term contains {word}; glossary lists all terms"),
             10,
         );
     }
@@ -101,7 +101,7 @@ mod tests {
     use novamind_session::identifiers::Group;
     use novamind_session::{NewRun, Session};
 
-    /// Collects the names of the fields of an answer, except keys of maps by group.
+    /// Collects the field names in a response, except the keys of maps by group.
     fn fields(value: &Value, found: &mut Vec<String>) {
         match value {
             Value::Object(map) => map.iter().for_each(|(name, value)| {

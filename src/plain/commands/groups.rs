@@ -1,5 +1,5 @@
-//! `fit [GROUP]`, which compares plans with the requirements of groups, and `leads`, which shows sources and costs of leads.
-//! Also formats the insights of a group as ranges.
+//! Executes `fit [GROUP]`, which compares plans with the requirements of groups, and `leads`, which shows sources and
+//! costs of leads. Also formats the insights of a group as ranges.
 
 use serde_json::{Value, json};
 
@@ -70,7 +70,7 @@ impl Interpreter {
     }
 }
 
-/// Returns the group of a name, or every known one.
+/// Returns the group with a name, or every known group if no name is given.
 fn select_groups<'a>(
     all: &'a [Fit],
     name: Option<&str>,
@@ -88,8 +88,8 @@ fn select_groups<'a>(
     Err(argument_error(arguments, &format!("{id} is not a known group; known: {known}")))
 }
 
-/// Returns the answer of a tool with ranges and dates in place of estimates, and with true means of projects. Returns `None` if it
-/// contains neither.
+/// Returns the result of a tool with ranges and dates instead of single estimates, and with the true means of R&D
+/// projects. Returns `None` if the result contains neither.
 pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
     match answer {
         novamind_tools::Answer::GetGroupInsights(insights) => {

@@ -1,4 +1,4 @@
-//! `help`: the list of commands, and help on each of them.
+//! `help`: lists the commands, and shows help on a command.
 
 use serde_json::json;
 
@@ -40,7 +40,7 @@ the true parameters of the group, and the inspection is recorded. In all other r
 market studies, so that each figure is a range that covers the error of the study.";
 
 const CHECK_HELP: &str = "\
-check CALL                preview the effect and cost of a call; nothing is done, drawn or recorded. For example
+check CALL                preview the effect and cost of a tool call; nothing is changed, drawn or recorded. For example
                           check set_prices B=30
                           check set_capacity_tier 2
                           check research_group S2
@@ -49,17 +49,17 @@ study with the level it reaches, an R&D project with the range of its effect.";
 
 const PAUSE_HELP: &str = "\
 pause                     stop the clock for a break; until resume, only resume, help and quit work
-pause REASON              the same with a reason, which is recorded, for example pause lunch
+pause REASON              stop the clock and record a reason, for example pause lunch
 Time with the clock stopped does not count as playing time.";
 
 const BREAK_HELP: &str = "\
 break                     list the breakpoints with their numbers
-break CONDITION           set one; run DAYS stops on the first day on which it becomes true. For example
+break CONDITION           set a breakpoint; run DAYS stops on the first day on which the condition becomes true. For example
                           break churn(S1) > 5% over 7
                           break reputation(S3) falls
                           break leads(S1) rises over 7
                           break event rival
-break clear N             remove one; break clear all removes all of them
+break clear N             remove a breakpoint; break clear all removes all breakpoints
 A condition is FIGURE > NUMBER, with >, >=, < or <=, FIGURE rises, FIGURE falls, or event rival, drift, surge or outage.
 over DAYS sums counts over that many days and computes shares of the sums. Figures of a group, as in subscribers(S1): subscribers,
 leads, new_subscribers, conversion, cancellations, churn, usage, open_issues, reputation, satisfaction, relationship.
@@ -67,7 +67,7 @@ Figures of the company: cash, recurring_revenue, payments, running_costs, subscr
 new_subscribers, new_seats, conversion, cancellations, churn, upgrades, downgrades, usage, overload, downtime_minutes,
 open_issues.";
 
-/// Returns the full help of a command, if it has one.
+/// Returns the full help of a command, or `None` if the command has only a help line.
 fn command_help(name: &str, led: bool) -> Option<String> {
     let text = match name {
         "inbox" | "thread" => inbox::HELP,
@@ -87,20 +87,20 @@ fn command_help(name: &str, led: bool) -> Option<String> {
     Some(text.to_owned())
 }
 
-/// Listed only for participants of a study.
+/// Command and help line that only participants of a study get.
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
 /// Commands that are rejected in runs of participants of a study.
 const NOT_FOR_PARTICIPANTS: [&str; 11] =
     ["branch", "step", "xray", "lens", "diff", "set", "break", "run", "since", "find", "who"];
 
-/// Returns the commands for participants of a study or for others.
+/// Returns the commands with their help lines. `led` selects the commands for participants of a study.
 fn commands(led: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
     let all = COMMANDS.iter().copied().filter(|(_, line)| !line.is_empty());
     all.filter(move |(name, _)| !led || !NOT_FOR_PARTICIPANTS.contains(name)).chain(led.then_some(WITHDRAW))
 }
 
-/// `help [NAME]`, for participants of a study or for others.
+/// Executes `help [NAME]`. `led` selects the help for participants of a study.
 pub(super) fn help(
     name: Option<&str>,
     arguments: &[Argument],
@@ -114,7 +114,7 @@ pub(super) fn help(
             "{}\n\nEvery tool is also a command: {}\nFor example: set_prices A=16 B=34 C=70\n\
              The call of agents for a week: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
              {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows the full form)\n\
-             Type help NAME for one of them, and explain TERM for the meaning of a word.",
+             Type help NAME for help on a command or tool, and explain TERM for the meaning of a term.",
             lines.join("\n"),
             tools.join(", ")
         );
@@ -146,8 +146,8 @@ pub(super) fn help(
     ))
 }
 
-/// Returns the forms of `next` and the coverage of naive forecasts. Participants of a study do not get the coverage, because it
-/// comes from other companies.
+/// Returns the help on `next` with the coverage of naive forecasts. Participants of a study do not get the coverage,
+/// because coverage was measured with other companies.
 fn next_help(led: bool) -> String {
     let forms = "\
 next \"WHY\" naive                         naive forecasts
@@ -200,8 +200,8 @@ mod tests {
         let numbers = ParameterNumbers::bundled();
         for (outcome, list) in [
             (help(Some("zzzzzzz"), &[], &numbers, false), "help lists the commands"),
-            (overview::tools_command(Some("foo"), &[], &numbers), "tools lists them"),
-            (overview::tables_command(Some("leger"), &[]), "did you mean ledger? tables lists them"),
+            (overview::tools_command(Some("foo"), &[], &numbers), "tools lists all tools"),
+            (overview::tables_command(Some("leger"), &[]), "did you mean ledger? tables lists all tables"),
         ] {
             let problem = outcome.expect_err(list);
             assert!(problem.text.ends_with(list) || problem.text.contains(list), "{problem:?}");

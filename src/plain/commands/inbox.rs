@@ -1,4 +1,4 @@
-//! `inbox`: the waiting threads, first by group, then the most urgent ones.
+//! `inbox`: lists the waiting threads, first totals by group, then the most urgent threads.
 
 use std::collections::BTreeMap;
 
@@ -14,23 +14,23 @@ use novamind_rules::{Filter, ThreadContext};
 use novamind_session::EnterpriseNames;
 use novamind_session::identifiers::Plan;
 
-/// Maximum number of threads in the text; the data contains all of them.
+/// Maximum number of threads in the text response. The JSON data contains all threads.
 const LISTED_THREADS: usize = 20;
-/// Days left at which a thread is urgent.
+/// A thread is urgent if at most this number of days is left.
 const URGENT_DAYS: u32 = 2;
 
 pub(super) const HELP: &str = "\
 inbox                     list the number of waiting threads in each group, and the 20 with the earliest deadlines, larger ones first
 inbox all                 list every waiting thread
-inbox where CONDITION     list those that meet a condition in the grammar of rules, for example
+inbox where CONDITION     list threads that meet a condition in the grammar of rules, for example
                           inbox where group = E2 and seats >= 500
-inbox all where CONDITION the same without the limit of 20
+inbox all where CONDITION list all threads that meet a condition, without the limit of 20
 inbox NUMBER              show the newest thread of a company, turn by turn, for example inbox 5641
 thread NUMBER             show the thread with that number, waiting or ended
 Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
 send_enterprise_deal and reject_enterprise_deal answer a thread; rules answers many.";
 
-/// The selection of threads.
+/// The threads that an `inbox` command lists.
 #[derive(Default)]
 struct ThreadSelection {
     all: bool,
@@ -38,7 +38,7 @@ struct ThreadSelection {
 }
 
 impl Interpreter {
-    /// `inbox`, `inbox all`, `inbox NUMBER`.
+    /// Executes `inbox`, `inbox all` and `inbox NUMBER`.
     pub(super) fn run_inbox(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         match arguments {
             [] => Ok(self.list_threads(&ThreadSelection::default())),
@@ -56,7 +56,7 @@ impl Interpreter {
         }
     }
 
-    /// `inbox [all] where CONDITION`. `text` is the text after the command, which begins at a column.
+    /// Executes `inbox [all] where CONDITION`. `text` is the text after the command and begins at `column`.
     pub(super) fn inbox_where(&mut self, text: &str, column: usize) -> CommandResponse {
         let before = text.find("where").map_or(0, |at| at + "where".len());
         let (head, condition) = text.split_at(before);
@@ -120,7 +120,7 @@ fn funnel_to_json(funnel: &Funnel) -> Value {
     })
 }
 
-/// Returns a sentence for each group with threads.
+/// Returns one sentence for each group with waiting threads.
 fn group_lines(waiting: &[ThreadContext]) -> Vec<String> {
     let mut groups: BTreeMap<&str, Vec<&ThreadContext>> = BTreeMap::new();
     for thread in waiting {
@@ -140,11 +140,11 @@ fn group_line(group: &str, threads: &[&ThreadContext]) -> String {
     let least = asked.iter().copied().fold(f64::INFINITY, f64::min);
     let most = asked.iter().copied().fold(0.0, f64::max);
     match asked.len() {
-        0 => line + ", none asks a price",
-        1 => line + &format!(", 1 asks a price, {}", cents(most)),
+        0 => line + ", none names a price",
+        1 => line + &format!(", 1 names a price, {}", cents(most)),
         many => {
             line + &format!(
-                ", {} ask a price, {} to {}",
+                ", {} name a price, {} to {}",
                 grouped_number(many as f64, 0),
                 cents(least),
                 cents(most)
@@ -153,7 +153,7 @@ fn group_line(group: &str, threads: &[&ThreadContext]) -> String {
     }
 }
 
-/// Returns the threads as sentences, and how to list the others.
+/// Describes the listed threads, one sentence each, and the command that lists the remaining threads.
 fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &EnterpriseNames) -> Vec<String> {
     let number = if wanted.all { waiting.len() } else { waiting.len().min(LISTED_THREADS) };
     if number == 0 {
@@ -167,10 +167,9 @@ fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &Ent
     if number < waiting.len() {
         let more = grouped_number((waiting.len() - number) as f64, 0);
         lines.push(match wanted.filter {
-            Some(_) => format!("{more} more: inbox all where … lists all of them"),
+            Some(_) => format!("{more} more: inbox all where … lists all threads"),
             None => format!(
-                "{more} more: inbox all lists all of them, inbox where CONDITION some, for example inbox where \
-                 seats >= 500"
+                "{more} more: list all with inbox all, or some with inbox where CONDITION, for example inbox where seats >= 500"
             ),
         });
     }
@@ -199,7 +198,7 @@ fn describe_thread(thread: &ThreadContext, names: &EnterpriseNames) -> String {
     parts.join(", ")
 }
 
-/// Describes the demand of a company: a price, a plan, or both.
+/// Describes what the enterprise asked for: a price, a plan, or both.
 pub(super) fn describe_request(thread: &ThreadContext) -> Option<String> {
     match (thread.waiting.asked, thread.asked_plan) {
         (Some(price), Some(plan)) => Some(format!("asks {} for plan {plan}", cents(price))),
@@ -209,7 +208,7 @@ pub(super) fn describe_request(thread: &ThreadContext) -> Option<String> {
     }
 }
 
-/// Describes an offer, as in `plan B at $30.00 or plan C at $55.00`.
+/// Formats an offer, for example `plan B at $30.00 or plan C at $55.00`.
 pub(super) fn describe_offer(offered: &[(Plan, f64)]) -> String {
     let line = |(plan, price): &(Plan, f64)| format!("plan {plan} at {}", cents(*price));
     offered.iter().map(line).collect::<Vec<_>>().join(" or ")

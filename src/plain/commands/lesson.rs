@@ -1,4 +1,4 @@
-//! `lesson`, `guess`, `hint`, `retry` and `debrief`: a lesson line by line.
+//! `lesson`, `guess`, `hint`, `retry` and `debrief`: the commands of lessons.
 
 use serde_json::{Value, json};
 
@@ -15,7 +15,7 @@ use novamind_session::Session;
 use novamind_tools::Rejection;
 
 impl Interpreter {
-    /// `lesson`, `lesson next`
+    /// Executes `lesson` and `lesson next`.
     pub(super) fn lesson_command(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         match arguments {
             [] => Ok(self.lesson_page("lesson")),
@@ -24,7 +24,7 @@ impl Interpreter {
         }
     }
 
-    /// Returns the page of the lesson, or the reason why there is none.
+    /// Returns the status of the lesson, or a rejection if the run is not part of a lesson.
     fn lesson_page(&mut self, command: &str) -> CommandResponse {
         match LessonStatus::from_session(&mut self.session) {
             Some(page) => {
@@ -38,13 +38,13 @@ impl Interpreter {
         let next = LessonStatus::from_session(&mut self.session).map(|page| page.next_part);
         let begun = match next {
             None => Err(not_a_lesson()),
-            Some(None) => Err(Rejection::new("no_part", "there is no next part, or this one is not over")),
+            Some(None) => Err(Rejection::new("no_part", "there is no next part, or this part is not over")),
             Some(Some(part)) => start_part(&self.session, part as usize - 1),
         };
         self.continue_lesson_in("lesson", begun)
     }
 
-    /// `guess ANSWER`
+    /// Executes `guess ANSWER`.
     pub(super) fn run_guess(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let [only] = arguments else {
             return Err(argument_error(arguments, "guess takes one answer, for example guess 12000"));
@@ -53,7 +53,7 @@ impl Interpreter {
         if self.session.lesson().is_none() {
             return Ok(CommandResponse::rejected("guess", not_a_lesson()));
         }
-        // If the step asks nothing, the session rejects any answer.
+        // If the step has no question, the session rejects any answer.
         let question = LessonStatus::from_session(&mut self.session).and_then(|page| page.question);
         let value = question.map_or(Ok(f64::NAN), |question| parse_guess(&question, &written));
         let value = value.map_err(|text| argument_error(arguments, &text))?;
@@ -63,7 +63,7 @@ impl Interpreter {
         })
     }
 
-    /// `hint`
+    /// Executes `hint`.
     pub(super) fn run_hint(&mut self) -> CommandResponse {
         match take_hint(&mut self.session) {
             Ok(text) => CommandResponse::success("hint", text.clone(), json!({ "hint": text })),
@@ -71,7 +71,7 @@ impl Interpreter {
         }
     }
 
-    /// `retry [STEP]`
+    /// Executes `retry [STEP]`.
     pub(super) fn restart_step(
         &mut self,
         word: &str,
@@ -90,7 +90,7 @@ impl Interpreter {
         Ok(self.continue_lesson_in(word, again))
     }
 
-    /// `debrief`
+    /// Executes `debrief`.
     pub(super) fn debrief(&mut self) -> CommandResponse {
         match PlayedPart::from_session(&self.session) {
             Ok(played) => {

@@ -1,4 +1,4 @@
-//! `memo`: the notes of the run.
+//! `memo`: shows the notes of the run, or adds a line.
 
 use serde_json::json;
 
@@ -7,7 +7,7 @@ use super::Interpreter;
 use novamind_tools::Rejection;
 
 impl Interpreter {
-    /// `memo`
+    /// Executes `memo`.
     pub(super) fn show_notes(&self) -> CommandResponse {
         match self.session.notes() {
             Ok(memo) if memo.is_empty() => {
@@ -20,7 +20,7 @@ impl Interpreter {
         }
     }
 
-    /// `memo TEXT`
+    /// Executes `memo TEXT`.
     pub(super) fn add_note(&mut self, line: &str) -> CommandResponse {
         let memo = match self.session.notes() {
             Ok(memo) => memo,

@@ -149,7 +149,7 @@ impl Interpreter {
     }
 }
 
-/// Formats a need as one line, and the call that addresses it as another.
+/// Formats a problem as one line, and the tool call that addresses the problem as a second line.
 fn need_lines(need: &ActionItem) -> Vec<String> {
     let mark = if need.is_urgent { '!' } else { '-' };
     let risk = grouped_number(need.at_risk, 0);
@@ -162,7 +162,7 @@ fn need_lines(need: &ActionItem) -> Vec<String> {
     lines
 }
 
-/// Formats a change as one line.
+/// Formats a changed setting as one line.
 pub fn describe_setting_change(change: &SettingChange) -> String {
     describe_change(change)
 }
@@ -198,7 +198,7 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &EnterpriseNa
     }
 }
 
-/// `tools [NAME]`.
+/// Executes `tools [NAME]`.
 pub(super) fn tools_command(
     name: Option<&str>,
     arguments: &[Argument],
@@ -223,7 +223,7 @@ pub(super) fn tools_command(
                     "no tool",
                     name,
                     novamind_tools::catalogue::similar_tools(name),
-                    "tools lists them",
+                    "tools lists all tools",
                 ),
             )
         })?;
@@ -234,7 +234,7 @@ pub(super) fn tools_command(
     ))
 }
 
-/// `tables [NAME]`.
+/// Executes `tables [NAME]`.
 pub(super) fn tables_command(
     name: Option<&str>,
     arguments: &[Argument],
@@ -254,7 +254,7 @@ pub(super) fn tables_command(
         let names = novamind_database::tables().iter().map(|table| table.name.as_str());
         argument_error(
             arguments,
-            &not_found_message("no table", name, similar_names(name, names), "tables lists them"),
+            &not_found_message("no table", name, similar_names(name, names), "tables lists all tables"),
         )
     })?;
     Ok(CommandResponse::success("tables", table.describe(), json!(table)))

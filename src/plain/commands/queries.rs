@@ -1,4 +1,4 @@
-//! `queries`: lists the library of queries, or runs one of them.
+//! `queries`: lists the queries of the library, or runs one query.
 
 use serde_json::{Value, json};
 
@@ -12,7 +12,7 @@ use novamind_session::RunDatabase;
 use novamind_tools::{Rejection, ToolId};
 
 impl Interpreter {
-    /// `queries`
+    /// Executes `queries`.
     pub(super) fn queries(&self) -> CommandResponse {
         let queries = self.library.queries();
         let width = queries.iter().map(|query| query.name.chars().count()).max().unwrap_or(0);
@@ -20,11 +20,11 @@ impl Interpreter {
         let lines: Vec<String> = queries.iter().map(line).collect();
         let one = |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.description });
         let data: Vec<Value> = queries.iter().map(one).collect();
-        let text = format!("{}\nqueries NAME runs one of them", lines.join("\n"));
+        let text = format!("{}\nqueries NAME runs a query", lines.join("\n"));
         CommandResponse::success("queries", text, json!({ "queries": data }))
     }
 
-    /// `queries NAME`
+    /// Executes `queries NAME`.
     pub(super) fn named_query(
         &mut self,
         name: &str,
@@ -33,7 +33,7 @@ impl Interpreter {
         let Some(query) = self.library.find(name) else {
             let near = self.library.similar_names(name);
             let help = if near.is_empty() {
-                "queries lists them".to_owned()
+                "queries lists all queries".to_owned()
             } else {
                 format!("did you mean {}?", near.join(" or "))
             };
@@ -43,7 +43,7 @@ impl Interpreter {
         Ok(self.execute_query(&sql, QuerySource::Library))
     }
 
-    /// Records the call of a tool that does not exist: an unknown word that is followed by arguments.
+    /// Records a call of an unknown tool if the unknown command has arguments.
     pub(super) fn record_unknown_tool(
         &mut self,
         word: &str,
@@ -52,13 +52,13 @@ impl Interpreter {
     ) -> ParseError {
         let args = arguments_to_object(arguments, None).ok().filter(|_| !arguments.is_empty());
         if let Some(args) = args.filter(|_| novamind_tools::find(word).is_none()) {
-            // The message also names commands of plain mode.
+            // Ignore the rejection, because the response of plain mode also suggests similar commands.
             let _ = self.session.call(word, &args, Via::Plain);
         }
         unknown_command(word, column)
     }
 
-    /// Calls a tool. A signal stops a long script, as it stops a query.
+    /// Calls a tool. While the tool runs, a signal stops a long script or query.
     pub(super) fn call_cancellable(
         &mut self,
         tool: ToolId,

@@ -1,4 +1,4 @@
-//! `report [week|run]`: a report on a week or the whole run.
+//! `report [week|run]`: reports on the last week or the whole run.
 
 use serde_json::{Value, json};
 
@@ -31,7 +31,7 @@ impl Interpreter {
             Some(report) => CommandResponse::success("report", describe_week(&report), week_to_json(&report)),
             None => CommandResponse::rejected(
                 "report",
-                Rejection::new("no_week_yet", "no week has run yet; next runs one"),
+                Rejection::new("no_week_yet", "no week has run yet; next simulates a week"),
             ),
         }
     }
@@ -70,11 +70,12 @@ fn describe_week(report: &WeekReport) -> String {
     lines.extend(report.short_week_note.iter().map(|short| format!("this is a week {short}")));
     if report.was_filed_at_limit() {
         lines.push(
-            "the time limit for this week was reached: it was submitted with the naive projection".to_owned(),
+            "the time limit for this week was reached: the week was submitted with the naive projection"
+                .to_owned(),
         );
     }
     if !report.decisions.is_empty() {
-        lines.push(format!("decisions before it: {}", report.decisions.join("; ")));
+        lines.push(format!("decisions before the week: {}", report.decisions.join("; ")));
     }
     for moved in report.moved_figures.iter().take(LISTED_MOVES) {
         let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);

@@ -1,4 +1,4 @@
-//! `rules`: previews and sends the answers of rules to waiting threads.
+//! `rules`: previews or sends the replies of rules to waiting threads.
 
 use serde_json::{Value, json};
 
@@ -11,12 +11,12 @@ use novamind_rules::{RuleBatch, RuleOutcome, ThreadContext};
 use novamind_session::EnterpriseNames;
 use novamind_tools::{Rejection, ToolId};
 
-/// Maximum number of threads in a preview; the data contains all of them.
+/// Maximum number of threads in the text of a preview. The JSON data contains all threads.
 const LISTED_THREADS: usize = 20;
 
 pub const HELP: &str = "\
 rules RULES         preview the answer to each waiting thread; nothing is sent
-rules send RULES    the same, and send them with one call of send_enterprise_deal and one of reject_enterprise_deal
+rules send RULES    send the answers with one call of send_enterprise_deal and one call of reject_enterprise_deal
 A rule is an action with conditions. Semicolons separate rules; the first rule that matches a thread answers it.
   offer where group = E2 and asked is null: B 85
   offer where asked_plan = B and seats >= 500: B asked*1.05, C list*0.9
@@ -69,12 +69,12 @@ impl Interpreter {
                     let failed = |result: &&Value| result.get("error").is_some();
                     let (all, failed) =
                         results.map_or((0, 0), |all| (all.len(), all.iter().filter(failed).count()));
-                    let refused = if failed > 0 { format!(", {failed} refused") } else { String::new() };
+                    let refused = if failed > 0 { format!(", {failed} rejected") } else { String::new() };
                     lines.push(format!("{} {what}{refused}", grouped_number((all - failed) as f64, 0)));
                     data.push(json!({ "tool": tool, "answer": answer }));
                 }
                 Err(refusal) if data.is_empty() => return CommandResponse::rejected("rules", refusal),
-                // Earlier calls stay sent.
+                // Tool calls that succeeded earlier are not reverted.
                 Err(refusal) => {
                     lines.push(format!("{tool} rejected {}: {}", refusal.code, refusal.message));
                     data.push(json!({ "tool": tool, "code": refusal.code, "error": refusal.message }));

@@ -1,4 +1,4 @@
-//! One negotiation thread: the company, its messages and offers turn by turn, and the deadline.
+//! `thread NUMBER`: shows one thread with the profile of the enterprise, all turns, and the deadline.
 
 use serde_json::{Value, json};
 
@@ -12,16 +12,16 @@ use novamind_report::pluralize;
 use novamind_rules::{ThreadContext, parse_offer};
 use novamind_tools::Rejection;
 
-/// Columns of the turns of a thread.
+/// Beginning of a query that selects the turns of a thread.
 const TURNS_SQL: &str = "SELECT thread_id, customer_id, thread_type, turn_number, sender, message_text, offer_json, day, \
                      seat_count, close_reason FROM enterprise_turns";
-/// Columns of a company.
+/// Beginning of a query that selects the profile of an enterprise.
 const ENTERPRISE_SQL: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
                        c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price \
                        FROM customers c CROSS JOIN subscriptions s WHERE s.customer_id = c.customer_id";
 
 impl Interpreter {
-    /// `thread NUMBER`.
+    /// Executes `thread NUMBER`.
     pub(super) fn thread_command(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let Some(thread) = optional_count(arguments)? else {
             return Err(argument_error(
@@ -37,19 +37,19 @@ impl Interpreter {
         }))
     }
 
-    /// Answers with the newest thread of a company.
+    /// Shows the newest thread of an enterprise.
     pub(super) fn thread_of_enterprise(&mut self, customer: u64) -> CommandResponse {
         let newest = format!(
             "{TURNS_SQL} WHERE thread_id = (SELECT max(thread_id) FROM enterprise_turns WHERE customer_id = {customer}) \
              ORDER BY message_id"
         );
         self.show_thread(&newest).unwrap_or_else(|| {
-            let text = format!("company {customer} has no thread; inbox lists those that wait");
+            let text = format!("company {customer} has no thread; inbox lists the waiting threads");
             CommandResponse::rejected("inbox", Rejection::new("thread_not_found", text))
         })
     }
 
-    /// Returns the thread that a statement selects. Returns `None` if it selects no turn.
+    /// Returns the response for the thread that a statement selects, or `None` if the statement selects no turn.
     fn show_thread(&mut self, statement: &str) -> Option<CommandResponse> {
         let turns = match self.session.query_unrecorded(statement) {
             Ok(turns) => turns,
@@ -64,7 +64,7 @@ impl Interpreter {
         });
         let names = self.session.company().company_names();
         let kind = text_at(first, 2).replace('_', " ");
-        // The rows of the player count one seat each, whatever the size of the company.
+        // Rows of the player's turns always contain one seat, so the number of seats is read from the enterprise's turns.
         let customer_rows = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
         let seats = waiting.as_ref().map_or_else(
             || customer_rows.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
@@ -89,7 +89,7 @@ impl Interpreter {
     }
 }
 
-/// Describes group, profile and subscription of a company.
+/// Describes the group, profile and subscription of an enterprise.
 fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     let row = rows.rows.first()?;
     let mut parts = vec![format!("group {}", text_at(row, 0))];
@@ -114,14 +114,14 @@ fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     Some(parts.join("; "))
 }
 
-/// Formats a turn as one line. Returns `None` for an opening without a message.
+/// Formats a turn as one line. Returns `None` for an opening turn without a message.
 fn describe_turn(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
     let (offers, price) = parse_offer(text_at(row, 6));
     let text = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
         ("agent", _) => format!("you offered {}", describe_offer(&offers)),
-        ("customer", _) if words.is_empty() => format!("they ask {}", cents(price?)),
+        ("customer", _) if words.is_empty() => format!("they asked for {}", cents(price?)),
         ("customer", _) => format!("they wrote: {words}"),
         _ if words.is_empty() => return None,
         _ => words.to_owned(),
@@ -129,7 +129,7 @@ fn describe_turn(row: &[Cell]) -> Option<String> {
     Some(format!("day {day}: {text}"))
 }
 
-/// Returns the state of the thread and the possible next step.
+/// Describes whether the thread waits for the player, and the possible next step.
 fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32) -> Vec<String> {
     let Some(thread) = waiting else {
         return vec![match text_at(last, 9) {

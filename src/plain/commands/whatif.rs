@@ -21,16 +21,16 @@ use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Interface, Session};
 use novamind_tools::Rejection;
 
-/// Default number of futures.
+/// Default number of simulated futures.
 const DEFAULT_FUTURES: u32 = 20;
-/// Maximum number of futures.
+/// Maximum number of simulated futures.
 const MAX_FUTURES: u32 = 200;
-/// Maximum size of a file with a question, in bytes.
+/// Maximum size in bytes of a file that contains a what-if question.
 const MAX_FILE_BYTES: u64 = 64 << 10;
-/// Example in error messages.
+/// Example command that error messages append.
 const USAGE: &str = "for example: whatif from 2: set_prices * 0.9";
 
-/// A parsed question.
+/// A parsed what-if question.
 #[derive(Debug, Clone, PartialEq)]
 struct WhatIfQuestion {
     from: u32,
@@ -40,9 +40,10 @@ struct WhatIfQuestion {
 }
 
 impl Interpreter {
-    /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
+    /// Executes `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, and `whatif
+    /// file PATH`.
     pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
-        // Check the permission before parsing anything.
+        // Check the permission before parsing the question.
         if let Err(refusal) = cause_analysis_folder(&self.session) {
             return Ok(CommandResponse::rejected("whatif", refusal));
         }
@@ -66,14 +67,14 @@ impl Interpreter {
         }
     }
 
-    /// Reads a file with a question. Participants of a study may not use files; others need a small regular file.
+    /// Reads a what-if question from a small regular file. Participants of a study may not use files.
     fn read_question_file(&self, path: &Path) -> Result<String, String> {
         if self.is_participant {
             return Err("in a session of a study, type the question instead".to_owned());
         }
         let found = std::fs::metadata(path).map_err(|error| error.to_string())?;
         if !found.is_file() || found.len() > MAX_FILE_BYTES {
-            return Err(format!("it is not a text file of at most {} KiB", MAX_FILE_BYTES >> 10));
+            return Err(format!("the file is not a text file of at most {} KiB", MAX_FILE_BYTES >> 10));
         }
         std::fs::read_to_string(path).map_err(|error| error.to_string())
     }
@@ -83,7 +84,7 @@ impl Interpreter {
         self.cached_branches.get_or_open(folder)
     }
 
-    /// Lists the calls from a week on, with their line numbers.
+    /// Lists the recorded decisions from a week on, with their line numbers in the trajectory.
     fn list_decisions(&mut self, week: u32) -> CommandResponse {
         let calls = self
             .prepare_what_if()
@@ -144,7 +145,7 @@ impl Interpreter {
         }
     }
 
-    /// Plays the only alternative of a question in a new branch and continues in it.
+    /// Plays the only alternative of a question in a new branch, and continues in this branch.
     fn adopt(&mut self, question: &WhatIfQuestion, column: usize) -> Result<CommandResponse, ParseError> {
         if question.futures.is_some() || question.until.is_some() {
             let text =
@@ -156,14 +157,14 @@ impl Interpreter {
             [] => Vec::new(),
             [only] => only.clone(),
             _ => {
-                let text = "adopt takes one alternative; give only its edits".to_owned();
+                let text = "adopt takes one alternative; give only the edits of that alternative".to_owned();
                 return Err(ParseError { text, column });
             }
         };
         Ok(self.branch_keeping_decisions(question.from, &decided))
     }
 
-    /// `branch WEEK [keep]`
+    /// Executes `branch WEEK [keep]`.
     pub(super) fn branch(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (last, first) =
             arguments.split_last().map_or((None, arguments), |(last, first)| (Some(last), first));
@@ -185,7 +186,7 @@ impl Interpreter {
         })
     }
 
-    /// Continues in a branch with the decisions of this run and some edits.
+    /// Continues in a branch in which the decisions of this run are replayed with edits.
     fn branch_keeping_decisions(&mut self, week: u32, decided: &[DecisionEdit]) -> CommandResponse {
         let mode = self.session.manifest().mode.branch_mode();
         let stop = self.watch.enter_stoppable();
@@ -222,7 +223,7 @@ impl Interpreter {
         )
     }
 
-    /// Leaves this run for another one. Returns the id and the day of that run.
+    /// Switches the interpreter to another run. Returns the id and the day of the other run.
     pub(super) fn switch_to_run(&mut self, other: Session) -> (String, u32) {
         self.session.activity().detach(LeavingCause::Quit);
         let _ = self.session.save();
@@ -232,7 +233,7 @@ impl Interpreter {
         (self.session.manifest().id.clone(), self.session.day())
     }
 
-    /// `branches`: the tree of branches that contains the run.
+    /// Executes `branches`: shows the tree of branches that contains the run.
     pub(super) fn branches(&self) -> CommandResponse {
         let id = &self.session.manifest().id;
         let Some(runs) = self.session.folder().and_then(Path::parent) else {
@@ -255,7 +256,7 @@ impl Interpreter {
     }
 }
 
-/// Returns a row for each decision: line, week, tool or key, arguments or value, and whether it was rejected.
+/// Returns a row for each decision: line, week, tool or key, arguments or value, and whether the decision was rejected.
 fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> {
     let row = |recorded_decision: &RecordedDecision| {
         let (what, arguments) = match recorded_decision {
@@ -273,14 +274,15 @@ fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> 
     decisions.iter().map(row).collect()
 }
 
-/// Converts a file, which holds the words before the colon in its first line and an alternative in each of the others.
+/// Converts the text of a question file to a question. The first line contains the words before the colon, each later
+/// line an alternative.
 fn question_from_file(text: &str) -> String {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().unwrap_or_default().trim_end_matches(':');
     format!("{first}: {}", lines.collect::<Vec<_>>().join(" | "))
 }
 
-/// Parses a question that begins at a column.
+/// Parses a what-if question that begins at a column of the line.
 fn parse_question(words: &str, column: usize) -> Result<WhatIfQuestion, ParseError> {
     let problem = |text: String, at: usize| ParseError { text, column: column + words[..at].chars().count() };
     let (head, rest) = words.split_once(':').unwrap_or((words, ""));
@@ -307,7 +309,7 @@ fn parse_question(words: &str, column: usize) -> Result<WhatIfQuestion, ParseErr
                 let usage = "for example: whatif adopt from 20: set_prices * 0.9";
                 return Err(problem(format!("adopt needs from and a week; {usage}"), at));
             }
-            ("file", _) => return Err(problem("file needs the path of a text file".to_owned(), at)),
+            ("file", _) => return Err(problem("whatif file needs the path of a text file".to_owned(), at)),
             _ => return Err(problem(format!("{word} is not understood; {USAGE}"), at)),
         }
         if number.is_some() {

@@ -1,4 +1,4 @@
-//! `why FIGURE [WEEK]`: the change of a figure in a week, and the contribution of each cause.
+//! `why FIGURE [WEEK]`: shows the change of a figure in a week and the contribution of each cause.
 
 use serde_json::{Value, json};
 
@@ -47,7 +47,7 @@ fn why_to_text(why: &ChangeExplanation) -> String {
         vec![line.name.to_owned(), line.amount_text, line.details.join(" · ")]
     };
     let rows: Vec<Vec<String>> = cause_lines(why).into_iter().map(row).collect();
-    let table = align_columns(&["cause", "share", "what differed"].map(str::to_owned), &rows);
+    let table = align_columns(&["cause", "share", "difference"].map(str::to_owned), &rows);
     format!(
         "{}\n{}\n{table}the week was simulated {} more times",
         heading(why),

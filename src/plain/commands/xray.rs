@@ -1,4 +1,4 @@
-//! `xray …`: hidden state of debug runs and finished runs, as text (docs/debugging.md).
+//! `xray …`: shows the hidden state of debug runs and finished runs (docs/debugging.md).
 
 mod data;
 mod view_data;
@@ -22,7 +22,7 @@ use novamind_tools::Rejection;
 const VIEWS: [&str; 9] =
     ["leads", "quality", "satisfaction", "reputation", "spillover", "rivals", "drift", "streams", "sql"];
 
-/// `help xray`
+/// Help text of `xray`.
 pub(super) const HELP: &str = "\
 xray leads GROUP [DAY] [R=1 …]   the equation of a group's leads; R=1 fixes a factor
 xray quality GROUP [DAY]         the quality that each plan delivers to a group: base, shared and own improvements, model tier
@@ -40,7 +40,7 @@ For debug runs and finished runs. Each inspection is recorded. DAY is any simula
 
 impl Interpreter {
     pub(super) fn xray_command(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
-        // Check the permission before parsing anything.
+        // Check the permission before parsing the arguments.
         if let Err(refusal) = self.session.check_inspection() {
             return Ok(CommandResponse::rejected("xray", refusal));
         }
@@ -59,7 +59,7 @@ impl Interpreter {
         Ok(shown.unwrap_or_else(|refusal| CommandResponse::rejected("xray", refusal)))
     }
 
-    /// `xray sql [DAY] STATEMENT`
+    /// Executes `xray sql [DAY] STATEMENT`.
     pub(super) fn query_hidden_tables(&mut self, rest: &str, column: usize) -> CommandResponse {
         let interrupt = self.session.inspect().hidden_query_interrupt();
         let asked = interrupt.and_then(|interrupt| {
@@ -67,7 +67,7 @@ impl Interpreter {
                 Ok(asked) => asked,
                 Err(text) => return Ok(Err(ParseError { text: text.to_owned(), column })),
             };
-            // From here on a signal stops this query, even though it has not started.
+            // After the ticket is issued, a signal stops the query even if the query has not started.
             let ticket = interrupt.ticket();
             self.watch.enter_query(interrupt);
             self.session.inspect().query_hidden_tables_with_ticket(ticket, sql, day).map(Ok)
@@ -96,7 +96,7 @@ impl Interpreter {
         }))
     }
 
-    /// `lens CUSTOMER [DAY]`
+    /// Executes `lens CUSTOMER [DAY]`.
     pub(super) fn show_customer(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         if let Err(refusal) = self.session.check_inspection() {
             return Ok(CommandResponse::rejected("lens", refusal));
@@ -125,7 +125,7 @@ impl Interpreter {
     }
 }
 
-/// Splits an optional day from the statement.
+/// Splits the arguments of `xray sql` into an optional day and a statement.
 fn parse_day_and_statement(rest: &str) -> Result<(Option<u32>, &str), &'static str> {
     let rest = xray_statement(rest).unwrap_or_default();
     let digits = rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len());
@@ -144,7 +144,7 @@ fn view_names() -> String {
     format!("xray shows {}", VIEWS.join(", "))
 }
 
-/// Returns the view and its arguments.
+/// Returns the name of the requested view and its arguments.
 fn parse_view(arguments: &[Argument]) -> Result<(&str, &[Argument]), ParseError> {
     match arguments.split_first() {
         Some((Argument { key: None, value: Value::String(view), .. }, rest)) => Ok((view, rest)),
@@ -160,7 +160,7 @@ fn unknown_view(view: &str, argument: &Argument) -> ParseError {
     ParseError { text, column: argument.column }
 }
 
-/// Parses a group and an optional day for a view.
+/// Parses the arguments of a view that needs a group and an optional day.
 fn parse_group_and_day(view: &str, arguments: &[&Argument]) -> Result<(Group, Option<u32>), ParseError> {
     let at = |argument: &Argument, text: String| ParseError { text, column: argument.column };
     let column = arguments.get(2).map_or(1, |argument| argument.column);
@@ -186,7 +186,7 @@ fn parse_whole_number(argument: &Argument) -> Result<u32, ParseError> {
     argument.as_u32()
 }
 
-/// Parses a fixed factor, as in `R=1`.
+/// Parses a factor with a fixed value, for example `R=1`.
 fn parse_held_factor(argument: &Argument) -> Result<(LeadFactor, f64), ParseError> {
     let name = argument.key.as_deref().unwrap_or_default();
     let wrong = |text: String| ParseError { text, column: argument.column };

@@ -4,17 +4,17 @@ use serde::{Deserialize, Serialize};
 
 use novamind_world::events::Category;
 
-/// Ledger totals in dollars by category; costs are negative. Their sum is the change of cash.
+/// Ledger totals in dollars by category; costs are negative. The sum of all totals is the cash change.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct CategoryTotals([f64; Category::ALL.len()]);
 
 impl CategoryTotals {
-    /// Adds an amount to a category.
+    /// Adds an amount in dollars to the total of a category.
     pub fn add(&mut self, category: Category, dollars: f64) {
         self.0[category as usize] += dollars;
     }
 
-    /// Returns the dollars of a category.
+    /// Returns the total of a category, in dollars.
     pub fn total_of(&self, category: Category) -> f64 {
         self.0[category as usize]
     }
@@ -24,7 +24,7 @@ impl CategoryTotals {
         self.0.iter().sum()
     }
 
-    /// Returns the categories with entries, with their dollars.
+    /// Returns each category with a nonzero total, and its total in dollars.
     pub fn entries(&self) -> impl Iterator<Item = (Category, f64)> + '_ {
         Category::ALL
             .into_iter()

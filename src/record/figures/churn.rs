@@ -1,13 +1,13 @@
-//! Churn.
+//! Churn of subscribers over a period.
 
 use super::week::WeekFigures;
 
-/// Returns cancellations of a period as a share of the subscribers before it, or `None` without subscribers.
+/// Returns cancellations as a share of the subscribers before the period, or `None` if there were no subscribers.
 pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
     (subscribers_before > 0.0).then(|| cancellations / subscribers_before)
 }
 
-/// Returns the churn of individuals in the last week, or `None` without subscribers before it.
+/// Returns the churn of individuals in the last week, or `None` if there were no subscribers before that week.
 pub fn last_week_churn(weeks: &[WeekFigures]) -> Option<f64> {
     let [.., before, last] = weeks else { return None };
     churn(last.cancellations.into(), before.individual_subscribers.into())

@@ -1,24 +1,24 @@
-//! Figures of a group over a period, including hidden ones.
+//! Figures of a group over a period, including hidden figures.
 
-/// Figures of a group over a period: sums over its days, and the state at its end.
+/// Figures of a group over a period: sums over the days of the period, and the state on the last day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GroupFigures {
-    /// Leads.
+    /// Leads during the period.
     pub leads: u32,
-    /// Individuals who signed up, or enterprises whose first deal was accepted.
+    /// Number of individuals who signed up, or of enterprises that accepted a first deal.
     pub signed: u32,
-    /// Cancellations.
+    /// Cancellations during the period.
     pub left: u32,
-    /// Usage in units.
+    /// Usage during the period, in units.
     pub usage: u64,
-    /// Active subscriptions at the end.
+    /// Active subscriptions at the end of the period.
     pub subscribers: u32,
-    /// Active subscriptions with an open issue.
+    /// Active subscriptions with an open issue at the end of the period.
     pub open_issues: u32,
-    /// Reputation at the end.
+    /// Reputation at the end of the period.
     pub reputation: f64,
-    /// Mean satisfaction of the subscribers; `None` without subscribers.
+    /// Mean satisfaction of the subscribers; `None` if there are no subscribers.
     pub satisfaction: Option<f64>,
-    /// Mean relationship of the subscribers, 0 to 1; `None` without subscribers.
+    /// Mean relationship of the subscribers, 0 to 1; `None` if there are no subscribers.
     pub relationship: Option<f64>,
 }

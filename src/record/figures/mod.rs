@@ -1,4 +1,4 @@
-//! Figures of a week: those in its trajectory line, and those that lessons and explanations use.
+//! Figures of a week: figures in the trajectory line of the week, and figures for lessons and explanations.
 
 mod category_totals;
 mod churn;

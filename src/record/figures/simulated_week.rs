@@ -12,9 +12,9 @@ const PURCHASE_CATEGORIES: [Category; 3] =
 /// Figures of a group in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WeekGroupFigures {
-    /// Figures of the group.
+    /// Sums over the week, and the state at its end.
     pub figures: GroupFigures,
-    /// Active subscriptions before its first day.
+    /// Active subscriptions before the first day of the week.
     pub subscribers_before: u32,
 }
 
@@ -24,20 +24,20 @@ impl WeekGroupFigures {
         f64::from(self.figures.signed) / f64::from(self.figures.leads)
     }
 
-    /// Returns cancellations as a share of the subscribers before; NaN without subscribers.
+    /// Returns cancellations as a share of the subscribers before the week; NaN without subscribers.
     pub fn churn(&self) -> f64 {
         churn(self.figures.left.into(), self.subscribers_before.into()).unwrap_or(f64::NAN)
     }
 }
 
-/// Figures of a week, including hidden ones.
+/// Figures of a week, including hidden figures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimulatedWeek {
-    /// Figures that the player sees.
+    /// Figures that are visible to the player.
     pub figures: WeekFigures,
-    /// Mean satisfaction of individuals at its end; NaN without subscribers.
+    /// Mean satisfaction of individuals at the end of the week; NaN without subscribers.
     pub satisfaction: f64,
-    /// Figures by group.
+    /// Figures of each group.
     pub groups: ByGroup<WeekGroupFigures>,
 }
 
@@ -53,12 +53,12 @@ impl SimulatedWeek {
         SimulatedWeek { figures, ..*self }
     }
 
-    /// Returns a week with company figures only.
+    /// Returns a week with company figures and without group figures.
     pub fn from_company_figures(figures: WeekFigures) -> SimulatedWeek {
         SimulatedWeek { figures, satisfaction: f64::NAN, groups: ByGroup::default() }
     }
 
-    /// Returns the leads of all groups.
+    /// Returns the number of leads in all groups.
     pub fn total_leads(&self) -> f64 {
         Group::all().map(|group| f64::from(self.groups[group].figures.leads)).sum()
     }
@@ -70,19 +70,19 @@ impl SimulatedWeek {
         churn(self.figures.cancellations.into(), before.into()).unwrap_or(f64::NAN)
     }
 
-    /// Returns the income, in dollars.
+    /// Returns the income of the week, in dollars.
     pub fn income(&self) -> f64 {
         self.figures.booked.entries().map(|(_, dollars)| dollars.max(0.0)).sum()
     }
 
-    /// Returns the costs as a positive amount, in dollars.
+    /// Returns the costs of the week as a positive amount, in dollars.
     pub fn costs(&self) -> f64 {
         self.figures.booked.entries().map(|(_, dollars)| (-dollars).max(0.0)).sum()
     }
 
-    /// Returns the costs of a category as a positive amount, in dollars.
+    /// Returns the week's costs in a category as a positive amount, in dollars.
     pub fn costs_of(&self, category: Category) -> f64 {
-        // Avoids negative zero.
+        // Subtracting from 0.0 avoids negative zero.
         0.0 - self.figures.booked.total_of(category)
     }
 }

@@ -1,4 +1,4 @@
-//! Figures of a week that the player sees.
+//! Figures of a week that are visible to the player.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -10,56 +10,56 @@ use novamind_world::events::{
 };
 use novamind_world::params::Params;
 
-/// Figures of a week, or of its simulated part.
+/// Figures of a week, or of its days that are simulated already.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WeekFigures {
-    /// Last day.
+    /// Last simulated day of the week.
     pub day: u32,
-    /// Simulated days.
+    /// Number of simulated days in the week.
     pub days_run: u32,
-    /// Cash at the end, dollars.
+    /// Cash after the last simulated day, dollars.
     pub cash: f64,
-    /// Change of cash over the simulated days, dollars.
+    /// Cash change over the simulated days, dollars.
     pub cash_change: f64,
     /// Active subscriptions of individuals.
     pub individual_subscribers: u32,
-    /// Seats of active enterprises.
+    /// Number of seats of active enterprises.
     pub enterprise_seats: u32,
     /// Active subscribers with an open issue.
     pub open_issues: u32,
-    /// New issues.
+    /// Number of new issues.
     pub issues_opened: u32,
-    /// Usage in units.
+    /// Usage of all subscribers, in units.
     pub usage: u64,
-    /// Individual leads.
+    /// Number of individual leads.
     pub new_individual_leads: u32,
-    /// Enterprise leads that opened a thread.
+    /// Number of enterprise leads that opened a thread.
     pub new_enterprise_leads: u32,
-    /// Individuals who signed up.
+    /// Number of individuals who signed up.
     pub new_individual_subscribers: u32,
     /// Seats of enterprises with a new contract.
     pub new_enterprise_seats: u32,
-    /// Cancellations of individuals.
+    /// Number of cancellations by individuals.
     pub cancellations: u32,
-    /// Switches to more expensive plans.
+    /// Number of switches to higher-priced plans.
     pub upgrades: u32,
-    /// Switches to cheaper plans.
+    /// Number of switches to lower-priced plans.
     pub downgrades: u32,
-    /// Enterprises that cancelled.
+    /// Number of enterprises that cancelled.
     pub companies_lost: u32,
-    /// Seats of these enterprises.
+    /// Seats of the enterprises that cancelled.
     pub seats_lost: u32,
     /// Usage of the busiest day, in units.
     pub busiest_day: u64,
-    /// Highest overload.
+    /// Highest overload on any day.
     pub overload_peak: f64,
-    /// Minutes of outages.
+    /// Total outage time in minutes.
     pub downtime_minutes: u32,
-    /// Whether there was an outage.
+    /// Whether an outage occurred on any day.
     pub outage: bool,
-    /// Highest latency, milliseconds.
+    /// Highest 95th-percentile latency on any day, milliseconds.
     pub p95_ms_peak: f64,
-    /// Highest error rate.
+    /// Highest error rate on any day.
     pub error_rate_peak: f64,
     /// Ledger totals by category since the end of the previous week.
     pub booked: CategoryTotals,
@@ -67,16 +67,16 @@ pub struct WeekFigures {
     pub payments: f64,
     /// Running costs, dollars.
     pub costs: f64,
-    /// Monthly recurring revenue at the end, dollars.
+    /// Monthly recurring revenue after the last simulated day, dollars.
     pub recurring_revenue: f64,
-    /// New threads.
+    /// Number of new threads.
     pub threads_opened: u32,
-    /// Seats of the enterprises with new threads.
+    /// Seats of the enterprises in new threads.
     pub thread_seats: u32,
-    /// Messages of enterprises in their threads.
+    /// Number of replies by enterprises in threads.
     #[serde(default)]
     pub replies: u32,
-    /// Completed R&D projects and market studies.
+    /// Number of completed R&D projects and market studies.
     #[serde(default)]
     pub research_finished: u32,
 }
@@ -90,7 +90,7 @@ impl WeekFigures {
         }
     }
 
-    /// Adds a simulated day: its figures, its facts, and the ledger entries of calls before it.
+    /// Adds a simulated day: its figures, its facts, and the ledger entries of calls before that day.
     pub fn add_simulated_day(
         &mut self,
         figures: &DayFigures,
@@ -125,7 +125,7 @@ impl WeekFigures {
         }
     }
 
-    /// Adds the figures of a day: sums are added, peaks are maxima, stocks are those of the last day.
+    /// Adds the figures of a day. Flows are summed, peaks keep the maximum, and stocks take the value of the added day.
     pub fn add_day_figures(&mut self, day: &DayFigures) {
         self.day = day.day;
         self.days_run += 1;
@@ -151,7 +151,7 @@ impl WeekFigures {
         self.error_rate_peak = self.error_rate_peak.max(day.error_rate);
     }
 
-    /// Returns the figures of `week` lines and JSON output by their keys.
+    /// Returns the figures of the week by key, for `week` lines and JSON output.
     pub fn to_json(&self) -> Map<String, Value> {
         let figures = json!({
             "cash": json_number(self.cash),

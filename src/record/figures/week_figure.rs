@@ -4,53 +4,54 @@ use super::simulated_week::{SimulatedWeek, WeekGroupFigures};
 use super::week::WeekFigures;
 use novamind_world::events::Category;
 
-/// Unit of a figure.
+/// Unit in which a figure is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigureUnit {
-    /// Dollars.
+    /// An amount in dollars.
     Dollars,
-    /// A count.
+    /// A number of objects.
     Count,
-    /// A share; 1 is 100 %.
+    /// A share, where 1 is 100 %.
     Share,
-    /// A share that is shown with hundredths of a percent.
+    /// A share that is shown to hundredths of a percent.
     PreciseShare,
-    /// A level that is shown with thousandths.
+    /// A level that is shown to thousandths.
     Level,
 }
 
-/// Reads the figure of the company; `None` for a figure of groups only. NaN if it has no value.
+/// A function that reads a figure of the company and returns NaN if the figure has no value. `None` if only groups
+/// have the figure.
 pub type CompanyReader = Option<fn(&SimulatedWeek) -> f64>;
-/// Reads the figure of a group; `None` for a figure of the company only.
+/// A function that reads a figure of a group. `None` if only the company has the figure.
 pub type GroupReader = Option<fn(&WeekGroupFigures) -> f64>;
 
 macro_rules! define_figures {
     ($($figure:ident = $name:literal, $unit:ident, $company:expr, $group:expr;)*) => {
-        /// A figure of a week.
+        /// A figure of a week that explanations and lessons can name.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         #[allow(missing_docs)] // Each is described by its name.
         pub enum WeekFigure { $($figure),* }
 
         impl WeekFigure {
-            /// All figures: those of the Overview in its order, then those of the ledger.
+            /// All figures: the figures of the Overview in screen order, then the figures of the ledger.
             pub const ALL: &'static [WeekFigure] = &[$(WeekFigure::$figure),*];
 
-            /// Returns the name on screens.
+            /// Returns the name of the figure on screens.
             pub fn name(self) -> &'static str {
                 match self { $(WeekFigure::$figure => $name),* }
             }
 
-            /// Returns the unit.
+            /// Returns the unit of the figure.
             pub fn unit(self) -> FigureUnit {
                 match self { $(WeekFigure::$figure => FigureUnit::$unit),* }
             }
 
-            /// Returns the reader for the company.
+            /// Returns the function that reads the figure of the company.
             pub fn company_reader(self) -> CompanyReader {
                 match self { $(WeekFigure::$figure => $company),* }
             }
 
-            /// Returns the reader for a group.
+            /// Returns the function that reads the figure of a group.
             pub fn group_reader(self) -> GroupReader {
                 match self { $(WeekFigure::$figure => $group),* }
             }
@@ -58,7 +59,7 @@ macro_rules! define_figures {
     };
 }
 
-// Costs are positive, unlike in the ledger.
+// Cost figures are positive, unlike costs in the ledger.
 define_figures! {
     CashChange = "cash change", Dollars, Some(|week| week.figures.cash_change), None;
     RecurringRevenue = "recurring revenue", Dollars, Some(|week| week.figures.recurring_revenue), None;
@@ -106,7 +107,7 @@ define_figures! {
 }
 
 impl WeekFigure {
-    /// Returns the figure with a name on screens, which a unit or `peak` may follow.
+    /// Returns the figure with this name on screens. A comma and a unit or `peak` may follow the name.
     pub fn parse_label(name: &str) -> Option<WeekFigure> {
         let is_named = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
         let longer = match name {
@@ -135,18 +136,18 @@ impl WeekFigure {
         })
     }
 
-    /// Returns the name in commands and data, for example `new_subscribers`.
+    /// Returns the name of the figure in commands and data, for example `new_subscribers`.
     pub fn id(self) -> String {
         self.name().replace(' ', "_")
     }
 
-    /// Returns whether the figure is hidden while a run is unfinished, outside of debug runs.
+    /// Returns whether the figure is hidden until the run ends. Debug runs always show the figure.
     pub fn is_hidden(self) -> bool {
         matches!(self, WeekFigure::Satisfaction | WeekFigure::Reputation)
     }
 
-    /// Returns the value from the visible figures of a week, or `None` if the figure needs group data or is hidden. NaN if it
-    /// has no value.
+    /// Returns the value of the figure from the visible figures of a week, or NaN if the figure has no value. Returns
+    /// `None` if the figure needs group data or is hidden.
     pub fn company_value(self, figures: &WeekFigures) -> Option<f64> {
         use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
         if matches!(self, Leads | Churn | Satisfaction | Reputation) {
@@ -155,12 +156,12 @@ impl WeekFigure {
         Some(self.company_reader()?(&SimulatedWeek::from_company_figures(*figures)))
     }
 
-    /// Returns whether the company has this figure.
+    /// Returns whether the figure exists for the company.
     pub fn has_company_value(self) -> bool {
         self.company_reader().is_some()
     }
 
-    /// Returns whether each group has this figure.
+    /// Returns whether the figure exists for each group.
     pub fn has_group_values(self) -> bool {
         self.group_reader().is_some()
     }

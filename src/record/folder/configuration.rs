@@ -1,4 +1,4 @@
-//! Folders of runs and configuration, and the scenarios.
+//! Locations of the runs folder and the configuration folder, and the scenarios in the configuration.
 
 use crate::consent::ConsentText;
 use std::path::{Path, PathBuf};
@@ -10,33 +10,33 @@ use crate::error::RunError;
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources, line_of_key};
 
-/// Configuration of the user.
+/// The user's configuration folder and language model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Configuration {
-    /// Folder whose files take precedence over the bundled ones; `None` to use bundled files only.
+    /// Folder whose files take precedence over bundled files; `None` to use only bundled files.
     pub folder: Option<PathBuf>,
-    /// Language model for the texts of new runs, if one was configured.
+    /// Language model that words the texts of new runs, if the user configured a model.
     pub voice: Option<ModelSettings>,
 }
 
 /// A named set of parameter overrides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Name of its file.
+    /// Name of the scenario file, without the extension.
     pub name: String,
-    /// Short title.
+    /// Short title of the scenario.
     pub title: String,
-    /// Differences from the default scenario.
+    /// Description of the differences from the default scenario.
     pub description: String,
-    /// Last day, if it sets one.
+    /// Last day of the run, if the scenario sets a last day.
     pub days: Option<u32>,
-    /// Starting cash, if it sets some.
+    /// Starting cash in dollars, if the scenario sets an amount.
     pub cash: Option<f64>,
-    /// Overrides of parameters.
+    /// Parameter overrides by table and key.
     pub world: Table,
-    /// Source file.
+    /// Name and text of the scenario file.
     source: ParameterSource,
-    /// Whether it is bundled with the program.
+    /// Whether the scenario is bundled with the program.
     pub is_bundled: bool,
 }
 
@@ -55,7 +55,7 @@ struct ScenarioFile {
 pub const DEFAULT_SCENARIO: &str = "default";
 
 impl Configuration {
-    /// Returns the configuration in `NOVAMIND_CONFIG`, or in the platform's configuration folder.
+    /// Returns the configuration in the folder `NOVAMIND_CONFIG`, or in the platform's configuration folder.
     pub fn from_environment() -> Configuration {
         let from_environment = std::env::var_os("NOVAMIND_CONFIG").map(PathBuf::from);
         let platform =
@@ -68,7 +68,7 @@ impl Configuration {
         Configuration { folder: None, voice: None }
     }
 
-    /// Returns the folder of runs: `NOVAMIND_RUNS`, or a folder in the platform's data folder.
+    /// Returns the runs folder: `NOVAMIND_RUNS`, or a subfolder of the platform's data folder.
     pub fn default_runs_folder() -> Option<PathBuf> {
         let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
         let platform =
@@ -76,10 +76,10 @@ impl Configuration {
         from_environment.or_else(platform)
     }
 
-    /// Reads a file of the configuration folder. Returns `None` if it does not exist.
+    /// Reads a file of the configuration folder. Returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// The file exists and cannot be read.
+    /// The file exists but cannot be read.
     pub fn read_file(&self, relative: impl AsRef<Path>) -> Result<Option<ParameterSource>, RunError> {
         let Some(folder) = &self.folder else { return Ok(None) };
         let path = folder.join(relative);
@@ -90,12 +90,13 @@ impl Configuration {
         }
     }
 
-    /// Returns the names of the TOML files in a folder of the configuration, without their ending, sorted.
+    /// Returns the sorted names of the TOML files in a subfolder of the configuration folder, without the extension.
     pub fn toml_names(&self, folder: &str) -> Vec<String> {
         self.file_names(folder, ".toml")
     }
 
-    /// Returns the names of the files with an ending in a folder of the configuration, without the ending, sorted.
+    /// Returns the sorted names of the files with an extension in a subfolder of the configuration folder, without the
+    /// extension.
     pub fn file_names(&self, folder: &str, ending: &str) -> Vec<String> {
         let Some(path) = &self.folder else { return Vec::new() };
         let entries = std::fs::read_dir(path.join(folder)).into_iter().flatten().flatten();
@@ -106,7 +107,7 @@ impl Configuration {
         names
     }
 
-    /// Returns the names of all scenarios: bundled ones, then those of the user.
+    /// Returns the names of all scenarios: bundled scenarios, then the user's scenarios.
     pub fn scenario_names(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
@@ -118,7 +119,7 @@ impl Configuration {
         names
     }
 
-    /// Loads a scenario. A file of the user takes precedence over a bundled one.
+    /// Loads a scenario. A user's scenario file takes precedence over a bundled file.
     ///
     /// # Errors
     /// The scenario does not exist, or its file is invalid.
@@ -138,20 +139,21 @@ impl Configuration {
         }
     }
 
-    /// Returns days and starting cash of a scenario; `with_world_files` as in [`Configuration::load_parameters`].
+    /// Returns the last day and the starting cash of a scenario. For `with_world_files`, see
+    /// [`Configuration::load_parameters`].
     ///
     /// # Errors
-    /// The first invalid value, with its position.
+    /// A parameter value is invalid; the error names the position of the first invalid value.
     pub fn days_and_cash(&self, scenario: &Scenario, with_world_files: bool) -> Result<(u32, f64), RunError> {
         Ok(scenario.days_and_cash_with(&self.load_parameters(scenario, &[], with_world_files)?))
     }
 
-    /// Loads the parameters of a scenario and applies single overrides, each `(table.key, value as TOML)`.
+    /// Loads the parameters of a scenario and applies the overrides. Each override is a pair `(table.key, value as TOML)`.
     ///
     /// `with_world_files` also applies the user's files in the folder `world`; baseline runs use bundled parameters only.
     ///
     /// # Errors
-    /// The first invalid value, with its position.
+    /// A parameter value is invalid; the error names the position of the first invalid value.
     pub fn load_parameters(
         &self,
         scenario: &Scenario,
@@ -178,12 +180,12 @@ impl Scenario {
         ParameterSource { name: self.source.name.clone(), text }
     }
 
-    /// Returns days and starting cash, with defaults from the parameters.
+    /// Returns the last day and the starting cash, with defaults from the parameters.
     pub fn days_and_cash_with(&self, params: &Params) -> (u32, f64) {
         (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }
 
-    /// Adds the line in the scenario's file to an error.
+    /// Adds the line number in the scenario file to an error.
     fn with_scenario_line(&self, error: ParameterError) -> ParameterError {
         if error.source != self.source.name {
             return error;
@@ -211,7 +213,7 @@ fn parse_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<
     })
 }
 
-/// Returns a source that sets one parameter from `table.key` and a TOML value; a bare word is read as text.
+/// Returns a parameter source that sets `table.key` to a TOML value. A bare word is read as a string.
 fn parse_override(key: &str, value: &str) -> Result<ParameterSource, ParameterError> {
     let name = format!("--set {key}={value}");
     let wrong = |problem: &str| ParameterError {
@@ -233,10 +235,10 @@ fn parse_override(key: &str, value: &str) -> Result<ParameterSource, ParameterEr
 
 const MIN_RUN_DAYS: u32 = 7;
 
-/// Checks the number of days of a run.
+/// Checks that the number of days of a run is in the allowed range.
 ///
 /// # Errors
-/// A message with the allowed range.
+/// The number is out of range; returns a message with the allowed range.
 pub fn check_days(days: u32) -> Result<(), String> {
     if (MIN_RUN_DAYS..=100_000).contains(&days) {
         return Ok(());
@@ -244,10 +246,10 @@ pub fn check_days(days: u32) -> Result<(), String> {
     Err(format!("a run has between {MIN_RUN_DAYS} and 100,000 days, not {days}"))
 }
 
-/// Checks the starting cash of a run, in dollars.
+/// Checks that the starting cash of a run, in dollars, is in the allowed range.
 ///
 /// # Errors
-/// A message with the allowed range.
+/// The amount is out of range; returns a message with the allowed range.
 pub fn check_cash(cash: f64) -> Result<(), String> {
     if cash.is_finite() && cash > 0.0 && cash <= 1e15 {
         return Ok(());
@@ -259,10 +261,10 @@ pub fn check_cash(cash: f64) -> Result<(), String> {
 pub const CONSENT_FILE: &str = "consent.md";
 
 impl Configuration {
-    /// Returns the consent text of baseline sessions, if the configuration has one.
+    /// Returns the consent text of baseline sessions, if the configuration has a consent file.
     ///
     /// # Errors
-    /// The file exists and cannot be read.
+    /// The file exists but cannot be read.
     pub fn load_consent_text(&self) -> Result<Option<ConsentText>, RunError> {
         let source = self.read_file(CONSENT_FILE)?.filter(|source| !source.text.trim().is_empty());
         Ok(source.map(|source| ConsentText { file: source.name, text: source.text }))
@@ -273,7 +275,7 @@ impl Configuration {
         Some(self.folder.as_ref()?.join("lessons").join(format!("{name}.toml")))
     }
 
-    /// Returns the names of all lessons: bundled ones in the order of the course, then those of the user.
+    /// Returns the names of all lessons: bundled lessons in course order, then the user's lessons.
     pub fn lesson_names(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();

@@ -1,4 +1,4 @@
-//! The lock of a run: only one program at a time can write it.
+//! The lock of a run, which lets only one program at a time write the run.
 
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Write};
@@ -14,10 +14,10 @@ pub fn is_locked(folder: &Path) -> bool {
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-/// File in the run folder with the address of its server.
+/// File in the run folder that contains the address of the server of the run.
 pub const SERVER_FILE: &str = "server.json";
 
-/// Returns whether a server has the run open. A killed server leaves its file but not its lock.
+/// Returns whether a server has the run open. A killed server leaves its server file but not its lock.
 pub fn is_served(folder: &Path) -> bool {
     folder.join(SERVER_FILE).exists() && is_locked(folder)
 }
@@ -51,7 +51,7 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<RunLock, RunError> {
     })?;
     match lock_with_retries(&file) {
         Ok(()) => {
-            // For information only; the lock on the file decides.
+            // The process id is for information only; the file lock prevents a second writer.
             let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
             Ok(RunLock(file))
         }
@@ -63,11 +63,11 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<RunLock, RunError> {
     }
 }
 
-/// Maximum attempts, 2 ms apart, while only shared locks are held.
+/// Maximum number of lock attempts, 2 ms apart, while other programs have only shared locks.
 const MAX_LOCK_ATTEMPTS: u32 = 500;
 
-/// Takes the exclusive lock. Waits for the brief shared locks of [`is_locked`], but not for an exclusive lock of a
-/// program that plays the run.
+/// Acquires the exclusive lock. Waits for the brief shared locks of [`is_locked`], but fails at once if a program that
+/// plays the run has the exclusive lock.
 fn lock_with_retries(file: &File) -> Result<(), TryLockError> {
     for _ in 0..MAX_LOCK_ATTEMPTS {
         match file.try_lock() {
@@ -87,7 +87,7 @@ mod tests {
 
     use super::*;
 
-    /// Stops the probing threads, also when an assertion fails.
+    /// Stops the probing threads, even if an assertion fails.
     struct StopProbes<'a>(&'a AtomicBool);
 
     impl Drop for StopProbes<'_> {

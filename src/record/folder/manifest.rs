@@ -21,18 +21,18 @@ use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
 use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources};
 
-/// Format of trajectories and manifests that this program writes.
+/// Format number of the trajectories and manifests that this program writes.
 pub const FORMAT: u32 = 2;
 
-/// The manifest of a run. It is written once and never changed.
+/// The manifest of a run. The manifest is written once and never changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// Format of the run's files.
+    /// Format number of the run's files.
     pub format: u32,
     /// Version of the program that created the run.
     pub version: String,
-    /// Number of the mechanics; runs of the first builds do not have it.
+    /// Version number of the mechanics; absent in runs of the first builds.
     #[serde(default = "first_mechanics")]
     pub mechanics: u32,
     /// Id of the run: eight hexadecimal digits.
@@ -41,13 +41,13 @@ pub struct Manifest {
     pub created: String,
     /// Seed of all random draws.
     pub seed: u64,
-    /// Last day.
+    /// Last day of the run.
     pub days: u32,
     /// Cash on day 0, dollars.
     pub cash: f64,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Mode.
+    /// Mode of the run.
     pub mode: Mode,
     /// Label of the participant.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,25 +56,25 @@ pub struct Manifest {
     pub earlier_runs: u32,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
-    /// The seeded fault; debug runs only.
+    /// Seeded fault of the mechanics; debug runs only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fault: Option<Fault>,
-    /// The consent; `None` if none was required.
+    /// Consent of the participant; `None` if no consent was required.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub consent: Option<Consent>,
-    /// Parent run and line of a branch.
+    /// Parent run and last copied line, if the run is a branch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parent: Option<Parent>,
-    /// The study of the run.
+    /// Study to which the run belongs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudyStamp>,
-    /// The lesson of the run.
+    /// Lesson to which the run belongs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonStamp>,
-    /// The handout from which the run started.
+    /// Handout from which the run started.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub handout: Option<HandoutStamp>,
-    /// The language model that words texts, if any.
+    /// Language model that words posts and messages, if one is used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
     /// Session rules; `None` in runs of format 1.
@@ -83,13 +83,13 @@ pub struct Manifest {
     /// Earlier runs of the same participant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier: Vec<EarlierRun>,
-    /// Parameters that differ from the bundled ones.
+    /// Parameters whose values differ from the bundled parameters.
     #[serde(default, skip_serializing_if = "Table::is_empty")]
     pub parameters: Table,
 }
 
 impl Manifest {
-    /// Returns the id as a number, or 0 if it is not hexadecimal.
+    /// Returns the run id as a number, or 0 if the id is not hexadecimal.
     pub fn id_number(&self) -> u32 {
         u32::from_str_radix(&self.id, 16).unwrap_or(0)
     }
@@ -97,11 +97,11 @@ impl Manifest {
     /// Reads the manifest in a run folder.
     ///
     /// # Errors
-    /// The file is missing, damaged, or has another format.
+    /// The file is missing, is damaged, or has another format.
     pub fn read(folder: &Path) -> Result<Manifest, RunError> {
         let path = folder.join("run.toml");
         let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
-        // A later format may have fields that this program does not know.
+        // Read the format number first: a newer format may have fields that this program cannot parse.
         let format = text.parse::<Table>().ok().and_then(|table| table.get("format")?.as_integer());
         if let Some(format) = format.filter(|format| *format > i64::from(FORMAT)) {
             let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -194,8 +194,8 @@ impl Manifest {
         toml::to_string(self).expect("a manifest holds plain values")
     }
 
-    /// Returns the session rules. A practice run never shows results: they would reveal the measures of the study before the
-    /// session.
+    /// Returns the session rules that apply to the run. A practice run never shows results, because results would
+    /// reveal what the study measures.
     pub fn session_rules(&self) -> SessionRules {
         let rules = self.recorded_rules();
         match self.is_practice() {
@@ -204,25 +204,25 @@ impl Manifest {
         }
     }
 
-    /// Returns the recorded rules, or those of the mode if none are recorded.
+    /// Returns the recorded rules, or the rules of the mode if no rules are recorded.
     pub fn recorded_rules(&self) -> SessionRules {
         self.rules.clone().unwrap_or_else(|| SessionRules::for_mode(self.mode))
     }
 
-    /// Returns whether the run is the practice of a study.
+    /// Returns whether the run is a practice run of a study.
     pub fn is_practice(&self) -> bool {
         self.study.as_ref().is_some_and(|study| study.practice)
     }
 
-    /// Returns whether parameters or a seeded fault differ from the bundled scenario with the run's scenario name.
+    /// Returns whether the run has a seeded fault or parameters that differ from the bundled scenario of the same name.
     pub fn has_changed_parameters(&self) -> bool {
         let shipped = Configuration::bundled();
         let as_shipped =
             || shipped.load_parameters(&shipped.load_scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
-            // A shortcut for lists of runs: most runs use this scenario.
+            // Fast path for run lists: most runs use the default scenario, which has no overrides.
             "default" => !self.parameters.is_empty() || self.fault.is_some(),
-            // A scenario can have keys that the recording version did not know.
+            // The digests are compared because a scenario can have keys that the recording version did not have.
             _ => as_shipped().is_none_or(|params| {
                 ![params.digest(), params.earlier_digest()].contains(&self.parameters_digest)
             }),
@@ -232,7 +232,7 @@ impl Manifest {
     /// Returns the parameters with which the run was recorded.
     ///
     /// # Errors
-    /// The bundled parameters of this program differ from those of the recording version.
+    /// The bundled parameters of this program differ from the parameters of the recording version.
     pub fn load_params(&self) -> Result<Params, RunError> {
         let other = |digest: String| RunError::OtherParameters {
             id: self.id.clone(),
@@ -243,19 +243,19 @@ impl Manifest {
         let text = toml::to_string(&self.parameters).expect("a table reads back");
         let over = ParameterSource { name: "run.toml".to_owned(), text };
         let loaded = Params::load(&bundled_sources(), &[over])
-            .map_err(|error: ParameterError| other(format!("none that fit: {error}")))?;
+            .map_err(|error: ParameterError| other(format!("no compatible parameters: {error}")))?;
         let params = Params { fault: self.fault, ..loaded };
         let digest = params.digest();
         if digest == self.parameters_digest { Ok(params) } else { Err(other(digest)) }
     }
 }
 
-/// Returns how many of the earlier runs have this seed and scenario.
+/// Returns the number of earlier runs with this seed and scenario.
 pub fn count_same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
     earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
 }
 
-/// Returns the parameters that differ from the bundled ones, as a table of tables.
+/// Returns the parameters that differ from the bundled parameters, as a table of tables.
 pub fn changed_parameters(params: &Params) -> Table {
     let as_table = |params: &Params| match Value::try_from(params) {
         Ok(Value::Table(table)) => table,
@@ -277,7 +277,7 @@ fn changed_entries(table: &Table, shipped: &Table) -> Table {
         .collect()
 }
 
-/// Returns the first line of a trajectory for a manifest.
+/// Returns the start event, which is the first line of a trajectory, for a manifest.
 pub fn to_start_record(manifest: &Manifest) -> Record {
     let manifest = manifest.clone();
     Record::Start(Box::new(Start {

@@ -1,4 +1,5 @@
-//! The manifest of a run, derived from the first line of its trajectory. `run.toml` repeats it and is rebuilt if it differs.
+//! The manifest of a run, derived from the first line of its trajectory. `run.toml` repeats the manifest and is
+//! rebuilt if the two differ.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader};
@@ -11,17 +12,17 @@ use crate::error::RunError;
 use crate::files::open_regular_file;
 use crate::trajectory::Line;
 
-/// The manifest of a run, and the defect of its `run.toml`.
+/// The manifest of a run, and the defect of `run.toml`, if any.
 pub struct ManifestCheck {
-    /// The manifest.
+    /// Manifest of the run.
     pub manifest: Manifest,
-    /// Why `run.toml` has to be rebuilt; `None` if it agrees with the first line.
+    /// Why `run.toml` has to be rebuilt; `None` if the file agrees with the first line.
     pub problem: Option<String>,
 }
 
 impl ManifestCheck {
-    /// Reads the manifest of the run in a folder. If the first line cannot be read, `run.toml` is used: opening the run then
-    /// reports the defect of the line.
+    /// Reads the manifest of the run in a folder. If the first line cannot be read, uses `run.toml`. Opening the run
+    /// then reports the damaged line.
     ///
     /// # Errors
     /// The run has another format or other mechanics, or neither file can be read.
@@ -34,7 +35,7 @@ impl ManifestCheck {
         let line_manifest = Manifest::from_start_line(&path, Some(&line))?;
         let (manifest, problem) = match file_manifest {
             Err(error) => (line_manifest, Some(describe_manifest_error(&error))),
-            // The files belong to different runs, and the name of the folder does not confirm the trajectory.
+            // The files belong to different runs, and the folder name differs from the run id in the trajectory.
             Ok(file_manifest)
                 if file_manifest.id != line_manifest.id && !folder.ends_with(&line_manifest.id) =>
             {
@@ -50,7 +51,7 @@ impl ManifestCheck {
         Ok(ManifestCheck { manifest, problem })
     }
 
-    /// Rebuilds `run.toml` if necessary. Returns a message for the user if it was rebuilt.
+    /// Rebuilds `run.toml` if necessary. Returns a message for the user if the file was rebuilt.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -61,15 +62,15 @@ impl ManifestCheck {
     }
 }
 
-/// Returns the manifest according to the first line of the trajectory.
+/// Returns the manifest of the run, derived from the first line of the trajectory.
 ///
 /// # Errors
-/// As [`read_manifest_text`].
+/// The same errors as [`read_manifest_text`].
 pub fn read_manifest(folder: &Path) -> Result<Manifest, RunError> {
     ManifestCheck::read(folder).map(|derived| derived.manifest)
 }
 
-/// Returns the text of `run.toml` according to the first line of the trajectory.
+/// Returns the text of `run.toml`, derived from the first line of the trajectory.
 ///
 /// # Errors
 /// The run has another format or other mechanics, or neither file can be read.
@@ -77,16 +78,16 @@ pub fn read_manifest_text(folder: &Path) -> Result<String, RunError> {
     ManifestCheck::read(folder).map(|derived| derived.manifest.to_toml())
 }
 
-/// Reads the first line of a file, if it is complete.
+/// Reads the first line of a file, or returns `None` if the line is incomplete.
 fn read_first_line(path: &Path) -> Option<Line> {
     let mut bytes = Vec::new();
     BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
     Line::parse_first(bytes.strip_suffix(b"\n")?)
 }
 
-/// Adds the fields that only `run.toml` has.
+/// Adds the fields that only `run.toml` contains.
 fn with_unrecorded_fields(manifest: Manifest, file_manifest: &Manifest) -> Manifest {
-    // The first line is written shortly after the run was created; in format 1 it does not list earlier runs.
+    // The first line is written shortly after the run was created. In format 1, the line does not list earlier runs.
     let earlier_runs = if manifest.format == 1 { file_manifest.earlier_runs } else { manifest.earlier_runs };
     Manifest { created: file_manifest.created.clone(), earlier_runs, ..manifest }
 }
@@ -99,16 +100,16 @@ fn describe_manifest_error(error: &RunError) -> String {
         RunError::Damaged { line, problem, .. } => {
             format!("run.toml was damaged (line {line}: {})", problem.trim())
         }
-        RunError::OtherFormat { .. } => "run.toml named another format".to_owned(),
-        RunError::OtherMechanics { .. } => "run.toml named other mechanics".to_owned(),
+        RunError::OtherFormat { .. } => "run.toml had another format".to_owned(),
+        RunError::OtherMechanics { .. } => "run.toml had other mechanics".to_owned(),
         error => format!("run.toml could not be read ({error})"),
     }
 }
 
-/// Checks that a manifest agrees with the first line of a trajectory in every field that both have.
+/// Checks that a manifest and the first line of a trajectory agree in all common fields.
 ///
 /// # Errors
-/// The line does not start a run, or a field differs, so one of the two files belongs to another run.
+/// The line does not start a run, or a field differs. In both cases, one of the two files belongs to another run.
 pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
     let line_manifest = Manifest::from_start_line(path, first)?;
     let Some(names) = differing_field_names(manifest, &with_unrecorded_fields(line_manifest, manifest))
@@ -123,7 +124,7 @@ pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Re
     })
 }
 
-/// Returns one sentence for each field in which `run.toml` differs from the first line; `manifest` is the manifest of the line.
+/// Returns one sentence for each field in which `run.toml` differs from `manifest`, the manifest of the first line.
 pub fn manifest_differences(folder: &Path, manifest: &Manifest) -> Vec<String> {
     let file_manifest = match Manifest::read(folder) {
         Ok(file_manifest) => file_manifest,
@@ -133,12 +134,12 @@ pub fn manifest_differences(folder: &Path, manifest: &Manifest) -> Vec<String> {
     let differ = differing_fields(&file_manifest, &with_unrecorded_fields(manifest.clone(), &file_manifest))
         .into_iter();
     let words = |(name, in_file, in_line): (String, Option<Value>, Option<Value>)| {
-        format!("run.toml says {name} = {}, the first line {}", shown(in_file), shown(in_line))
+        format!("run.toml has {name} = {}, the first line has {}", shown(in_file), shown(in_line))
     };
     differ.map(words).collect()
 }
 
-/// Returns the names of the fields that differ, separated by commas, or `None` if the manifests are equal.
+/// Returns the names of the differing fields, separated by commas, or `None` if the manifests are equal.
 fn differing_field_names(manifest: &Manifest, other: &Manifest) -> Option<String> {
     let names: Vec<String> = differing_fields(manifest, other).into_iter().map(|(name, ..)| name).collect();
     (!names.is_empty()).then(|| names.join(", "))

@@ -1,4 +1,4 @@
-//! Previews of runs for lists and comparisons, read from the lines that close weeks, without simulation.
+//! Previews of runs for lists and comparisons, read without simulation from the lines that close weeks.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -12,10 +12,10 @@ use crate::error::RunError;
 use crate::files::open_regular_file;
 use crate::trajectory::{Line, Record};
 
-/// The preview of a run.
+/// Cash by week and the final subscribers of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct RunPreview {
-    /// Day and cash on day 0 and at the end of each week.
+    /// Day and cash at the start of the run and at the end of each week.
     pub cash: Vec<(u32, f64)>,
     /// Active subscriptions of individuals after the last week.
     pub subscribers: u64,
@@ -25,7 +25,7 @@ pub struct RunPreview {
     pub recurring_revenue: f64,
 }
 
-/// Reads the preview of a run. Skips unreadable lines, because opening the run reports them.
+/// Reads the preview of a run. Skips unreadable lines; opening the run reports these lines.
 ///
 /// # Errors
 /// The run or its files do not exist.
@@ -39,7 +39,7 @@ pub fn read_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     for line in BufReader::new(file).split(b'\n') {
         let line = line.map_err(RunError::io(&path))?;
         let text = String::from_utf8_lossy(&line);
-        // Most lines are calls; parse only those that look like the end of a week.
+        // Most lines are tool calls; parse only lines that may close a week or the run.
         if closing.iter().any(|kind| text.contains(kind))
             && let Some(line) = Line::parse_unchecked(text.as_bytes())
         {

@@ -1,4 +1,4 @@
-//! Named queries: bundled ones, and those of the user in the folder `queries` of the configuration.
+//! Named queries: bundled queries, and the user's queries in the subfolder `queries` of the configuration folder.
 //!
 //! Comments at the start of a file describe the query, one per line:
 //!
@@ -8,7 +8,7 @@
 //! -- chart: line x y [y …]
 //! ```
 //!
-//! The last line is optional: it draws the named columns as a `line` or `bar` chart.
+//! The `chart` line is optional. The named columns are then drawn as a `line` or `bar` chart.
 
 use std::path::PathBuf;
 
@@ -77,58 +77,58 @@ const BUNDLED_QUERIES: [(&str, &str); 47] = bundled_queries![
     "notices",
 ];
 
-/// Kind of a chart.
+/// Kind of a query chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChartKind {
-    /// Lines over the x column.
+    /// Line chart with the x column as its axis.
     Line,
-    /// One bar per row.
+    /// Bar chart with one bar per row.
     Bar,
 }
 
-/// A chart of a result: its kind and the names of its columns.
+/// A chart of a query result: the kind of the chart and its column names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChartSpec {
-    /// Kind.
+    /// Kind of the chart.
     pub kind: ChartKind,
-    /// Column of the x axis.
+    /// Name of the column for the x axis.
     pub x_column: String,
-    /// Drawn columns; at least one.
+    /// Names of the drawn columns; at least one.
     pub y_columns: Vec<String>,
 }
 
-/// The comments at the start of a statement.
+/// The fields in the leading comments of a statement.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct QueryHeader {
-    /// Title.
+    /// Title of the query.
     pub title: Option<String>,
-    /// Description.
+    /// Description of the query result.
     pub description: Option<String>,
-    /// Chart of the result.
+    /// Chart of the query result.
     pub chart: Option<ChartSpec>,
 }
 
 /// A named query.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NamedQuery {
-    /// Name of its file, without the ending.
+    /// Name of the query file, without the extension.
     pub name: String,
-    /// Title.
+    /// Title of the query.
     pub title: String,
-    /// Description; may be empty.
+    /// Description of the query result; may be empty.
     pub description: String,
-    /// The statement with its leading comments.
+    /// SQL statement with its leading comments.
     pub sql: String,
-    /// Whether it belongs to the user.
+    /// Whether the query is a file of the user.
     pub is_user_query: bool,
 }
 
-/// All named queries.
+/// All named queries, in the order in which they are listed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryLibrary(Vec<NamedQuery>);
 
 impl QueryHeader {
-    /// Parses the leading comments of a statement.
+    /// Parses the leading comments of an SQL statement.
     pub fn parse(sql: &str) -> QueryHeader {
         let mut head = QueryHeader::default();
         for line in header_lines(sql) {
@@ -145,7 +145,7 @@ impl QueryHeader {
     }
 }
 
-/// Returns a statement without its leading comments.
+/// Returns an SQL statement without its leading comments.
 pub fn strip_header(sql: &str) -> &str {
     let head = header_lines(sql).count();
     sql.splitn(head + 1, '\n').nth(head).unwrap_or("")
@@ -194,8 +194,8 @@ impl QueryLibrary {
         )
     }
 
-    /// Loads the user's queries, then the bundled ones; the user's query replaces a bundled one with the same name. A file that
-    /// cannot be read is listed with the error as its description.
+    /// Loads the user's queries, then the bundled queries. A user's query replaces the bundled query of the same name.
+    /// If a file cannot be read, its query has the error message as description.
     pub fn load(configuration: &Configuration) -> QueryLibrary {
         let load_query = |name: String| match configuration.read_file(format!("{QUERIES_FOLDER}/{name}.sql"))
         {
@@ -214,32 +214,32 @@ impl QueryLibrary {
         QueryLibrary(all)
     }
 
-    /// Returns the queries in order.
+    /// Returns the queries: the user's queries, then the bundled queries.
     pub fn queries(&self) -> &[NamedQuery] {
         &self.0
     }
 
-    /// Returns a query by name.
+    /// Returns the query with this name, if it exists.
     pub fn find(&self, name: &str) -> Option<&NamedQuery> {
         self.0.iter().find(|query| query.name == name)
     }
 
-    /// Returns the names that are similar to an unknown one.
+    /// Returns the query names that are similar to an unknown name.
     pub fn similar_names(&self, name: &str) -> Vec<&str> {
         similar_names(name, self.0.iter().map(|query| query.name.as_str()))
     }
 }
 
-/// Converts a typed name to a file name: spaces become hyphens. Returns `None` if it has characters other than letters,
-/// digits, `-` and `_`, or is too long.
+/// Converts a typed query name to a file name: spaces become hyphens. Returns `None` if the name is too long or has
+/// characters other than letters, digits, `-` and `_`.
 pub fn to_file_name(typed: &str) -> Option<String> {
     let name = typed.split_whitespace().collect::<Vec<_>>().join("-").to_lowercase();
     let fits = |letter: char| letter.is_alphanumeric() || matches!(letter, '-' | '_');
     (!name.is_empty() && name.len() <= MAX_NAME_CHARACTERS && name.chars().all(fits)).then_some(name)
 }
 
-/// Saves a query of the user, replacing one with the same name, and returns its path. Adds the title if the statement has
-/// none.
+/// Saves a query of the user and returns the path of its file. Replaces a query with the same name. Adds a title
+/// comment if the statement has no title.
 ///
 /// # Errors
 /// There is no configuration folder, or the file cannot be written.

@@ -1,4 +1,4 @@
-//! Folders of runs: listing, finding and deleting runs.
+//! Listing, finding and deleting runs in runs folders.
 
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -16,30 +16,30 @@ use crate::trajectory::find_policy;
 use crate::trajectory::record::RunEndReason;
 use crate::trajectory::{Line, Record};
 
-/// A run in a list.
+/// Summary of a run for run lists.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
-    /// Id.
+    /// Id of the run.
     pub id: String,
     /// Moment of creation, RFC 3339.
     pub created: String,
-    /// Moment of the last recorded line, RFC 3339.
+    /// Moment at which the last line was recorded, RFC 3339.
     pub played: String,
-    /// Mode.
+    /// Mode of the run; `None` if the run cannot be read.
     pub mode: Option<Mode>,
-    /// Seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Whether parameters differ from the bundled scenario with that name.
+    /// Whether parameters differ from the bundled scenario of the same name.
     pub has_own_parameters: bool,
     /// Whether a language model scores the posts of the player.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub judged_by_model: bool,
-    /// Whether it continues weeks of another run.
+    /// Whether the run is a branch of another run.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_branch: bool,
-    /// The policy that decided all weeks among the last lines, if any.
+    /// Name of the policy that decided all weeks in the last lines, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub policy: Option<String>,
     /// Label of the participant.
@@ -52,26 +52,26 @@ pub struct RunSummary {
     pub starting_cash: f64,
     /// Cash after the last week, dollars.
     pub cash: f64,
-    /// How it ended; `None` if it is unfinished.
+    /// Reason for the end of the run; `None` if the run is unfinished.
     pub ended: Option<RunEndReason>,
-    /// Whether a server has it open.
+    /// Whether a server has the run open.
     pub is_served: bool,
-    /// Id of the run of which this folder is a copy under another name, if it is one.
+    /// Id of the recorded run, if the folder is a copy under another name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub copy_of: Option<String>,
-    /// Why it cannot be read, if so.
+    /// Why the run cannot be read; `None` if the run is readable.
     pub problem: Option<String>,
 }
 
-/// Returns the folder of a run.
+/// Returns the run folder for a run id.
 pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
     runs.join(id)
 }
 
-/// Subfolder of the common folder of runs with one folder per participant.
+/// Subfolder of the common runs folder that contains one folder per participant.
 pub const PARTICIPANTS_FOLDER: &str = "participants";
 
-/// Returns the folder of a participant's runs. Separate folders keep participants on one machine apart.
+/// Returns the folder of a participant's runs. Each participant on a machine has a separate folder.
 ///
 /// # Errors
 /// The label is not a valid folder name.
@@ -86,28 +86,28 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
     Ok(runs.join(PARTICIPANTS_FOLDER).join(label))
 }
 
-/// Prefix of staging folders, which hold branches that are not complete yet.
+/// Name prefix of staging folders, which contain incomplete branches.
 pub const STAGING_PREFIX: &str = ".branch-";
 
-/// Returns whether a folder is a staging folder. It is not a run.
+/// Returns whether a folder is a staging folder, which is not listed as a run.
 pub fn is_staging_folder(folder: &Path) -> bool {
     folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STAGING_PREFIX))
 }
 
-/// Returns the label of the participant whose runs a folder holds, if any.
+/// Returns the label of the participant whose runs are in a folder, or `None` for the common runs folder.
 pub fn participant_of_folder(runs: &Path) -> Option<String> {
     let is_participant = runs.parent()?.file_name()? == PARTICIPANTS_FOLDER;
     runs.file_name().filter(|_| is_participant).map(|label| label.to_string_lossy().into_owned())
 }
 
-/// Returns the common folder of runs for a folder of runs, and the label of the participant if it is a participant's folder.
+/// Returns the common runs folder for any runs folder, and the participant's label if `runs` is a participant's folder.
 pub fn common_runs_folder(runs: &Path) -> (&Path, Option<String>) {
     let label = participant_of_folder(runs);
     let base = label.as_ref().and_then(|_| runs.parent()?.parent());
     (base.unwrap_or(runs), label)
 }
 
-/// Returns all related folders of runs: the common one, then those of the participants by label.
+/// Returns all related runs folders: the common folder, then the participants' folders, sorted by label.
 pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
     let (base, _) = common_runs_folder(runs);
     let entries = std::fs::read_dir(base.join(PARTICIPANTS_FOLDER)).into_iter().flatten().flatten();
@@ -117,10 +117,10 @@ pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// Returns all runs, the last played first.
+/// Returns all runs in a folder, most recently played first.
 ///
 /// # Errors
-/// The folder exists and cannot be read.
+/// The folder exists but cannot be read.
 pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
     let entries = match std::fs::read_dir(runs) {
         Ok(entries) => entries,
@@ -148,7 +148,7 @@ fn summarize_run(folder: &Path) -> RunSummary {
         Ok(lines) => (lines, None),
         Err(problem) => (Vec::new(), Some(problem)),
     };
-    // Day and cash after the last simulated days, and how the run ended.
+    // Day and cash after the last simulated days, and the reason for the end of the run.
     let closed = last.iter().rev().find_map(|line| match &line.record {
         Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.cash)),
         Record::End(end) => Some((line.day, end.cash)),
@@ -177,7 +177,7 @@ fn summarize_run(folder: &Path) -> RunSummary {
         starting_cash: manifest.cash,
         cash: match closed {
             Some((_, cash)) => cash,
-            // The remaining cash is unknown.
+            // The cash of an unreadable run is unknown.
             None if problem.is_some() => 0.0,
             None => manifest.cash,
         },
@@ -187,7 +187,7 @@ fn summarize_run(folder: &Path) -> RunSummary {
     }
 }
 
-/// Returns whether parameters may have been set during the run: debug runs, lessons, and their branches.
+/// Returns whether parameters may have been set during the run: in debug runs, lessons and branches.
 fn may_set_parameters(manifest: &Manifest) -> bool {
     manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
 }
@@ -222,10 +222,10 @@ fn unreadable_summary(id: String, problem: String) -> RunSummary {
     }
 }
 
-/// Returns the last lines of a trajectory, including its last week. Reads from the end, because runs can be long.
+/// Returns the last lines of a trajectory, including its last week. Reads backwards from the end, because runs can be long.
 ///
 /// # Errors
-/// The file cannot be read, or has no readable line.
+/// The file cannot be read, or contains no readable line.
 pub fn read_last_lines(path: &Path) -> Result<Vec<Line>, String> {
     let mut window: u64 = 64 << 10;
     loop {
@@ -238,7 +238,7 @@ pub fn read_last_lines(path: &Path) -> Result<Vec<Line>, String> {
         match (has_week, whole) {
             (true, _) => return Ok(lines),
             (false, true) if begins() => return Ok(lines),
-            (false, true) => return Err(format!("{}: none of its lines can be read", path.display())),
+            (false, true) => return Err(format!("{}: no line of this file can be read", path.display())),
             (false, false) => window *= 8,
         }
     }
@@ -253,23 +253,24 @@ fn read_tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
     Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
 }
 
-/// Returns the folder of a run to play by id, unique prefix, or `latest`: the newest unfinished run.
+/// Finds a run to play and returns its folder. `id` is a run id, a unique prefix, or `latest`: the newest unfinished run.
 ///
 /// # Errors
-/// No run matches, or several do.
+/// No run matches, or several runs match.
 pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find_matching_run(runs, id, |run| run.ended.is_none())
 }
 
-/// Returns the folder of a run to read by id, unique prefix, or `latest`: the newest run.
+/// Finds a run to read and returns its folder. `id` is a run id, a unique prefix, or `latest`: the newest run.
 ///
 /// # Errors
-/// No run matches, or several do.
+/// No run matches, or several runs match.
 pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find_matching_run(runs, id, |_| true)
 }
 
-/// Finds a wanted run by id, unique prefix or `latest`; in the common folder, among the runs of all participants.
+/// Finds a run by id, by unique prefix, or as the `latest` run that `wanted` accepts. In the common folder, searches
+/// the runs of all participants.
 fn find_matching_run(
     runs: &Path,
     id: &str,
@@ -282,7 +283,7 @@ fn find_matching_run(
     for folder in folders {
         list.extend(list_runs(&folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
     }
-    // For equal moments, the common folder wins.
+    // The sort is stable: for equal moments, the run in the common folder comes first.
     list.sort_by(|(_, one), (_, other)| other.played.cmp(&one.played));
     if id == "latest" {
         if list.is_empty() {
@@ -315,8 +316,8 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
 }
 
-/// Returns the earlier runs of a participant: those with the label in all related folders. Without a label, those in this
-/// folder.
+/// Returns the earlier runs of a participant in all related folders. Without a label, returns the unlabelled runs in
+/// this folder.
 pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());

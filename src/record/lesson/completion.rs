@@ -1,5 +1,4 @@
-//! Whether a lesson is over. Hidden state of its runs stays hidden until then, because the next part can have the same
-//! random draws.
+//! Check whether a lesson is over. Until then, hidden state stays hidden, because the next part can have the same random draws.
 
 use std::path::Path;
 
@@ -10,8 +9,9 @@ use crate::folder::runs::read_last_lines;
 use crate::stamp::LessonStamp;
 use crate::trajectory::Record;
 
-/// Returns whether the last part of a run's lesson is over, in this run or in another run of the participant in the same
-/// folder. Returns true for runs without a lesson, and false if the lesson in the run folder has another digest.
+/// Returns whether the last part of a run's lesson is over. The last part may be this run or another run of the
+/// participant in the same folder. Returns true for runs without a lesson, and false if the lesson in the run folder
+/// has another digest.
 pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     let Some(stamp) = &manifest.lesson else { return true };
     let Some(folder) = folder else { return false };
@@ -30,7 +30,7 @@ pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     })
 }
 
-/// Returns whether the last lines of a run have an `end`.
+/// Returns whether the last lines of a run contain an `end` event.
 fn run_has_ended(folder: &Path) -> bool {
     let lines = read_last_lines(&folder.join("trajectory.jsonl")).unwrap_or_default();
     lines.iter().any(|line| matches!(line.record, Record::End(_)))

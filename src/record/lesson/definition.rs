@@ -9,78 +9,78 @@ use super::lesson_call::LessonCall;
 use super::measurement::{Measurement, MeasurementFile};
 use novamind_tools::ToolId;
 
-/// The definition in the file of a lesson.
+/// The contents of a lesson file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonPlan {
-    /// Title for students.
+    /// Title of the lesson.
     pub title: String,
-    /// Minutes that a student needs for it.
+    /// Minutes that a student needs for the lesson.
     pub minutes: u32,
     /// Skill or knowledge that the student gains.
     pub learning_goal: String,
-    /// Parts of the program that the student can use.
+    /// Tools and screens that the student can use.
     #[serde(default)]
     pub access: LessonAccess,
-    /// Companies, in the order of play.
+    /// Parts of the lesson, in the order of play.
     #[serde(rename = "part")]
     pub parts: Vec<LessonPart>,
     /// Common mistakes and their explanations.
     #[serde(rename = "pitfall", default)]
     pub pitfalls: Vec<Pitfall>,
-    /// The reference play, which reaches every goal.
+    /// Reference play that reaches every goal.
     pub good: ReferencePlay,
-    /// A play that misses a goal and triggers a pitfall.
+    /// Reference play that misses a goal and triggers a pitfall.
     pub bad: ReferencePlay,
     /// Figures that the texts name; `novamind lesson check` verifies them.
     #[serde(rename = "measured", default)]
     pub measured: Vec<MeasuredFigure>,
 }
 
-/// Parts of the program that a student can use.
+/// Tools, screens and submissions of a lesson.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LessonAccess {
-    /// Tools; `None` for all.
+    /// Tools that the student can use; `None` for all tools.
     pub tools: Option<Vec<ToolId>>,
-    /// Screens besides the Overview; `None` for all.
+    /// Screens that the student can open besides the Overview; `None` for all screens.
     pub screens: Option<Vec<String>>,
-    /// Whether forecasts are required.
+    /// Who enters the forecasts before a week.
     pub forecasts: ForecastRequirement,
-    /// Whether a rationale is required.
+    /// Whether the student has to write a rationale before a week.
     pub rationale: RationaleRequirement,
 }
 
 impl LessonAccess {
-    /// Returns whether the lesson submits naive forecasts.
+    /// Returns whether the lesson submits naive forecasts for the student.
     pub fn uses_naive_forecasts(&self) -> bool {
         self.forecasts == ForecastRequirement::Naive
     }
 
-    /// Returns whether weeks need no rationale.
+    /// Returns whether the student can submit a week without a rationale.
     pub fn is_rationale_off(&self) -> bool {
         self.rationale == RationaleRequirement::Off
     }
 }
 
-/// Forecasts before a week.
+/// Requirement for forecasts before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ForecastRequirement {
-    /// The student enters them.
+    /// The student enters the forecasts.
     Required,
     /// The lesson fills in naive forecasts.
     #[default]
     Naive,
 }
 
-/// Rationale before a week.
+/// Requirement for a rationale before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RationaleRequirement {
-    /// The student writes it.
+    /// The student writes a rationale.
     Required,
-    /// Not required.
+    /// No rationale is required.
     #[default]
     Off,
 }
@@ -89,34 +89,35 @@ pub enum RationaleRequirement {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonPart {
-    /// Title.
+    /// Title of the part.
     #[serde(default)]
     pub title: String,
-    /// Scenario.
+    /// Name of the scenario of the part.
     #[serde(default = "default_scenario")]
     pub scenario: String,
     /// Seed of the students' runs.
     pub seed: u64,
-    /// Cash on day 0, dollars; defaults to that of the scenario.
+    /// Cash on day 0, dollars; defaults to the scenario's starting cash.
     pub cash: Option<f64>,
-    /// Last day of the company, which affects the mechanics; defaults to that of the scenario. The lesson ends earlier.
+    /// Last day of the simulated company; defaults to the scenario's last day. The value affects the mechanics, but
+    /// the lesson ends earlier.
     pub days: Option<u32>,
-    /// Whether demand surges occur.
+    /// Whether demand surges occur during the part.
     #[serde(default)]
     pub surges: bool,
-    /// Control of the capacity tier.
+    /// How the capacity tier is set during the part.
     #[serde(default)]
     pub capacity: CapacityControl,
-    /// Parameters in force from day 0, by their full keys.
+    /// Values of the parameters that the part overrides from day 0, by full key.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
     /// Weeks that are simulated before the student sees the company.
     #[serde(default)]
     pub start_weeks: u32,
-    /// Calls before the student sees the company.
+    /// Calls that are executed before the student sees the company.
     #[serde(default)]
     pub start: Vec<ScheduledCalls>,
-    /// Steps, in order.
+    /// Steps of the part, in order.
     #[serde(rename = "step")]
     pub steps: Vec<LessonStep>,
 }
@@ -128,14 +129,14 @@ impl LessonPart {
     }
 }
 
-/// Control of the capacity tier.
+/// How the capacity tier of a company is set.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 pub enum CapacityControl {
-    /// The student.
+    /// The student sets the capacity tier.
     #[default]
     #[serde(rename = "manual")]
     Student,
-    /// Automatic: one tier per week towards the tier that usage needs.
+    /// The lesson moves the capacity tier each week by one tier towards the tier that usage requires.
     #[serde(rename = "follows usage")]
     FollowsUsage,
 }
@@ -148,34 +149,34 @@ fn default_scenario() -> String {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonStep {
-    /// Title.
+    /// Title of the step.
     pub title: String,
-    /// Text for the student.
+    /// Task description for the student.
     pub text: String,
-    /// Duration in weeks.
+    /// Duration of the step, in weeks.
     pub weeks: u32,
-    /// Parameters that the lesson sets at the start of the step, by their full keys.
+    /// Values of the parameters that the lesson sets at the start of the step, by full key.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
-    /// Question before the step is simulated.
+    /// Question that the student answers before the step is simulated.
     pub guess: Option<Guess>,
-    /// Goals.
+    /// Goals of the step.
     #[serde(rename = "goal", default)]
     pub goals: Vec<LessonGoal>,
-    /// Hints, from vague to nearly the solution.
+    /// Hints, from a vague hint to one that nearly gives the solution.
     #[serde(default)]
     pub hints: Vec<String>,
 }
 
-/// A question before a step is simulated.
+/// A question that the student answers before a step is simulated.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "GuessFile")]
 pub struct Guess {
-    /// The question.
+    /// Question for the student.
     pub question: String,
-    /// Kind of the answer.
+    /// Answer format of the question.
     pub form: GuessForm,
-    /// When the outcome is shown.
+    /// When the outcome of the guess is shown.
     pub told: OutcomeTiming,
 }
 
@@ -183,26 +184,26 @@ pub struct Guess {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OutcomeTiming {
-    /// At the end of its step.
+    /// At the end of the step with the guess.
     #[default]
     Step,
-    /// At the end of the part.
+    /// At the end of the part with the guess.
     Part,
 }
 
-/// Kind of the answer to a question.
+/// Answer format of a question.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GuessForm {
-    /// A number; its outcome is measured at the end of the step.
+    /// A number, which is compared with a measurement at the end of the step.
     Number {
-        /// Measurement of the outcome.
+        /// Measurement that returns the actual value.
         outcome: Measurement,
-        /// Unit: `$`, `%`, or a word.
+        /// Unit of the number: `$`, `%`, or a word.
         unit: String,
     },
-    /// One of several answers.
+    /// One of several predefined answers.
     Choice {
-        /// Answers.
+        /// Answers from which the student chooses.
         choices: Vec<String>,
         /// Index of the correct answer, from 0.
         answer: usize,
@@ -236,7 +237,7 @@ impl TryFrom<GuessFile> for Guess {
             (Some(choices), Some(answer)) if figure.is_none() && sql.is_none() => {
                 if choices.len() < 2 || !(1..=choices.len()).contains(&answer) {
                     return Err(
-                        "a guess needs at least two choices, and answer must be the number of one of them"
+                        "a guess needs at least two choices, and answer must be the number of a choice"
                             .to_owned(),
                     );
                 }
@@ -248,28 +249,28 @@ impl TryFrom<GuessFile> for Guess {
     }
 }
 
-/// A goal of a step.
+/// A goal that the student should reach in a step.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "GoalFile")]
 pub struct LessonGoal {
-    /// Text for the student.
+    /// Description of the goal for the student.
     pub text: String,
-    /// Measurement at the end of the step.
+    /// Measurement that returns the value to compare at the end of the step.
     pub measurement: Measurement,
-    /// Bound to reach.
+    /// Bound that the measured value has to reach.
     pub bound: GoalBound,
-    /// Whether the value is in dollars.
+    /// Whether the measured value is in dollars.
     pub in_dollars: bool,
 }
 
-/// Bound of a goal.
+/// Bound that a measured value has to reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GoalBound {
-    /// At least this value.
+    /// Reached by values of at least this number.
     AtLeast(f64),
-    /// At most this value.
+    /// Reached by values of at most this number.
     AtMost(f64),
-    /// At least this multiple of the reference play's value on the same seed.
+    /// Reached by at least this multiple of the value of the reference play on the same seed.
     RelativeToReferencePlay(f64),
 }
 
@@ -279,7 +280,8 @@ impl GoalBound {
         matches!(self, GoalBound::RelativeToReferencePlay(_))
     }
 
-    /// Returns the value to reach, given that of the reference play. Returns `None` if that is needed and missing.
+    /// Returns the value to reach. `good` is the value of the reference play. Returns `None` if a relative bound has
+    /// no reference value.
     pub fn value(self, good: Option<f64>) -> Option<f64> {
         match self {
             GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
@@ -330,17 +332,17 @@ impl TryFrom<GoalFile> for LessonGoal {
     }
 }
 
-/// A common mistake.
+/// A common mistake that the lesson detects and explains.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "PitfallFile")]
 pub struct Pitfall {
-    /// Name.
+    /// Name of the pitfall.
     pub name: String,
-    /// Part in which it is checked, from 0.
+    /// Part in which the pitfall is checked, from 0.
     pub part: usize,
-    /// Measurement after every week.
+    /// Measurement that is compared with the bound after every week.
     pub measurement: Measurement,
-    /// Values that trigger it.
+    /// Values that trigger the pitfall.
     pub bound: PitfallBound,
     /// Explanation for the student.
     pub say: String,
@@ -349,14 +351,14 @@ pub struct Pitfall {
 /// Values that trigger a pitfall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PitfallBound {
-    /// Above this.
+    /// Values above this threshold.
     Above(f64),
-    /// Below this.
+    /// Values below this threshold.
     Below(f64),
 }
 
 impl PitfallBound {
-    /// Returns the threshold.
+    /// Returns the threshold of the bound.
     pub fn limit(self) -> f64 {
         match self {
             PitfallBound::Above(limit) | PitfallBound::Below(limit) => limit,
@@ -399,60 +401,60 @@ impl TryFrom<PitfallFile> for Pitfall {
     }
 }
 
-/// A play with which students' runs are compared.
+/// Scheduled calls with which students' runs are compared.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReferencePlay {
-    /// Description.
+    /// Description of the play for students.
     pub text: String,
-    /// Description of each part, if the parts have little in common.
+    /// Separate description of each part, if the parts have little in common.
     #[serde(default)]
     pub texts: Vec<String>,
-    /// The pitfall that it triggers; the bad play names one.
+    /// Name of the pitfall that the play triggers; required for the bad play.
     pub pitfall: Option<String>,
-    /// Calls.
+    /// Calls of the play, by part and week.
     #[serde(rename = "play", default)]
     pub plays: Vec<ScheduledCalls>,
 }
 
 impl ReferencePlay {
-    /// Returns the description of a part.
+    /// Returns the description of the play for a part.
     pub fn text_of(&self, part: usize) -> &str {
         self.texts.get(part).unwrap_or(&self.text)
     }
 
-    /// Returns whether it has calls in a part.
+    /// Returns whether the play has calls in a part.
     pub fn has_calls_in(&self, part: usize) -> bool {
         self.plays.iter().any(|scheduled_calls| scheduled_calls.part == part)
     }
 }
 
-/// Seeds over which measured figures are averaged.
+/// Seeds over which each measured figure is averaged.
 pub const MEASURED_SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
 
-/// A figure that texts name as `{name}`: its mean over [`MEASURED_SEEDS`].
+/// A figure that lesson texts insert with `{name}`: the mean of a measurement over [`MEASURED_SEEDS`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "MeasuredFile")]
 pub struct MeasuredFigure {
-    /// Name in texts.
+    /// Name of the figure in lesson texts.
     pub name: String,
-    /// Part that is played, from 0.
+    /// Part that is simulated for the measurement, from 0.
     pub part: usize,
-    /// Description.
+    /// Description of the figure.
     pub text: String,
-    /// Measurement.
+    /// Measurement of the figure after the week.
     pub measurement: Measurement,
-    /// Week of the company after which it is measured; defaults to the last of the part.
+    /// Week of the company after which the figure is measured; defaults to the last week of the part.
     pub week: Option<u32>,
-    /// Value.
+    /// Value that the lesson texts state.
     pub value: f64,
-    /// Unit of a statement's number: `$`, `%` of a share, `day`, or empty.
+    /// Unit of the number that an SQL statement returns: `$`, `%` (for a share), `day`, or empty.
     pub unit: String,
-    /// Calls after the start of the part.
+    /// Calls that are executed after the start of the part.
     pub plays: Vec<ScheduledCalls>,
-    /// Scenario, if it differs from that of the part.
+    /// Name of the scenario, if it differs from the scenario of the part.
     pub scenario: Option<String>,
-    /// Additional parameters in force from day 0, by their full keys.
+    /// Values of additional parameters that are overridden from day 0, by full key.
     pub parameters: BTreeMap<String, Value>,
 }
 
@@ -495,15 +497,15 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "ScheduleFile")]
 pub struct ScheduledCalls {
-    /// Part, from 0.
+    /// Part in which the calls are executed, from 0.
     pub part: usize,
-    /// First week, from 0: the number of weeks that have passed.
+    /// First week of the calls, from 0: the number of weeks simulated before.
     pub week: u32,
-    /// Weeks between repetitions.
+    /// Weeks between repetitions of the calls.
     pub every: Option<u32>,
-    /// Last week of the repetitions.
+    /// Last week in which the calls may be repeated.
     pub until: Option<u32>,
-    /// Calls, in order.
+    /// Calls, in the order of execution.
     pub calls: Vec<LessonCall>,
 }
 
@@ -530,7 +532,7 @@ impl TryFrom<ScheduleFile> for ScheduledCalls {
 }
 
 impl ScheduledCalls {
-    /// Returns whether the calls are made at the start of a week of a part.
+    /// Returns whether the calls are executed at the start of a week of a part.
     pub fn are_due(&self, part: usize, week: u32) -> bool {
         let repeats = |every| week >= self.week && (week - self.week).is_multiple_of(every);
         let in_time = self.until.is_none_or(|until| week <= until);
@@ -538,7 +540,7 @@ impl ScheduledCalls {
     }
 }
 
-/// Returns the index of a part, which files count from 1; defaults to the first.
+/// Converts a part number, which files count from 1, to an index. Defaults to the first part.
 fn part_index(part: Option<usize>) -> Result<usize, String> {
-    part.unwrap_or(1).checked_sub(1).ok_or_else(|| "parts are counted from 1".to_owned())
+    part.unwrap_or(1).checked_sub(1).ok_or_else(|| "parts are numbered from 1".to_owned())
 }

@@ -1,17 +1,17 @@
-//! Calls in the file of a lesson: a tool with its arguments, or rules for enterprises.
+//! Calls in a lesson file: a tool with its arguments, or rules for messages of enterprises.
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use novamind_tools::{Language, ToolId, find};
 
-/// A call in the file of a lesson.
+/// A call in a lesson file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum LessonCall {
-    /// A tool call.
+    /// Call of a tool with JSON arguments.
     Tool(ToolId, Value),
-    /// Rules that answer every waiting enterprise.
+    /// Text of the rules that answer every waiting enterprise.
     Rules(String),
 }
 
@@ -29,7 +29,7 @@ impl TryFrom<String> for LessonCall {
             rest => serde_json::from_str(rest)
                 .map_err(|error| format!("the arguments of {name} are not valid JSON: {error}"))?,
         };
-        // A student would run a program of the lesson's author.
+        // Python is not allowed: the student would execute code of the lesson's author.
         if args["code"].as_str().is_some_and(|code| Language::detect(code) == Language::Python) {
             return Err(format!("{name} in a lesson takes SQL statements, not Python"));
         }

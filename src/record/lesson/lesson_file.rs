@@ -13,32 +13,32 @@ use crate::folder::configuration::Configuration;
 use novamind_base::formatting::{cents, grouped_number, percent, short_dollars};
 use novamind_world::params::{ParameterError, ParameterSource};
 
-/// File name of the plan in a run folder.
+/// File name of the lesson plan in a run folder.
 pub const PLAN_FILE: &str = "lesson.toml";
-/// File name of the texts in a run folder.
+/// File name of the lesson texts in a run folder.
 pub const TEXTS_FILE: &str = "lesson.md";
 
-/// A lesson.
+/// A lesson with its plan, debrief and instructor notes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lesson {
-    /// Name of its files.
+    /// Name of the lesson files, without the extension.
     pub name: String,
-    /// Definition.
+    /// Definition of parts, goals, pitfalls and reference plays.
     pub plan: LessonPlan,
-    /// Debrief for students, in Markdown; `{name}` stands for a measured figure.
+    /// Debrief for students, in Markdown; `{name}` is a placeholder for a measured figure.
     pub debrief: String,
     /// Notes for instructors, in Markdown.
     pub instructor_notes: String,
-    /// BLAKE3 digest of plan and texts, in hexadecimal digits.
+    /// BLAKE3 digest of the plan and the texts, in hexadecimal digits.
     pub digest: String,
-    /// Whether it is bundled with the program.
+    /// Whether the lesson is bundled with the program.
     pub is_bundled: bool,
     plan_text: String,
     texts: String,
 }
 
 impl Lesson {
-    /// Reads a lesson by name; the file in the configuration folder takes precedence over the bundled one.
+    /// Reads a lesson by name. A file in the configuration folder takes precedence over the bundled file.
     ///
     /// # Errors
     /// The lesson does not exist, or one of its files is invalid.
@@ -62,10 +62,10 @@ impl Lesson {
         Ok(Lesson::parse(name, plan, texts, true)?)
     }
 
-    /// Parses a lesson from its plan and its texts.
+    /// Parses a lesson from its plan and its Markdown texts.
     ///
     /// # Errors
-    /// The first defect, with file, line and key.
+    /// The lesson is invalid; the error names the file, line and key of the first defect.
     pub(super) fn parse(
         name: &str,
         plan: ParameterSource,
@@ -97,10 +97,10 @@ impl Lesson {
         }
     }
 
-    /// Reads a lesson from its plan file and the `.md` file next to it.
+    /// Reads a lesson from a plan file and the `.md` file of the same name.
     ///
     /// # Errors
-    /// A file cannot be read, or is invalid.
+    /// The plan file cannot be read, or one of the files is invalid.
     pub fn from_file(path: &Path) -> Result<Lesson, RunError> {
         let text = std::fs::read_to_string(path).map_err(RunError::io(path))?;
         let texts = std::fs::read_to_string(path.with_extension("md")).unwrap_or_default();
@@ -108,7 +108,7 @@ impl Lesson {
         Ok(Lesson::parse(&name, ParameterSource { name: path.display().to_string(), text }, texts, false)?)
     }
 
-    /// Reads the lesson from a run folder.
+    /// Reads the copy of the lesson in a run folder.
     ///
     /// # Errors
     /// A file is missing or invalid.
@@ -122,23 +122,24 @@ impl Lesson {
         Ok(Lesson::parse(name, source, text(TEXTS_FILE)?, false)?)
     }
 
-    /// Parses a lesson from texts that are not in files.
+    /// Parses a lesson from a plan and texts in memory.
     ///
     /// # Errors
-    /// The first defect, with line and key.
+    /// The lesson is invalid; the error names the line and key of the first defect.
     pub fn from_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
         Ok(Lesson::parse(name, plan, texts, false)?)
     }
 
-    /// Returns the source texts of plan and texts.
+    /// Returns the unparsed plan and the unparsed texts.
     pub fn sources(&self) -> (&str, &str) {
         (&self.plan_text, &self.texts)
     }
 
-    /// Writes an editable copy: the plan at a path, the texts next to it. Never replaces a file.
+    /// Writes an editable copy of the lesson: the plan to `path`, the texts to the `.md` file of the same name. Never
+    /// replaces an existing file.
     ///
     /// # Errors
-    /// One of the files exists, or cannot be written.
+    /// One of the files already exists or cannot be written.
     pub fn copy_to(&self, path: &Path) -> Result<(), RunError> {
         use std::io::Write;
         if let Some(folder) = path.parent() {
@@ -152,7 +153,7 @@ impl Lesson {
         written(&path.with_extension("md"), &self.texts)
     }
 
-    /// Writes the lesson to a run folder, so that the run can be judged on any machine.
+    /// Writes the lesson to a run folder, so that goals of the run can be checked on any machine.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -161,7 +162,7 @@ impl Lesson {
         write_atomically(&folder.join(TEXTS_FILE), self.texts.as_bytes())
     }
 
-    /// Returns the lesson with the scenario and parameters of a measured figure in the figure's part.
+    /// Returns a copy of the lesson in which the figure's part has the scenario and parameters of the figure.
     pub fn with_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
         if figure.scenario.is_none() && figure.parameters.is_empty() {
             return self.clone();
@@ -188,7 +189,7 @@ impl Lesson {
         goals.chain(guesses).chain(pitfalls).any(|measurement| measurement.needs_database())
     }
 
-    /// Replaces the names of measured figures in a text by their values.
+    /// Replaces the placeholders of measured figures in a text with formatted values.
     pub fn fill_figures(&self, text: &str) -> String {
         let written = |text: String, measured_figure: &MeasuredFigure| {
             text.replace(&format!("{{{}}}", measured_figure.name), &measured_figure.formatted_value())
@@ -198,12 +199,12 @@ impl Lesson {
 }
 
 impl MeasuredFigure {
-    /// Returns the formatted value.
+    /// Returns the stated value as formatted text.
     pub fn formatted_value(&self) -> String {
         self.format_value(self.value)
     }
 
-    /// Formats a value of this figure.
+    /// Formats a value in the unit of this figure.
     pub fn format_value(&self, value: f64) -> String {
         match &self.measurement.source {
             NumberSource::Cash => short_dollars(value),

@@ -1,38 +1,38 @@
-//! Measurements of goals, guesses and pitfalls: a figure of weeks, or the result of an SQL statement.
+//! Measurements for goals, guesses and pitfalls: a figure over weeks, or the result of an SQL statement.
 
 use serde::Deserialize;
 
 use crate::figures::{FigureUnit, WeekFigure, WeekFigures};
 
-/// A measurement over weeks.
+/// A measurement over some weeks of a company.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurement {
-    /// Source of the numbers.
+    /// Source of the weekly numbers.
     pub source: NumberSource,
-    /// Aggregation over the weeks.
+    /// Aggregation of the numbers over the weeks.
     pub aggregation: WeekAggregation,
 }
 
-/// Source of a number.
+/// Source of the numbers of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NumberSource {
-    /// Cash at the end of a week, dollars.
+    /// Cash at the end of each week, dollars.
     Cash,
-    /// A figure of a week.
+    /// A figure of each week.
     Figure(WeekFigure),
-    /// A statement that returns one number; `{from_day}` and `{to_day}` stand for the days of the weeks.
+    /// An SQL statement that returns one number; `{from_day}` and `{to_day}` are replaced with the first and last day.
     Sql(String),
 }
 
-/// Aggregation over weeks.
+/// Aggregation of a figure over weeks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum WeekAggregation {
-    /// Last value.
+    /// Value of the last week.
     #[default]
     Last,
-    /// Sum.
+    /// Sum over the weeks.
     Sum,
-    /// Mean.
+    /// Mean over the weeks.
     Mean,
 }
 
@@ -67,14 +67,14 @@ impl TryFrom<MeasurementFile> for Measurement {
             Some(other) => return Err(format!("over must be end, sum or mean, not {other}")),
         };
         if over != WeekAggregation::Last && matches!(source, NumberSource::Sql(_)) {
-            return Err("remove over: an SQL statement selects its days itself".to_owned());
+            return Err("remove over: an SQL statement has to select the days itself".to_owned());
         }
         Ok(Measurement { source, aggregation: over })
     }
 }
 
 impl Measurement {
-    /// Returns whether it is a figure in dollars.
+    /// Returns whether the measurement is a figure in dollars.
     pub fn is_in_dollars(&self) -> bool {
         match &self.source {
             NumberSource::Cash => true,
@@ -83,7 +83,7 @@ impl Measurement {
         }
     }
 
-    /// Returns the statement for the days from `from_day` to `to_day`, or `None` for a figure.
+    /// Returns the SQL statement for the days from `from_day` to `to_day`, or `None` if the source is a figure.
     pub fn statement(&self, from_day: u32, to_day: u32) -> Option<String> {
         match &self.source {
             NumberSource::Sql(sql) => Some(substitute_days(sql, from_day, to_day)),
@@ -91,7 +91,7 @@ impl Measurement {
         }
     }
 
-    /// Returns the value of a figure over weeks, or `None` if no week has it or the source is a statement.
+    /// Returns the aggregate of a figure over weeks, or `None` if no week has a value or the source is an SQL statement.
     pub fn aggregate<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
         let value = |week: &WeekFigures| match &self.source {
             NumberSource::Cash => Some(week.cash),
@@ -107,7 +107,7 @@ impl Measurement {
         }
     }
 
-    /// Returns whether the source is a statement.
+    /// Returns whether the source is an SQL statement, which needs the database.
     pub fn needs_database(&self) -> bool {
         matches!(self.source, NumberSource::Sql(_))
     }

@@ -1,7 +1,8 @@
 //! Lessons: their definition, and the recorded progress of a student (docs/lessons/authors-guide.md).
 //!
-//! A lesson has parts. Each part is a separate company that is recorded as a run. A part has steps of some weeks, with a
-//! question before they are simulated, goals, and hints. Lines of kind `lesson` record the progress of a student.
+//! A lesson has parts. Each part is a separate company that is recorded as a run. A part has steps of one or more
+//! weeks. A step has goals, hints, and optionally a question before it is simulated. Lines of kind `lesson` record the
+//! progress of a student.
 
 mod completion;
 mod definition;

@@ -8,16 +8,16 @@ use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
 use crate::trajectory::{Line, Record};
 use novamind_tools::{Rejection, ToolId};
 
-/// A lesson in play, with its recorded events.
+/// The state of a lesson in a run: the current part and the recorded events.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonProgress {
-    /// The lesson.
+    /// Lesson that the student plays.
     pub lesson: Arc<Lesson>,
     /// Part of this run, from 0.
     pub part: usize,
-    /// Whether goals and pitfalls are judged.
+    /// Whether goals and pitfalls are checked in this run.
     pub is_judged: bool,
-    /// Events in order, each with its day.
+    /// Lesson events in the order of recording, each with its day.
     pub events: Vec<(u32, LessonNote)>,
 }
 
@@ -28,26 +28,26 @@ impl LessonPart {
         self.start_weeks == 0 && self.start.is_empty() && !self.steps.iter().any(is_set)
     }
 
-    /// Returns the weeks from the first day of the company to the end of the last step.
+    /// Returns the number of weeks from day 0 to the end of the last step.
     pub fn weeks(&self) -> u32 {
         self.start_weeks + self.steps.iter().map(|step| step.weeks).sum::<u32>()
     }
 
-    /// Returns the weeks that have passed at the start and at the end of a step, from 0.
+    /// Returns the number of simulated weeks at the start and at the end of a step. Steps are counted from 0.
     pub fn step_weeks(&self, step: usize) -> (u32, u32) {
         let before: u32 = self.steps.iter().take(step).map(|lesson_step| lesson_step.weeks).sum();
         let begin = self.start_weeks + before;
         (begin, begin + self.steps.get(step).map_or(0, |lesson_step| lesson_step.weeks))
     }
 
-    /// Returns the step of the week after `weeks` weeks, or `None` if all steps are over.
+    /// Returns the index of the step that follows `weeks` simulated weeks, or `None` if all steps are over.
     pub fn step_after(&self, weeks: u32) -> Option<usize> {
         (0..self.steps.len()).find(|step| weeks < self.step_weeks(*step).1)
     }
 }
 
 impl LessonProgress {
-    /// Reads the progress from the lines of a run.
+    /// Builds the progress from the lines of a run.
     pub fn from_lines<'a>(
         lesson: Arc<Lesson>,
         part: usize,
@@ -65,17 +65,17 @@ impl LessonProgress {
         }
     }
 
-    /// Returns the part of this run.
+    /// Returns the lesson part that this run plays.
     pub fn current_part(&self) -> &LessonPart {
         &self.lesson.plan.parts[self.part]
     }
 
-    /// Returns the parts of the program that the student can use.
+    /// Returns the tools and screens that the student can use.
     pub fn access(&self) -> &LessonAccess {
         &self.lesson.plan.access
     }
 
-    /// Returns a step of the part, from 0.
+    /// Returns a step of the current part. Steps are counted from 0.
     pub fn step(&self, step: usize) -> Option<&LessonStep> {
         self.current_part().steps.get(step)
     }
@@ -88,33 +88,37 @@ impl LessonProgress {
     /// Rejects a tool that the lesson does not offer.
     ///
     /// # Errors
-    /// `not_in_this_lesson`.
+    /// The rejection `not_in_this_lesson`.
     pub fn check_tool(&self, tool: ToolId) -> Result<(), Rejection> {
         if self.current_part().has_automatic_capacity() && tool == ToolId::SetCapacityTier {
-            let message = "capacity follows usage by itself in this lesson";
+            let message = "the capacity tier follows usage automatically in this lesson";
             return Err(Rejection::new("not_in_this_lesson", message));
         }
         match &self.lesson.plan.access.tools {
             Some(tools) if !tools.contains(&tool) => {
                 let known: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
-                let message = format!("{tool} is not in this lesson; it has {}", known.join(", "));
+                let message = format!(
+                    "{tool} is not available in this lesson; the available tools are {}",
+                    known.join(", ")
+                );
                 Err(Rejection::new("not_in_this_lesson", message))
             }
             _ => Ok(()),
         }
     }
 
-    /// Rejects the week after `weeks` weeks while the question of its step is unanswered.
+    /// Rejects simulating the next week, after `weeks` weeks, if the question of its step is unanswered.
     ///
     /// # Errors
-    /// `guess_first`.
+    /// The rejection `guess_first`.
     pub fn check_guess_submitted(&self, weeks: u32) -> Result<(), Rejection> {
         let step = self.current_part().step_after(weeks).filter(|step| self.awaits_guess(*step));
         let guess = step.and_then(|step| self.step(step)).and_then(|step| step.guess.as_ref());
         match guess {
-            Some(guess) => {
-                Err(Rejection::new("guess_first", format!("first your guess: {}", guess.question)))
-            }
+            Some(guess) => Err(Rejection::new(
+                "guess_first",
+                format!("answer the question of this step first: {}", guess.question),
+            )),
             None => Ok(()),
         }
     }
@@ -130,22 +134,22 @@ impl LessonProgress {
         self.last_event(LessonEvent::Begun, step).is_some()
     }
 
-    /// Returns the last step that has started, or the first one.
+    /// Returns the index of the last step that has started, or 0 if no step has started.
     pub fn last_started_step(&self) -> usize {
         (0..self.current_part().steps.len()).rev().find(|step| self.has_started(*step)).unwrap_or(0)
     }
 
-    /// Returns the guess of a step; for choices the number of the choice, from 1.
+    /// Returns the student's guess for a step. For a choice, this is the number of the choice, from 1.
     pub fn guess(&self, step: usize) -> Option<f64> {
         self.last_event(LessonEvent::Guess, step)?.value
     }
 
-    /// Returns the outcome of a guess, and for choices whether the guess was correct.
+    /// Returns the recorded outcome of the guess of a step, if the outcome was measured.
     pub fn outcome(&self, step: usize) -> Option<&LessonNote> {
         self.last_event(LessonEvent::Outcome, step)
     }
 
-    /// Returns whether the guess of a step is missing.
+    /// Returns whether a step has a question that the student has not answered.
     pub fn awaits_guess(&self, step: usize) -> bool {
         self.step(step).is_some_and(|lesson_step| lesson_step.guess.is_some()) && self.guess(step).is_none()
     }
@@ -155,12 +159,12 @@ impl LessonProgress {
         self.events_of(LessonEvent::Hint, step).count()
     }
 
-    /// Returns the results of the goals of a step, in order; empty before the step is over.
+    /// Returns the goal results of a step, in order. The list is empty before the step is over.
     pub fn goal_results(&self, step: usize) -> Vec<&LessonNote> {
         self.events_of(LessonEvent::Goal, step).collect()
     }
 
-    /// Returns whether every goal of every step was reached.
+    /// Returns whether the student reached every goal of every step.
     pub fn has_reached_all(&self) -> bool {
         let wanted: usize = self.current_part().steps.iter().map(|step| step.goals.len()).sum();
         let reached =
@@ -168,13 +172,13 @@ impl LessonProgress {
         self.events.iter().filter(reached).count() == wanted
     }
 
-    /// Returns the names of the triggered pitfalls, in order.
+    /// Returns the names of the triggered pitfalls, in the order in which they were triggered.
     pub fn met_pitfalls(&self) -> Vec<&str> {
         let pitfalls = self.events.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
         pitfalls.filter_map(|(_, note)| note.name.as_deref()).collect()
     }
 
-    /// Returns the choices of a guess, or `None` for other questions.
+    /// Returns the choices of a step's question, or `None` if the question has no choices.
     pub fn choices(&self, step: usize) -> Option<&[String]> {
         match &self.step(step)?.guess.as_ref()?.form {
             GuessForm::Choice { choices, .. } => Some(choices),

@@ -1,4 +1,4 @@
-//! Consistency checks of a lesson.
+//! Consistency checks of a lesson plan and its texts.
 
 use std::collections::BTreeSet;
 
@@ -6,9 +6,9 @@ use super::definition::{LessonPart, MeasuredFigure, ReferencePlay, ScheduledCall
 use super::lesson_file::Lesson;
 use crate::folder::configuration::Configuration;
 
-/// A defect of a lesson.
+/// A defect of a lesson file.
 pub(super) struct LessonDefect {
-    /// Text in the line at fault.
+    /// Text by which the faulty line is found.
     pub place: String,
     pub key: &'static str,
     pub problem: String,
@@ -46,7 +46,7 @@ pub(super) fn find_defect(lesson: &Lesson) -> Option<LessonDefect> {
             Some(wrong(
                 &format!("name = \"{}\"", far.name),
                 "pitfall.part",
-                format!("there are {parts} parts"),
+                format!("this part does not exist; number of parts: {parts}"),
             ))
         })
         .or_else(|| {
@@ -74,7 +74,7 @@ fn find_part_defect(part: &LessonPart) -> Option<LessonDefect> {
         place: format!("week = {}", early.week),
         key: "start.week",
         problem: format!(
-            "the start has {} weeks; calls in later weeks belong to the student",
+            "the start has {} weeks; remove calls in later weeks, which the student plays",
             part.start_weeks
         ),
     })
@@ -101,8 +101,8 @@ fn find_figure_defect(lesson: &Lesson) -> Option<LessonDefect> {
     for measured_figure in &lesson.plan.measured {
         let part = lesson.plan.parts.get(measured_figure.part);
         let problem = match part {
-            _ if !names.insert(&measured_figure.name) => "another figure has this name".to_owned(),
-            None => format!("there are {} parts", lesson.plan.parts.len()),
+            _ if !names.insert(&measured_figure.name) => "another measured figure has this name".to_owned(),
+            None => format!("this part does not exist; number of parts: {}", lesson.plan.parts.len()),
             Some(part) if measured_figure.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
                 format!("the part has weeks 1 to {}", part.weeks())
             }
@@ -120,7 +120,7 @@ fn find_figure_defect(lesson: &Lesson) -> Option<LessonDefect> {
     None
 }
 
-/// Returns the error of a figure's own scenario and parameters.
+/// Returns the error in the scenario or parameters of a measured figure, if any.
 fn figure_world_error(part: &LessonPart, measured_figure: &MeasuredFigure) -> Option<String> {
     if measured_figure.scenario.is_none() && measured_figure.parameters.is_empty() {
         return None;
@@ -135,7 +135,7 @@ fn figure_world_error(part: &LessonPart, measured_figure: &MeasuredFigure) -> Op
         .map(|error| error.to_string())
 }
 
-/// Returns the first name in braces without a measured figure.
+/// Returns the first placeholder that names no measured figure.
 fn find_unknown_placeholder(lesson: &Lesson) -> Option<LessonDefect> {
     let steps = lesson.plan.parts.iter().flat_map(|part| &part.steps);
     let texts = steps.flat_map(|step| step.hints.iter().chain([&step.text]));

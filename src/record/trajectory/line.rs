@@ -1,4 +1,4 @@
-//! Lines of a trajectory: frame, event and sum.
+//! Lines of a trajectory. A line consists of frame fields, an event and a checksum.
 
 use std::borrow::Cow;
 use std::io::{BufRead, BufReader};
@@ -13,24 +13,24 @@ use crate::files::open_regular_file;
 use crate::trajectory::CHAIN_BROKEN_MESSAGE;
 use novamind_database::ProjectionPosition;
 
-/// A parsed line.
+/// A parsed line of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Number, from 0.
+    /// Line number, from 0.
     pub seq: u64,
-    /// Day of the run.
+    /// Day of the run on which the line was written.
     pub day: u32,
-    /// Moment of writing, RFC 3339.
+    /// Moment at which the line was written, RFC 3339.
     pub at: String,
-    /// Event.
+    /// Event that the line records.
     pub record: Record,
     /// Hash of the line.
     pub hash: String,
-    /// Bytes in the file.
+    /// Bytes of the line in the file.
     text: Box<[u8]>,
 }
 
-/// Fields that every line has.
+/// Frame fields, which every line has.
 #[derive(Deserialize)]
 struct Frame<'a> {
     seq: Option<u64>,
@@ -47,7 +47,8 @@ struct Frame<'a> {
 const FRAME_FIELDS: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
 
 impl Line {
-    /// Parses and checks a line. Lines of the first builds have no sums; a first line declares itself whether it has one.
+    /// Parses and checks a line. Lines of the first builds have no sums. The first line of a run declares whether its
+    /// lines have sums.
     pub(super) fn parse(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
         let unreadable = |error: serde_json::Error| format!("this is not a line of a trajectory ({error})");
         let frame: Frame<'_> = serde_json::from_slice(text).map_err(unreadable)?;
@@ -64,17 +65,17 @@ impl Line {
         let (Some(kind), Some(at), Some(day)) = (frame.kind, frame.at, frame.day) else {
             return Err("the line has no kind, moment or day".to_owned());
         };
-        let record =
-            Record::parse(&kind, text).map_err(|error| format!("the {kind} cannot be read ({error})"))?;
+        let record = Record::parse(&kind, text)
+            .map_err(|error| format!("the {kind} line cannot be read ({error})"))?;
         Ok(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
-    /// Parses the first line of a file. Returns `None` if it is invalid.
+    /// Parses the first line of a file. Returns `None` if the line is invalid.
     pub fn parse_first(text: &[u8]) -> Option<Line> {
         Line::parse(text, 0, &line_hash(b""), true).ok()
     }
 
-    /// Parses a line without checking its position and sum. Returns `None` if it cannot be parsed.
+    /// Parses a line without checking its position and sum. Returns `None` if the line cannot be parsed.
     pub fn parse_unchecked(text: &[u8]) -> Option<Line> {
         let frame: Frame<'_> = serde_json::from_slice(text).ok()?;
         let (seq, day, at) = (frame.seq.unwrap_or(0), frame.day?, frame.at.unwrap_or_default());
@@ -82,39 +83,39 @@ impl Line {
         Some(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
-    /// Returns number and hash.
+    /// Returns the number and the hash of the line.
     pub fn position(&self) -> ProjectionPosition {
         ProjectionPosition { seq: self.seq, line_hash: self.hash.clone() }
     }
 
-    /// Returns whether the line closes simulated days: a week or single steps.
+    /// Returns whether the line closes simulated days: a week, or single days of a debug run.
     pub fn closes_days(&self) -> bool {
         self.record.closing().is_some()
     }
 
-    /// Returns whether the line declares that every line of the run has a sum.
+    /// Returns whether this first line declares that every line of the run has a checksum.
     pub fn declares_sums(&self) -> bool {
         matches!(&self.record, Record::Start(start) if start.line_sums)
     }
 
-    /// Returns the moment of writing in seconds since 1970, or 0 if it cannot be parsed.
+    /// Returns the moment of the line in seconds since 1970, or 0 if the moment cannot be parsed.
     pub fn at_seconds(&self) -> f64 {
         parse_seconds(&self.at)
     }
 
-    /// Returns the moment of writing in nanoseconds since 1970, or 0 if it cannot be parsed.
+    /// Returns the moment of the line in nanoseconds since 1970, or 0 if the moment cannot be parsed.
     pub fn at_nanoseconds(&self) -> i64 {
         parse_nanoseconds(&self.at)
     }
 
-    /// Returns the fields of the event, including fields that this version does not know.
+    /// Returns the fields of the event, including fields that this version does not define.
     pub fn record_fields(&self) -> Map<String, Value> {
         let mut fields: Map<String, Value> = serde_json::from_slice(&self.text).unwrap_or_default();
         fields.retain(|name, _| !FRAME_FIELDS.contains(&name.as_str()));
         fields
     }
 
-    /// Returns a line that is not in a file.
+    /// Returns a line for tests that is not in a file.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn detached(seq: u64, day: u32, at: &str, record: Record) -> Line {
         let text = Value::Object(record.fields()).to_string().into_bytes();
@@ -127,7 +128,7 @@ pub(super) fn line_hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// Returns the hash of the first line of a file, or `None` if it cannot be read or has no complete line.
+/// Returns the hash of the first line of a file, or `None` if the file cannot be read or has no complete line.
 pub fn first_line_hash(path: &Path) -> Option<String> {
     let mut line = Vec::new();
     BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut line).ok()?;
@@ -137,7 +138,7 @@ pub fn first_line_hash(path: &Path) -> Option<String> {
 const SUM_PREFIX: &[u8] = b",\"sum\":\"";
 const SUM_DIGITS: usize = 16;
 
-/// Appends the sum of a line's bytes as its last field.
+/// Adds a last field to a line: the sum of its other bytes.
 pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     let sum = line_hash(&line);
     line.pop();
@@ -147,7 +148,7 @@ pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     line
 }
 
-/// Returns `None` if a line has no sum, otherwise whether the sum is correct.
+/// Returns whether the sum of a line is correct, or `None` if the line has no sum.
 fn check_sum(line: &[u8]) -> Option<bool> {
     let (bytes, tail) = line.split_at_checked(line.len().checked_sub(SUM_PREFIX.len() + SUM_DIGITS + 2)?)?;
     let sum = tail.strip_prefix(SUM_PREFIX)?.strip_suffix(b"\"}")?;

@@ -1,4 +1,4 @@
-//! The storage of a trajectory.
+//! The storage to which a trajectory is written.
 
 use std::fs::{File, Metadata};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -6,27 +6,26 @@ use std::path::Path;
 
 /// Storage of lines: a file, or in tests a file with a simulated page cache.
 pub trait Medium: Send {
-    /// Appends bytes.
+    /// Appends bytes at the end of the storage.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
-    /// Syncs the appended bytes to the disk. After an error, bytes since the last successful sync may be lost, and a later
-    /// success does not cover them: the kernel may have marked the pages clean.
+    /// Syncs the appended bytes to the disk. After an error, bytes since the last successful sync may be lost even if
+    /// a later sync succeeds, because the kernel may have marked the pages clean.
     fn sync(&self) -> io::Result<()>;
-    /// Truncates to a length in bytes.
+    /// Truncates the storage to a length in bytes.
     fn truncate(&mut self, length: u64) -> io::Result<()>;
-    /// Returns whether this is still the file at a path, with the expected length if it is known.
+    /// Returns whether the file at `path` is still this file and, if `length` is given, has that length.
     fn is_file_at(&self, path: &Path, length: Option<u64>) -> bool;
-    /// Returns the first bytes, even if the file was moved.
+    /// Returns the first `length` bytes, even if the file was moved.
     fn read_prefix(&mut self, length: u64) -> io::Result<Vec<u8>>;
 }
 
-/// A file with the number of its hard links when it was opened.
+/// An open file, and the number of its hard links when it was opened.
 pub(super) struct NamedFile {
     file: File,
     link_count: u64,
 }
 
 impl NamedFile {
-    /// Wraps an open file.
     pub(super) fn from_open_file(file: File) -> io::Result<NamedFile> {
         let names = count_links(&file.metadata()?);
         Ok(NamedFile { file, link_count: names })
@@ -63,7 +62,7 @@ impl Medium for NamedFile {
     }
 }
 
-/// Returns the number of hard links: a new link is another way to change the file.
+/// Returns the number of hard links. Through a new link, another program could change the file.
 #[cfg(unix)]
 fn count_links(file: &Metadata) -> u64 {
     use std::os::unix::fs::MetadataExt;
@@ -81,7 +80,7 @@ fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// On other systems an open file can neither be moved nor removed.
+/// Compares only lengths, because on other systems an open file can neither be moved nor removed.
 #[cfg(not(unix))]
 fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     one.len() == other.len()

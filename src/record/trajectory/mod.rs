@@ -1,7 +1,8 @@
 //! The trajectory of a run, `trajectory.jsonl`: one line per event (docs/formats/trajectory.md).
 //!
-//! Lines are appended and never changed. Each has the hash of the previous line and ends with its own sum, which reveals
-//! cut, changed and inserted bytes in every line. A line without its line feed was never confirmed and is dropped.
+//! Lines are appended and never changed. Each line has the hash of the previous line and ends with a checksum of the
+//! line. The checksum reveals truncated, changed and inserted bytes. A last line without a line feed was never
+//! confirmed and is dropped.
 
 mod line;
 mod medium;
@@ -28,21 +29,21 @@ use line::line_hash;
 use novamind_database::ProjectionPosition;
 use record::Via;
 
-/// Prefix of the rationale of a policy's week; the name of the policy follows.
+/// Prefix of the rationale of a week that a policy decided; the name of the policy follows.
 const POLICY_RATIONALE_PREFIX: &str = "policy ";
 
-/// Returns the `end` among lines, or `None` for an unfinished run.
+/// Returns the last `end` line, or `None` if the run is unfinished.
 pub fn find_end(lines: &[Line]) -> Option<&Line> {
     lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
 }
 
-/// Returns the rationale of a week that a policy decides.
+/// Returns the rationale for a week that a policy decides.
 pub fn policy_rationale(name: &str) -> String {
     format!("{POLICY_RATIONALE_PREFIX}{name}")
 }
 
-/// Returns the policy that decided all weeks among lines, according to their rationales, or `None` without such a policy or
-/// without weeks.
+/// Returns the name of the policy that decided all weeks in `lines`, according to their rationales. Returns `None` if
+/// there are no weeks, or if one of them was decided otherwise.
 pub fn find_policy(lines: &[Line]) -> Option<&str> {
     let mut weeks = lines.iter().filter_map(|line| match &line.record {
         Record::Advance(week) => Some(week),
@@ -57,18 +58,19 @@ pub fn find_policy(lines: &[Line]) -> Option<&str> {
 /// A parsed trajectory.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trajectory {
-    /// Lines.
+    /// Lines, in the order of the file.
     pub lines: Vec<Line>,
-    /// Length of the lines in the file, in bytes.
+    /// Total length of the complete lines in the file, in bytes.
     pub length: u64,
-    /// Bytes after the last complete line, which were never confirmed.
+    /// Number of bytes after the last complete line, which were never confirmed.
     pub unfinished_bytes: usize,
-    /// Position that the first line continues, if the file continues another one.
+    /// Position of the last line of the previous file, if this file continues another file.
     continued_position: Option<ProjectionPosition>,
 }
 
 impl Trajectory {
-    /// Reads and checks a file: every line must be valid JSON with the correct number and the hash of the previous line.
+    /// Reads a trajectory file and checks that every line is valid JSON, has the correct number, and has the hash of
+    /// the previous line.
     ///
     /// # Errors
     /// The file cannot be read, or a line is damaged; the error names the line and the valid lines before it.
@@ -76,12 +78,12 @@ impl Trajectory {
         Trajectory::from_bytes(path, &read_regular_file(path).map_err(RunError::io(path))?)
     }
 
-    /// Returns the `end`, or `None` for an unfinished run. In format 1, lines can follow it.
+    /// Returns the last `end` line, or `None` if the run is unfinished. In format 1, other lines can follow the `end` line.
     pub fn end_line(&self) -> Option<&Line> {
         find_end(&self.lines)
     }
 
-    /// Parses the bytes of a file as [`Trajectory::parse`] does.
+    /// Parses and checks the bytes of a trajectory file. Converts errors of [`Trajectory::parse`] to [`RunError`].
     ///
     /// # Errors
     /// A line is damaged; the error names the line and the valid lines before it.
@@ -89,16 +91,16 @@ impl Trajectory {
         Trajectory::parse(bytes).map_err(damaged_line_error(path))
     }
 
-    /// Parses bytes as [`Trajectory::parse`] does.
+    /// Parses and checks the bytes of a trajectory.
     ///
     /// # Errors
-    /// Line number from 1, and the problem.
+    /// A line is damaged; returns the line number, from 1, and the problem.
     pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
         let mut trajectory = Trajectory::default();
         trajectory.append_bytes(bytes).map(|()| trajectory)
     }
 
-    /// Parses the bytes of a file that continues another one.
+    /// Parses and checks the bytes of a file that continues another file after the line `last`.
     ///
     /// # Errors
     /// A line is damaged; the error names the line and the valid lines before it.
@@ -112,7 +114,7 @@ impl Trajectory {
         Ok(trajectory)
     }
 
-    /// Returns the number of the next line.
+    /// Returns the number that the next appended line must have.
     pub fn next_seq(&self) -> u64 {
         self.continued_position.as_ref().map_or(0, |last| last.seq + 1) + self.lines.len() as u64
     }
@@ -124,15 +126,15 @@ impl Trajectory {
         self.lines.last().map_or_else(before, |line| line.hash.clone())
     }
 
-    /// Returns whether every line has a sum; true before the first line.
+    /// Returns whether every line must have a sum; true before the first line.
     fn has_sums(&self) -> bool {
         self.continued_position.is_some() || self.lines.first().is_none_or(Line::declares_sums)
     }
 
-    /// Parses further bytes of the file.
+    /// Parses and checks bytes that follow the parsed bytes in the file.
     ///
     /// # Errors
-    /// Line number from 1, and the problem. The lines before it are kept.
+    /// A line is damaged; returns the line number, from 1, and the problem. The lines before the damaged line are kept.
     pub fn append_bytes(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
         let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
@@ -148,24 +150,24 @@ impl Trajectory {
     }
 }
 
-/// Returns a function that converts a damaged line of a file to an error.
+/// Returns a function that converts the number and problem of a damaged line to an error.
 pub fn damaged_line_error(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
     move |(line, problem)| RunError::Damaged {
         path: path.to_owned(),
         line,
         remedy: match line.saturating_sub(if problem == CHAIN_BROKEN_MESSAGE { 2 } else { 1 }) {
             0 => "There are no valid lines before it".to_owned(),
-            good => format!("Lines 1 to {good} are good; nothing was changed{RECOVERY_HINT}"),
+            good => format!("Lines 1 to {good} are valid; nothing was changed{RECOVERY_HINT}"),
         },
         problem,
     }
 }
 
-/// Message for a line that has a correct sum but not the hash of the previous line.
+/// Message for a line that has a correct sum but a different hash than the previous line.
 pub const CHAIN_BROKEN_MESSAGE: &str =
-    "the line does not have the hash of the previous line: one of the two was changed";
+    "the line does not have the hash of the previous line: one of these two lines was changed";
 
-/// Hint for recovering the lines before a damaged one.
+/// Hint to recover the lines before a damaged line.
 pub const RECOVERY_HINT: &str = ": `novamind runs recover` creates a branch from them";
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A test file with a page cache like that of a kernel: a failed sync marks unwritten pages clean, and the next sync
+//! A test file that simulates the page cache of a kernel: a failed sync marks unwritten pages clean, and the next sync
 //! succeeds.
 
 use std::io;
@@ -8,26 +8,25 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::medium::Medium;
 
-/// The file; clones share it.
+/// A test file in memory; clones share its content.
 #[derive(Clone)]
 pub struct PageCache(Arc<Mutex<CachedBytes>>);
 
 #[derive(Default)]
 struct CachedBytes {
-    /// Bytes that survive a power cut.
+    /// Content of the disk, which survives a power cut.
     disk: Vec<u8>,
-    /// Bytes that programs read.
+    /// Content of the page cache, which programs read.
     cache: Vec<u8>,
-    /// Bytes of the cache that the next successful sync writes.
+    /// Ranges of the cache that the next successful sync writes to the disk.
     dirty: Vec<Range<usize>>,
-    /// Number of next syncs that fail.
+    /// Number of upcoming syncs that fail.
     failing_syncs: u32,
-    /// Whether the disk is full.
     is_full: bool,
 }
 
 impl PageCache {
-    /// Returns a file with synced bytes.
+    /// Returns a file whose content is already synced.
     pub fn with_synced_bytes(bytes: Vec<u8>) -> PageCache {
         PageCache(Arc::new(Mutex::new(CachedBytes {
             disk: bytes.clone(),
@@ -36,7 +35,7 @@ impl PageCache {
         })))
     }
 
-    /// Lets the next `count` syncs fail.
+    /// Makes the next `count` syncs fail.
     pub fn fail_next_syncs(&self, count: u32) {
         self.pages().failing_syncs = count;
     }
@@ -46,12 +45,12 @@ impl PageCache {
         self.pages().is_full = is_full;
     }
 
-    /// Returns the bytes that survive a power cut.
+    /// Returns the content of the file after a power cut.
     pub fn bytes_after_power_cut(&self) -> Vec<u8> {
         self.pages().disk.clone()
     }
 
-    /// Returns the bytes that survive if only the program is killed.
+    /// Returns the content of the file after the program is killed without a power cut.
     pub fn bytes_after_kill(&self) -> Vec<u8> {
         self.pages().cache.clone()
     }
@@ -78,7 +77,7 @@ impl Medium for PageCache {
         if pages.failing_syncs > 0 {
             pages.failing_syncs -= 1;
             pages.dirty.clear();
-            return Err(io::Error::other("the disk did not take the pages"));
+            return Err(io::Error::other("the disk did not accept the pages"));
         }
         pages.disk.resize(pages.cache.len(), 0);
         for range in pages.dirty.drain(..) {

@@ -1,7 +1,7 @@
 //! An append-only file that tracks which bytes survive a power cut.
 //!
-//! After a failed sync the kernel may mark pages clean that it never wrote. A later sync then succeeds without covering
-//! them. So bytes stay in memory until a sync succeeds, and are written again after a failed one.
+//! After a failed sync, the kernel may mark pages clean that it never wrote. A later sync then succeeds without
+//! writing these pages. Therefore bytes stay in memory until a sync succeeds, and are rewritten after a failed sync.
 
 use std::io;
 use std::path::Path;
@@ -9,35 +9,34 @@ use std::path::Path;
 use super::medium::Medium;
 use super::writer::Durability;
 
-/// A file of `synced` bytes, which survive a power cut, followed by `unsynced`.
+/// A file that consists of `synced` bytes, which survive a power cut, and the bytes of `unsynced`.
 pub(super) struct SyncedFile {
     medium: Box<dyn Medium>,
     /// Length of the prefix that a successful sync covers.
     synced: u64,
-    /// Accepted bytes after it.
+    /// Accepted bytes after the synced prefix.
     unsynced: Vec<u8>,
-    /// Whether the content after `synced` is unknown. It must be rewritten before more bytes are accepted.
+    /// Whether the content after `synced` is unknown. If so, `unsynced` must be rewritten before more bytes are accepted.
     needs_rewrite: bool,
 }
 
 impl SyncedFile {
-    /// Wraps a file with `synced` synced bytes.
     pub fn new(medium: Box<dyn Medium>, synced: u64) -> SyncedFile {
         SyncedFile { medium, synced, unsynced: Vec::new(), needs_rewrite: false }
     }
 
-    /// Returns whether this is still the unchanged file at a path.
+    /// Returns whether the file at `path` is still this file and was not changed by another program.
     pub fn is_file_at(&self, path: &Path) -> bool {
         let known_length = (!self.needs_rewrite).then_some(self.length());
         self.medium.is_file_at(path, known_length)
     }
 
-    /// Returns whether the file has all accepted bytes.
+    /// Returns whether the file contains all accepted bytes.
     pub fn is_complete(&self) -> bool {
         !self.needs_rewrite
     }
 
-    /// Returns whether a power cut may lose accepted bytes.
+    /// Returns whether a power cut could lose accepted bytes.
     pub fn has_unsynced(&self) -> bool {
         !self.unsynced.is_empty()
     }
@@ -56,16 +55,17 @@ impl SyncedFile {
         self.synced + self.unsynced.len() as u64
     }
 
-    /// Appends bytes.
+    /// Appends bytes, and syncs the file if `durability` requires it.
     ///
     /// # Errors
-    /// The file cannot be written. It then does not have the bytes, or is rewritten without them before more are accepted.
+    /// The file cannot be written. Then the file does not contain the new bytes, or is rewritten without these bytes
+    /// before the next append.
     pub fn append(&mut self, bytes: &[u8], durability: Durability) -> io::Result<()> {
         if self.needs_rewrite {
             self.rewrite_unsynced()?;
         }
         if let Err(error) = self.medium.append(bytes) {
-            // No sync has failed, so the bytes accepted before are intact.
+            // No sync has failed, so the previously accepted bytes are intact.
             self.needs_rewrite = self.medium.truncate(self.length()).is_err();
             return Err(error);
         }
@@ -76,12 +76,12 @@ impl SyncedFile {
         }
         self.sync().inspect_err(|_| {
             self.unsynced.truncate(accepted);
-            // If the program is killed now, the file has the accepted bytes only.
+            // If the program is killed now, the file contains only the accepted bytes.
             let _ = self.restore_unsynced();
         })
     }
 
-    /// Syncs the accepted bytes. After a failed sync, writes the bytes since the last successful one again and syncs once more.
+    /// Syncs the accepted bytes. After a failed sync, rewrites the bytes since the last successful sync and syncs once more.
     ///
     /// # Errors
     /// The file cannot be written or synced.
@@ -92,8 +92,8 @@ impl SyncedFile {
         }
     }
 
-    /// Uses the same descriptor, which reports each write-back error since it was opened. A descriptor opened after such an
-    /// error would not report it.
+    /// Uses the same file descriptor, which reports each write-back error since it was opened. A new descriptor would
+    /// not report earlier errors.
     fn rewrite_unsynced(&mut self) -> io::Result<()> {
         self.restore_unsynced()?;
         self.sync_once()
@@ -114,7 +114,7 @@ impl SyncedFile {
         synced
     }
 
-    /// Replaces the medium.
+    /// Replaces the medium in tests.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn replace_medium(&mut self, medium: Box<dyn Medium>) {
         self.medium = medium;

@@ -1,4 +1,4 @@
-//! Appending lines to a trajectory, with their durability.
+//! A writer that appends lines to a trajectory with a specified durability.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -18,34 +18,34 @@ use crate::files::{open_regular_file_for_write, read_regular_file};
 use crate::trajectory::Trajectory;
 use novamind_database::ProjectionPosition;
 
-/// When a line must be on the disk.
+/// The point in time by which a line must be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Durability {
-    /// Before the action is confirmed.
+    /// The line must be on the disk before the action is confirmed.
     Synced,
-    /// Together with the next synced line.
+    /// The line may reach the disk together with the next synced line.
     Written,
 }
 
-/// Appends lines to a trajectory.
+/// A writer that appends lines to a trajectory.
 pub struct TrajectoryWriter {
-    /// The file; `None` for a run in memory.
+    /// Trajectory file; `None` for a run in memory.
     file: Option<RefCell<SyncedFile>>,
     path: PathBuf,
-    /// Lines that could not be written yet. They are written before the next line.
+    /// Lines that could not be written yet. These lines are written before the next line.
     backlog: Vec<u8>,
     next_seq: u64,
     last_hash: String,
     /// Moment of the last line.
     last_at: String,
-    /// Why lines are no longer saved.
+    /// Why new lines cannot be saved; `None` if they can be saved.
     loss_reason: Option<String>,
-    /// Path of the copy that was written after the file disappeared.
+    /// Path of the copy of all confirmed lines, which is written if the file is replaced or removed.
     saved_copy: Option<PathBuf>,
 }
 
 impl TrajectoryWriter {
-    /// Returns a trajectory in memory, which keeps number and hash of the last line only.
+    /// Creates a writer for a run in memory, which keeps only the number and hash of the last line.
     pub fn in_memory() -> TrajectoryWriter {
         TrajectoryWriter {
             file: None,
@@ -59,10 +59,10 @@ impl TrajectoryWriter {
         }
     }
 
-    /// Creates a new file and syncs its folder.
+    /// Creates a new trajectory file and syncs its folder.
     ///
     /// # Errors
-    /// The file exists, or cannot be created. The file is removed if its folder cannot be synced.
+    /// The file exists or cannot be created. If the folder cannot be synced, the new file is removed.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
         let file = File::options().create_new(true).read(true).append(true).open(path);
         let file = file.and_then(NamedFile::from_open_file).map_err(RunError::io(path))?;
@@ -74,7 +74,7 @@ impl TrajectoryWriter {
     /// Opens or creates a file whose lines continue the last line of another file.
     ///
     /// # Errors
-    /// The file cannot be read or created, or is damaged.
+    /// The file cannot be read or created, or it is damaged.
     pub fn open_after(path: &Path, last: ProjectionPosition) -> Result<TrajectoryWriter, RunError> {
         match read_regular_file(path) {
             Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::from_bytes_after(path, last, &bytes)?),
@@ -86,8 +86,8 @@ impl TrajectoryWriter {
         }
     }
 
-    /// Continues a parsed file and cuts off its unconfirmed bytes. Syncs the file, because a killed program may have left
-    /// unsynced lines.
+    /// Opens the file of a parsed trajectory for writing and removes unconfirmed bytes at its end. Syncs the file,
+    /// because a killed program may have left unsynced lines.
     ///
     /// # Errors
     /// The file cannot be written or synced.
@@ -106,28 +106,28 @@ impl TrajectoryWriter {
         })
     }
 
-    /// Returns number and hash of the last line.
+    /// Returns the number and hash of the last line.
     pub fn last_position(&self) -> ProjectionPosition {
         ProjectionPosition { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
     }
 
-    /// Returns the moment of the last line; empty before the first.
+    /// Returns the moment of the last line, or an empty string before the first line.
     pub fn last_at(&self) -> &str {
         &self.last_at
     }
 
-    /// Appends a line and returns its moment.
+    /// Appends a line and returns the moment at which it was written.
     ///
     /// # Errors
-    /// The line cannot be written. The file is unchanged then.
+    /// The line cannot be written. In this case, the file is unchanged.
     pub fn append(&mut self, day: u32, record: &Record, durability: Durability) -> Result<String, RunError> {
         self.append_fields(record.kind(), day, record.fields(), durability)
     }
 
-    /// Appends a copy of another line's event and day.
+    /// Appends a line with the event and day of another line.
     ///
     /// # Errors
-    /// As [`TrajectoryWriter::append`].
+    /// The same errors as [`TrajectoryWriter::append`].
     pub fn append_copy(&mut self, line: &Line) -> Result<(), RunError> {
         let fields = line.record_fields();
         self.append_fields(line.record.kind(), line.day, fields, Durability::Written).map(|_| ())
@@ -148,8 +148,8 @@ impl TrajectoryWriter {
         written.map(|()| at)
     }
 
-    /// Appends a line about an irrevocable event. If it cannot be written, it stays in memory and is written before the next
-    /// line.
+    /// Appends a line about an irrevocable event. If the line cannot be written, it stays in memory and is written
+    /// before the next line.
     ///
     /// # Errors
     /// The line cannot be written yet.
@@ -163,7 +163,8 @@ impl TrajectoryWriter {
         written.map_err(|error| self.save_copy_if_replaced(error))
     }
 
-    /// If the file disappeared, writes a copy of all confirmed lines next to its path and adds the copy to the error.
+    /// If the file was replaced or removed, writes a copy of all confirmed lines next to it and adds the path of the
+    /// copy to the error.
     fn save_copy_if_replaced(&mut self, error: RunError) -> RunError {
         let RunError::FileReplaced { path, .. } = error else { return error };
         let aside = self.saved_copy.get_or_insert_with(|| copy_path(&path)).clone();
@@ -172,23 +173,23 @@ impl TrajectoryWriter {
         error
     }
 
-    /// Writes a copy of all confirmed lines. An earlier copy is replaced only by a complete one.
+    /// Writes a copy of all confirmed lines. An earlier copy is replaced only by a complete copy.
     fn write_copy(&mut self, aside: &Path) -> Result<(), String> {
         let Some(file) = &mut self.file else { return Ok(()) };
         let accepted = file.get_mut().accepted_bytes().map_err(RunError::io(&self.path));
         let written = accepted.and_then(|mut bytes| {
             bytes.extend_from_slice(&self.backlog);
-            // The folder may be missing, too.
+            // The folder may have been removed, too.
             create_folder(parent_folder(aside))?;
             write_atomically(aside, &bytes)
         });
         written.map_err(|error| match aside.exists() {
-            true => format!("{error}; {} has an earlier copy", aside.display()),
+            true => format!("{error}; {} contains an earlier copy", aside.display()),
             false => error.to_string(),
         })
     }
 
-    /// Returns why lines are no longer saved, once the writer has noticed.
+    /// Returns why new lines cannot be saved, after the writer has detected the problem.
     pub fn loss_reason(&self) -> Option<&str> {
         self.loss_reason.as_deref()
     }
@@ -225,7 +226,7 @@ impl TrajectoryWriter {
             // Never overwrite lines of another program, and never confirm lines that the user cannot find.
             return Err(RunError::FileReplaced { path: self.path.clone(), saved_copy: Err(String::new()) });
         }
-        // Waiting lines are about irrevocable events.
+        // Lines in the backlog are about irrevocable events and must be synced.
         let durability = if self.backlog.is_empty() { durability } else { Durability::Synced };
         file.append(&[&self.backlog, bytes].concat(), durability).map_err(RunError::io(&self.path))?;
         self.backlog.clear();
@@ -233,7 +234,7 @@ impl TrajectoryWriter {
         Ok(())
     }
 
-    /// Syncs the written lines, even while others wait in memory.
+    /// Syncs the written lines, even while other lines are still in the backlog.
     ///
     /// # Errors
     /// The file cannot be synced.
@@ -242,24 +243,24 @@ impl TrajectoryWriter {
         synced.map_err(RunError::io(&self.path))
     }
 
-    /// Returns whether an accepted line is not synced yet.
+    /// Returns whether a power cut could lose an accepted line.
     pub fn has_unsynced_lines(&self) -> bool {
         self.file.as_ref().is_some_and(|file| file.borrow().has_unsynced() || !self.backlog.is_empty())
     }
 
-    /// Returns whether the file is still at its path and has all accepted lines.
+    /// Returns whether the file is still at its path and contains all accepted lines.
     pub fn is_complete(&self) -> bool {
         let is_whole = |file: &SyncedFile| file.is_file_at(&self.path) && file.is_complete();
         self.backlog.is_empty() && self.file.as_ref().is_none_or(|file| is_whole(&file.borrow()))
     }
 
-    /// Replaces the medium.
+    /// Replaces the medium in tests.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn replace_medium(&mut self, medium: Box<dyn Medium>) {
         self.file.as_mut().expect("a file").get_mut().replace_medium(medium);
     }
 
-    /// Writes and syncs all lines.
+    /// Writes the lines in the backlog and syncs the file.
     ///
     /// # Errors
     /// The file cannot be written or synced.
@@ -268,7 +269,7 @@ impl TrajectoryWriter {
     }
 }
 
-/// Returns the path of the copy next to a trajectory.
+/// Returns the path for a copy of the confirmed lines next to a trajectory.
 fn copy_path(path: &Path) -> PathBuf {
     let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
     path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))

@@ -1,4 +1,4 @@
-//! Diagnoses of advertising: whether it brings enough for its cost.
+//! Diagnoses of advertising that costs too much for its results.
 
 use serde_json::{Map, Value, json};
 
@@ -10,10 +10,10 @@ use novamind_base::formatting::{cents, json_number};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
 
-/// Minimum number of enterprises in four weeks for a missing request to matter.
+/// Minimum number of enterprises that must arrive in four weeks before missing requests are reported.
 const MIN_ENTERPRISES: u32 = 3;
 
-/// Finds enterprise groups that are advertised to but request no offer.
+/// Finds enterprise groups that receive advertising but request no offer.
 pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
     let enterprises = situation.estimates.iter().filter(|estimates| estimates.group.is_enterprise());
@@ -33,7 +33,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
             pluralize(recent.len() as u32, "week"),
             format_money(ads)
         );
-        // The current offers are not known to be insufficient, so only the cost of advertising can be named.
+        // If no deficit of the current offers is known, only the cost of advertising can be reported.
         let (text, proposal, place) = match offers.missing_aspect() {
             missing @ (MissingAspect::Quota | MissingAspect::Quality) => {
                 let (remedy, proposal, place) = offers.remedy(missing, ads * RISK_DAYS)?;
@@ -56,7 +56,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
     unwanted.collect()
 }
 
-/// Finds advertised pairs of channel and group whose cost per lead has risen strongly.
+/// Finds pairs of channel and group whose cost per lead has risen strongly.
 pub(super) fn lead_costs(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     lead_costs_by_pair(situation.groups).iter().filter_map(|pair| expensive_leads(situation, pair)).collect()
 }
@@ -81,13 +81,13 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         text,
         proposal: Some(format!("removing these ads saves {} a day", format_money(ads))),
         target: target_without_ads(situation, group, |other| other == channel),
-        // The additional cost of the same leads.
+        // Additional cost of the leads compared with the earlier cost per lead.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
         is_urgent: false,
     })
 }
 
-/// Describes costs per lead and first bill: `$372 a lead, $410 a first bill`.
+/// Formats the cost per lead and the cost per first bill: `$372 a lead, $410 a first bill`.
 fn describe_window(spell: &AdWindow) -> String {
     let dollars = |value: f64| if value < 100.0 { cents(value) } else { format_money(value) };
     let lead = match spell.cost_per_lead() {

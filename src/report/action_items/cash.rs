@@ -9,10 +9,10 @@ use novamind_session::ModelTier;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 
-/// Weeks of cash below which the need is urgent.
+/// Runway in weeks below which low cash is reported.
 const MIN_RUNWAY_WEEKS: f64 = 8.0;
 
-/// Finds cash that lasts less than eight weeks at the current rate.
+/// Reports a problem if cash lasts less than eight weeks at the current rate.
 pub(super) fn runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let seen = &situation.observation;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < MIN_RUNWAY_WEEKS)?;
@@ -48,11 +48,11 @@ pub(super) fn runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
 
 struct SpendingBudget {
     name: &'static str,
-    /// Dollars a day.
+    /// Current budget, dollars a day.
     dollars: f64,
-    /// Amount that lets cash last eight weeks, dollars a day.
+    /// Reduced budget with which cash lasts eight weeks, dollars a day.
     reduced_dollars: f64,
-    /// Its form with that amount.
+    /// Form of the budget, filled with the reduced amount.
     target: ActionTarget,
 }
 
@@ -105,7 +105,7 @@ fn largest_budget(situation: &DiagnosisContext<'_>) -> SpendingBudget {
     let largest = budgets.into_iter().max_by(|left, right| left.1.total_cmp(&right.1));
     let (name, dollars, place) =
         largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, ActionTarget::Ledger));
-    // Reports the sum in the form, where each cell is rounded down.
+    // Uses the sum of the amounts in the form, because each amount is rounded down.
     let kept = if let ActionTarget::Call(_, arguments) = &place { sum_of_numbers(arguments) } else { 0.0 };
     SpendingBudget { name, dollars, reduced_dollars: kept, target: place }
 }
@@ -150,7 +150,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
     Plan::ALL.into_iter().filter_map(of_plan).collect()
 }
 
-/// Proposes the best model tier that the plan's revenue covers at the same usage, or else a smaller quota.
+/// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a smaller quota.
 fn cheaper_option(
     situation: &DiagnosisContext<'_>,
     plan: Plan,

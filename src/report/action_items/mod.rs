@@ -1,8 +1,8 @@
-//! Problems of the company that need action: a diagnosis from visible data, ranked by the money at risk.
+//! Problems of the company that need action, diagnosed from visible data and ranked by the money at risk.
 //!
-//! Every need names the object, the problem and the amount, and leads to the place for solving it: a call with
-//! proposed arguments, a thread, a group or the ledger. Amounts are proposed if they follow from a formula that the
-//! tools document. Baseline runs get no proposals.
+//! Every action item states the object, the problem and the amount. The item links to a form with proposed arguments,
+//! a thread, a group or the ledger. Amounts are proposed if they follow from a formula that the tools document. Baseline
+//! runs receive no proposals.
 
 mod advertising;
 mod cash;
@@ -21,12 +21,12 @@ use novamind_session::{
 };
 use novamind_tools::ToolId;
 
-/// Kind of problem. Among needs with equal money at risk, the earlier variant comes first.
+/// Kind of problem. Among problems with equal money at risk, the earlier variant is listed first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Problem {
-    /// Cash will not last.
+    /// Cash will be used up within a few weeks.
     Runway,
-    /// Enterprises wait for an answer.
+    /// Threads with enterprises end within a week unless the player answers.
     Threads,
     /// No plan has a price.
     NoPrice,
@@ -36,15 +36,15 @@ pub enum Problem {
     NoLeads,
     /// Leads of a group do not sign up.
     NoSales(Group),
-    /// Individuals on a plan cost more than they pay.
+    /// The individual subscribers of a plan cost more than they pay.
     Margin,
-    /// Usage exceeded capacity.
+    /// Usage exceeded capacity in the last week.
     Overload,
-    /// The service failed.
+    /// The service had outages in the last week.
     Outages,
-    /// Subscribers wait for support.
+    /// Subscribers are waiting for support.
     Backlog,
-    /// Subscribers of a group cancel.
+    /// Far more subscribers of a group than usual cancelled.
     Churn(Group),
     /// Enterprises of a group find no plan with sufficient quality.
     NoRequests(Group),
@@ -55,7 +55,7 @@ pub enum Problem {
 }
 
 impl Problem {
-    /// Returns the ID for programs.
+    /// Returns the ID of the problem in interfaces for programs.
     pub fn id(self) -> &'static str {
         match self {
             Problem::Runway => "runway",
@@ -76,14 +76,14 @@ impl Problem {
     }
 }
 
-/// Where a need can be solved.
+/// The object that a problem links to, where the player can solve it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionTarget {
     /// The form of a tool, filled with these arguments.
     Call(ToolId, Value),
     /// The thread with this number.
     Thread(u32),
-    /// A group.
+    /// The page of a group.
     Group(Group),
     /// The ledger.
     Ledger,
@@ -92,24 +92,24 @@ pub enum ActionTarget {
 /// A problem that needs action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActionItem {
-    /// Kind of problem.
+    /// Kind of this problem.
     pub problem: Problem,
-    /// Description with amounts.
+    /// Description of the problem with amounts.
     pub text: String,
     /// Proposed solution; `None` if nothing is proposed.
     pub proposal: Option<String>,
-    /// Where it can be solved.
+    /// The object where the player can solve the problem.
     pub target: ActionTarget,
     /// Money at risk over the next four weeks, dollars.
     pub at_risk: f64,
-    /// Whether waiting until the next week costs something.
+    /// Whether the company loses money if the player waits another week.
     pub is_urgent: bool,
 }
 
 struct DiagnosisContext<'a> {
     observation: Observation,
     settings: CoreSettings,
-    /// Advertising in dollars a day: total, and by group.
+    /// Total advertising budget, dollars a day.
     daily_ad_spend: f64,
     ads_by_group: ByGroup<f64>,
     weeks: &'a [WeekFigures],
@@ -121,9 +121,9 @@ struct DiagnosisContext<'a> {
     session: &'a Session,
 }
 
-/// Days over which money at risk is counted.
+/// Number of days over which money at risk is computed.
 const RISK_DAYS: f64 = 28.0;
-/// Share of the turnover below which nothing is reported.
+/// Minimum money at risk for a report, as a share of revenue plus costs.
 const MIN_RISK_SHARE: f64 = 0.01;
 const DAYS_PER_MONTH: f64 = 30.0;
 
@@ -157,12 +157,12 @@ impl<'a> DiagnosisContext<'a> {
         self.groups.last()
     }
 
-    /// Returns recurring revenue of the next four weeks, dollars.
+    /// Returns the recurring revenue expected over the next four weeks, dollars.
     fn upcoming_revenue(&self) -> f64 {
         self.last_week().map_or(0.0, |week| week.recurring_revenue) * RISK_DAYS / DAYS_PER_MONTH
     }
 
-    /// Returns the cost of the settings over the next four weeks, dollars.
+    /// Returns the cost of the current settings over the next four weeks, dollars.
     fn upcoming_costs(&self) -> f64 {
         self.observation.pace.committed * RISK_DAYS
     }
@@ -180,7 +180,8 @@ impl<'a> DiagnosisContext<'a> {
     }
 }
 
-/// Returns what needs action, urgent needs first, then by money at risk; empty after the end of the run.
+/// Returns the problems that need action: urgent problems first, then by money at risk. Returns an empty list after
+/// the end of the run.
 pub fn action_items(session: &Session) -> Vec<ActionItem> {
     if session.ended().is_some() {
         return Vec::new();
@@ -200,9 +201,9 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(service::backlog(&situation));
     found.extend(retention::churn_waves(&situation));
     let moved = situation.upcoming_revenue() + situation.upcoming_costs();
-    // Threads and subscribers waiting for an answer are always reported, however small their value.
+    // Threads that wait for an answer are always reported, even if little money is at risk.
     found.retain(|need| need.problem == Problem::Threads || need.at_risk >= MIN_RISK_SHARE * moved);
-    // Skips forms that the lesson has locked.
+    // Excludes problems that link to a tool that the lesson has locked.
     let is_locked =
         |tool: ToolId| session.lesson().is_some_and(|lesson_progress| !lesson_progress.has_tool(tool));
     found.retain(|need| !matches!(need.target, ActionTarget::Call(tool, _) if is_locked(tool)));
@@ -224,7 +225,7 @@ impl ActionItem {
         }
     }
 
-    /// Describes the problem and its proposed solution.
+    /// Describes the problem and the proposed solution.
     pub fn describe(&self) -> String {
         match &self.proposal {
             Some(proposal) => format!("{}; {proposal}", self.text),

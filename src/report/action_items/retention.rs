@@ -1,4 +1,4 @@
-//! Diagnoses of negotiations and churn.
+//! Diagnoses of expiring threads and of churn.
 
 use serde_json::{Map, Value};
 
@@ -10,14 +10,14 @@ use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{Decisions, SettingChange};
 use novamind_tools::ToolId;
 
-/// Minimum number of weekly cancellations for a wave.
+/// Minimum number of weekly cancellations that count as a churn wave.
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
 const BILLING_CYCLE_WEEKS: usize = 4;
-/// Minimum ratio of a wave to the usual churn.
+/// Minimum ratio of a churn wave to the usual churn.
 const WAVE_FACTOR: f64 = 2.0;
-/// Days in which every subscriber is billed once, and so decides.
+/// Number of days in which every subscriber is billed once. Subscribers decide when they are billed.
 const BILLING_DAYS: u32 = 30;
-/// Settings that subscribers judge when they are billed.
+/// Settings that influence whether a subscriber cancels on a billing day.
 const SETTINGS_JUDGED_AT_BILLING: [ToolId; 5] = [
     ToolId::SetPrices,
     ToolId::SetModelTiers,
@@ -26,7 +26,7 @@ const SETTINGS_JUDGED_AT_BILLING: [ToolId; 5] = [
     ToolId::SetAdsStrength,
 ];
 
-/// Finds threads that end within the coming week unless they are answered.
+/// Finds threads that end within the coming week unless the player answers.
 pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let waiting = &situation.observation.waiting;
     let deadline = |days: u32| situation.observation.day + days;
@@ -77,8 +77,8 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     let weeks = situation.groups;
     let there = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
     let left = |at: usize| f64::from(weeks[at][group].left);
-    // Subscribers cancel when billed, a month after signup at the earliest, so cancellations are compared with the
-    // subscribers of four weeks before.
+    // Subscribers cancel on billing days, at the earliest a month after signup. Cancellations are therefore divided by
+    // the number of subscribers four weeks earlier.
     let share = |at: usize| left(at) / there(at - BILLING_CYCLE_WEEKS).max(1.0);
     let last = weeks.len().checked_sub(1)?;
     let before = last.saturating_sub(BILLING_CYCLE_WEEKS).max(BILLING_CYCLE_WEEKS)..last;
@@ -119,7 +119,8 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     })
 }
 
-/// Returns the last change of a setting that subscribers judge, while some of them see it on their first bill since.
+/// Returns the day and changes of the last decision that could explain cancellations: some subscribers received their
+/// first bill after it in the last week.
 fn last_judged_change<'a>(situation: &'a DiagnosisContext<'_>) -> Option<(u32, Vec<&'a SettingChange>)> {
     let recent = |decided: &&Decisions| decided.day + BILLING_DAYS + 7 > situation.observation.day;
     situation.decisions.iter().rev().take_while(recent).find_map(|decided| {
@@ -132,7 +133,7 @@ fn last_judged_change<'a>(situation: &'a DiagnosisContext<'_>) -> Option<(u32, V
     })
 }
 
-/// Returns the form of the first changed setting with its earlier value, if it is a setting by plan.
+/// Returns the form of the first changed setting that has a value for each plan, filled with the earlier values.
 fn restore_target(
     situation: &DiagnosisContext<'_>,
     changes: &[&SettingChange],

@@ -14,14 +14,14 @@ use novamind_tools::ToolId;
 
 const MIN_WEEKLY_LEADS: u32 = 20;
 const LOW_CONVERSION: f64 = 0.1;
-/// Share of the estimated usage that a quota must cover.
+/// Minimum share of the estimated usage that a sufficient quota covers.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
-/// Age in days at which an estimate is old.
+/// Age in days from which an estimate is outdated.
 const OUTDATED_STUDY_DAYS: u32 = 28;
-/// Dollars a day for a first test of a channel.
+/// Proposed budget to test a channel, dollars a day.
 const TRIAL_AD_SPEND: f64 = 50.0;
 
-/// Finds that no plan has a price, or that priced plans have a quota of 0.
+/// Reports a problem if no plan has a price, or if plans with a price have a quota of 0.
 pub(super) fn nothing_on_sale(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let core = &situation.settings;
     let priced: Vec<Plan> = Plan::ALL.into_iter().filter(|plan| core.prices[*plan] > 0.0).collect();
@@ -74,7 +74,8 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
-    // The form contains half of the displayed estimate, not of the middle of its range.
+    // The form contains half of the estimate that the sentence shows. The middle of the displayed range differs from
+    // the estimate.
     let texts: Vec<String> = budgets
         .iter()
         .map(|estimates| {
@@ -96,7 +97,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
     }
 }
 
-/// Finds that no channel is paid and no subscribers bring word of mouth.
+/// Reports a problem if no advertising is paid and no subscribers bring word of mouth.
 pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let lead_count =
         situation.last_week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
@@ -104,7 +105,8 @@ pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     if situation.daily_ad_spend > 0.0 || lead_count > 0 || !silent {
         return None;
     }
-    // Groups are ranked by their fit with the current plans, then with the best model tier, then by budget.
+    // Selects the group with the smallest quality deficit on the current plans, then on the best model tier, then with
+    // the highest budget.
     let group = situation.individuals().min_by(|left, right| {
         let now = |estimates: &Estimates| {
             (estimates.required_quality - best_delivered_quality(situation, estimates.group)).max(0.0)
@@ -135,7 +137,7 @@ pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     })
 }
 
-/// Returns the highest quality that any plan delivers to a group today.
+/// Returns the highest quality that a plan delivers to a group today.
 fn best_delivered_quality(situation: &DiagnosisContext<'_>, group: Group) -> f64 {
     let delivered = |quality: &DeliveredQuality| Plan::ALL.map(|plan| quality.by_plan[plan]);
     situation.quality(group).map_or(0.0, |quality| delivered(quality).into_iter().fold(0.0, f64::max))
@@ -155,11 +157,11 @@ pub(super) enum MissingAspect {
     Price,
     Quota,
     Quality,
-    /// Price, quota and quality each meet the estimates, but customers require more quality at this price.
+    /// Price, quota and quality each meet the estimates, but customers require higher quality at this price.
     Balance,
 }
 
-/// Finds groups of individuals with leads that do not sign up.
+/// Finds groups of individuals whose leads do not sign up.
 pub(super) fn no_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let on_sale = Plan::ALL
         .into_iter()
@@ -205,7 +207,7 @@ pub(super) struct GroupOffers<'a> {
 }
 
 impl<'a> GroupOffers<'a> {
-    /// Returns the offers to a group; `None` if no plan delivers to it.
+    /// Returns the plans as offers to a group, or `None` if the delivered quality is unknown for this group.
     pub(super) fn new(
         situation: &'a DiagnosisContext<'a>,
         estimates: &'a Estimates,
@@ -221,7 +223,7 @@ impl<'a> GroupOffers<'a> {
         self.situation.settings.prices[plan]
     }
 
-    /// Returns the share of an account's estimated usage that the quota covers.
+    /// Returns the share of a customer's estimated usage that the quota of a plan covers.
     fn quota_coverage(&self, plan: Plan) -> f64 {
         (self.situation.settings.quotas[plan].units() / self.estimates.account_usage().max(1e-9)).min(1.0)
     }
@@ -236,15 +238,15 @@ impl<'a> GroupOffers<'a> {
         self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.estimates.budget)
     }
 
-    /// Returns the affordable plan with the fewest deficits; among equals the one with the highest quality, ignoring
-    /// its quota.
+    /// Returns the affordable plan with the fewest deficits. Among equals, the plan with the highest delivered quality
+    /// is preferred.
     fn best_plan(&self) -> Option<Plan> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
         let lacks = |plan: &Plan| {
             u8::from(self.quota_coverage(*plan) < MIN_QUOTA_COVERAGE)
                 + u8::from(quality(plan) < self.estimates.required_quality)
         };
-        // At equal quality, customers choose the cheaper plan.
+        // Customers choose the cheaper of two plans with equal quality.
         let price = |plan: &Plan| self.price(*plan);
         self.affordable_plans().max_by(|left, right| {
             lacks(right)
@@ -254,8 +256,7 @@ impl<'a> GroupOffers<'a> {
         })
     }
 
-    /// Describes the quality of the best plan. Also names a plan with higher quality whose quota does not cover the
-    /// usage.
+    /// Describes the quality of the best plan. Also names a plan with higher quality if its quota does not cover the usage.
     fn describe_best_plan(&self, plan: Plan, delivered: f64) -> String {
         let quality = |plan: Plan| self.quality.by_plan[plan];
         // Screens show the range of the budget, but plans are compared by the point estimate.
@@ -291,7 +292,8 @@ impl<'a> GroupOffers<'a> {
         self.situation.observation.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))
     }
 
-    /// Describes the deficit, a solution and its place. Proposes a new study first if the estimate is old.
+    /// Returns the description of a deficit, a proposed solution and its target. Proposes a new market study first if
+    /// the estimate is outdated.
     pub(super) fn remedy(
         &self,
         missing: MissingAspect,
@@ -306,8 +308,8 @@ impl<'a> GroupOffers<'a> {
         }
     }
 
-    /// Proposes a study that updates estimates older than four weeks, if it costs no more than is at risk. `None` if
-    /// a study is already running.
+    /// Proposes a market study that updates estimates older than four weeks, if its cost does not exceed the money at
+    /// risk. Returns `None` if a study is already running.
     fn renewed_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
         let (estimates, day) = (self.estimates, self.situation.observation.day);
         let is_studied = || {
@@ -394,7 +396,7 @@ impl<'a> GroupOffers<'a> {
                 )?;
                 Some((text, proposal, place))
             }
-            // Customers have not seen an offer that changed today, so last week's leads do not judge it.
+            // Last week's leads did not see an offer that changed today, so their decisions do not apply to this offer.
             MissingAspect::Balance if self.was_changed_today() => None,
             MissingAspect::Balance => {
                 let plan = self.best_plan()?;
@@ -413,7 +415,7 @@ impl<'a> GroupOffers<'a> {
     }
 }
 
-/// Returns the lowest higher model tier that delivers sufficient quality and whose compute the price covers.
+/// Proposes the lowest model tier above the current tier that delivers sufficient quality and whose compute the price covers.
 fn better_model(
     situation: &DiagnosisContext<'_>,
     group: Group,
@@ -424,7 +426,8 @@ fn better_model(
     let models = &situation.terms.models;
     let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     let product = delivered / now.multiplier;
-    // Does not propose a model tier whose compute costs more than the plan earns. Enterprises negotiate their price.
+    // Does not propose a model tier whose compute costs more than the plan earns. Enterprises are excluded because
+    // they negotiate their price.
     let used = situation.estimate(group)?.account_usage().min(situation.settings.quotas[plan].units())
         * DAYS_PER_MONTH;
     let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
@@ -442,8 +445,8 @@ fn better_model(
     ))
 }
 
-/// Proposes a better model tier if one is sufficient and profitable, otherwise development for the group if it costs
-/// no more than is at risk.
+/// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group if
+/// its cost does not exceed the money at risk.
 fn better_quality(
     situation: &DiagnosisContext<'_>,
     group: Group,
@@ -456,7 +459,7 @@ fn better_quality(
     }
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const DEVELOPMENT_DOLLARS: f64 = 5_000.0;
-    // A running project needs only time.
+    // Proposes nothing if the group already receives this budget: the higher quality then only takes time.
     let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
     if spend.get(&group).is_some_and(|spend| *spend >= DEVELOPMENT_DOLLARS) {
         return None;

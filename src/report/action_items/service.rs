@@ -10,16 +10,16 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{CapacityTier, SettingId};
 use novamind_tools::ToolId;
 
-/// Weeks ahead in which capacity must be sufficient.
+/// Number of coming weeks for which capacity must be sufficient.
 const CAPACITY_HORIZON_WEEKS: f64 = 2.0;
-/// Share of days with an outage at which operations are too low.
+/// Highest share of days with an outage that is not reported.
 const MAX_OUTAGE_SHARE: f64 = 0.01;
-/// Acceptable share of subscribers waiting for support.
+/// Highest share of subscribers waiting for support that is not reported.
 const MAX_BACKLOG_SHARE: f64 = 0.02;
-/// Days in which a backlog should be cleared.
+/// Number of days in which the proposed operations clear the backlog.
 const DAYS_TO_CLEAR: f64 = 7.0;
 
-/// Finds usage above capacity, or soon above it.
+/// Reports a problem if usage exceeds capacity or will soon exceed it.
 pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week()?;
     let tiers = &situation.terms.capacities;
@@ -28,7 +28,7 @@ pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     if busiest > now.units {
         return Some(overload(situation, week, now));
     }
-    // A tier chosen today has no usage data yet.
+    // No usage has been measured yet for a capacity tier that was chosen today.
     if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
@@ -90,7 +90,7 @@ fn describe_tier_cost(tier: &CapacityTier, now: &CapacityTier) -> String {
     )
 }
 
-/// Finds outages that higher operations spending would reduce. Outages during overload are excluded.
+/// Reports outages that higher operations spending would reduce. Outages during overload are excluded.
 pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week().filter(|week| week.outage && week.overload_peak == 0.0)?;
     let operations = situation.settings.operations;
@@ -99,7 +99,7 @@ pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     if now < MAX_OUTAGE_SHARE {
         return None;
     }
-    // The smallest round amount that halves the frequency of outages.
+    // Selects the smallest round amount that halves the frequency of outages.
     let more = (1..=200)
         .map(|step| operations + 50.0 * f64::from(step))
         .find(|dollars| share(*dollars) <= now / 2.0)?;
@@ -123,7 +123,7 @@ pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     })
 }
 
-/// Finds subscribers who wait for support for more than a day, beyond what operations can resolve.
+/// Reports a backlog if many subscribers have waited for support for more than a day.
 pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week()?;
     let people = f64::from(week.individual_subscribers.max(1));
@@ -134,7 +134,7 @@ pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     }
     let (base, per_dollar) = situation.terms.issues_solved;
     let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
-    // Waiting subscribers open no further issue, so more are opened once the backlog is cleared.
+    // Subscribers with an open issue do not open a second one, so more issues are opened after the backlog is cleared.
     let free = (people - f64::from(week.open_issues)).max(1.0);
     let inflow = opened * people / free;
     let needed = inflow + f64::from(week.open_issues) / DAYS_TO_CLEAR;
@@ -148,7 +148,7 @@ pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
         return None;
     }
     let solved = (base + per_dollar * dollars).round();
-    // Uses the rounded numbers that the sentence shows.
+    // The number of days is computed from the rounded numbers that the sentence shows.
     let days = (f64::from(week.open_issues) / (solved - inflow.round()).max(1.0)).ceil();
     Some(ActionItem {
         problem: Problem::Backlog,
@@ -160,7 +160,7 @@ pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
             format_whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day resolve about {}: the {} new issues a day once no one waits, and the backlog in {}",
+            "{} a day resolve about {}: the {} new issues a day without a backlog, and the backlog in {}",
             format_money(dollars),
             format_whole(solved),
             format_whole(inflow),

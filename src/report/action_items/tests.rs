@@ -1,4 +1,4 @@
-//! Tests with one problem per company: it must be the first need, and the healthy company has none.
+//! Tests companies with one problem each, which must be the first action item. A healthy company has no action items.
 
 use serde_json::{Value, json};
 
@@ -49,7 +49,7 @@ fn advance_weeks(session: &mut Session, weeks: usize) {
     }
 }
 
-/// Returns the first need, after checking that the form accepts its proposal.
+/// Returns the first action item, after checking that the tool accepts the proposed arguments.
 #[track_caller]
 fn first_item(session: &Session) -> ActionItem {
     let all = action_items(session);
@@ -311,9 +311,9 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
     let need = assert_first(
         &session,
         Problem::Backlog,
-        &["waiting for support", "once no one waits, and the backlog in "],
+        &["waiting for support", "without a backlog, and the backlog in "],
     );
-    // The number of days follows from the numbers of both sentences.
+    // The proposed number of days must follow from the numbers in both sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
         .replace(',', "")
         .split(|sign: char| !sign.is_ascii_digit())
@@ -482,7 +482,7 @@ fn advertising_to_enterprises_without_requests_is_found() {
 
 #[test]
 fn expensive_leads_name_their_earlier_cost() {
-    // A small market is soon saturated, so the same ads bring fewer leads.
+    // A small market is soon saturated, so the same budget brings fewer leads.
     let ads = json!({"targeted_spend": {"content_marketing": {"S1": 6_000}, "social_media": {"S2": 100}}});
     let new = NewRun {
         seed: Some(3),

@@ -1,5 +1,5 @@
-//! A card that summarizes a run for sharing: curve of cash, turning points, three figures and the scenario. As text
-//! of 80 columns or as a picture.
+//! A card that summarizes a run for sharing, as text of 80 columns or as a picture. It shows the cash curve, turning
+//! points, figures and the scenario.
 
 mod svg;
 mod text;
@@ -21,16 +21,16 @@ struct LabeledFigure {
 #[derive(Debug, Clone, PartialEq)]
 struct Card {
     headline: String,
-    /// Rank among the published results, if comparable.
+    /// Rank among the published results, if the run is comparable.
     rank: Option<String>,
     cash_by_day: Vec<f64>,
     /// Days of the highest and the lowest cash.
     marks: Vec<u32>,
     turning_points: Vec<LabeledFigure>,
     numbers: [LabeledFigure; 3],
-    /// Remark about a language model used as voice.
+    /// Remark about a language model that worded or judged posts.
     voice: Option<&'static str>,
-    /// Scenario, seed, version.
+    /// Scenario, seed and program version of the run.
     source: String,
 }
 

@@ -6,7 +6,7 @@ use super::{Card, LabeledFigure};
 use crate::formatting::format_dollar_tick;
 use novamind_base::formatting::escape_html;
 
-/// Common size of shared pictures.
+/// Common size of pictures that are shared on social media, pixels.
 const SIZE: (f64, f64) = (1200.0, 630.0);
 const MARGIN: f64 = 60.0;
 const CURVE_TOP_AND_BOTTOM: (f64, f64) = (200.0, 400.0);

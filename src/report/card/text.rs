@@ -1,4 +1,4 @@
-//! The card as text: a curve of block characters with figures below.
+//! The card as text: the cash curve in block characters, and the figures below the curve.
 
 use super::{Card, LabeledFigure};
 use crate::formatting::format_dollar_tick;
@@ -8,7 +8,7 @@ const CURVE_ROWS: usize = 10;
 const LABEL_WIDTH: usize = 10;
 const FIGURE_WIDTH: usize = 26;
 
-/// Characters filled from below, by eighths.
+/// Block characters that are filled from the bottom in steps of an eighth.
 const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 pub fn to_text(card: &Card) -> String {
@@ -35,7 +35,7 @@ fn figure_lines(facts: &[LabeledFigure]) -> [String; 2] {
     [row(|fact| &fact.value), row(|fact| &fact.name)]
 }
 
-/// Draws columns from zero to the cash of each day.
+/// Draws columns of block characters from zero to the cash of equally spaced days.
 fn curve_lines(cash: &[f64]) -> Vec<String> {
     let last = cash.len().saturating_sub(1);
     let most = cash.iter().copied().fold(0.0, f64::max);

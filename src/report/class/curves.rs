@@ -1,19 +1,19 @@
-//! Curves of a class and scatter plots of a decision against a figure.
+//! Cash curves of a class, and scatter plots of a figure by a decision.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{ClassView, DEFAULT_FIGURE, RankedStudent};
 use novamind_course::ClassRun;
 
-/// The line or point of a student in a drawing.
+/// The line or the points of a student in a drawing.
 pub struct StudentPoints<'a> {
-    /// Label; `None` for the reference play.
+    /// Label of the student; `None` for the reference play.
     pub label: Option<&'a str>,
-    /// Points.
+    /// Points as horizontal and vertical values.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Returns cash by day in a part, for the reference play and every ranked student.
+/// Returns the cash by day in a part of the lesson, for the reference play and every ranked student.
 pub fn student_curves<'a>(
     view: &'a ClassView<'a>,
     ranking: &[RankedStudent<'a>],
@@ -29,11 +29,11 @@ pub fn student_curves<'a>(
     good.into_iter().chain(students).collect()
 }
 
-/// A decision plotted against a figure.
+/// A scatter plot of a figure by a decision.
 pub struct Scatter<'a> {
-    /// Decision: its mean over the weeks with decisions of the student.
+    /// Name of the decision on the horizontal axis: its mean over the weeks in which the student decided.
     pub decision: String,
-    /// Figure in the last week.
+    /// Name of the figure on the vertical axis: its value in the last week.
     pub figure: String,
     /// One point for each student.
     pub points: Vec<StudentPoints<'a>>,
@@ -47,13 +47,13 @@ fn runs_in_part<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &
     ranking.iter().filter_map(of_part).collect()
 }
 
-/// Returns the decisions of a part in which students differ, most different first. Parts are numbered from 1.
+/// Returns the decisions of a part in which students differ, starting with the largest difference. Parts are numbered from 1.
 pub fn differing_decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     let runs = runs_in_part(ranking, part);
     names_by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
 }
 
-/// Returns the figures of a part in which students differ: cash first, then the most different.
+/// Returns the figures of a part in which students differ: cash first, then by decreasing difference.
 pub fn differing_figures(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
     let runs = runs_in_part(ranking, part);
     let all = names_by_difference(&runs.iter().map(|(_, run)| &run.evidence.figures).collect::<Vec<_>>());
@@ -77,8 +77,8 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
     Some(Scatter { decision, figure, points })
 }
 
-/// Returns the values in which students differ: those with more distinct values first, then those with the larger
-/// range relative to the maximum.
+/// Returns the names of the values in which students differ. Names are sorted by the number of distinct values, then
+/// by the range relative to the maximum.
 fn names_by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|by_name| by_name.get(name).copied().unwrap_or(0.0));

@@ -1,4 +1,4 @@
-//! SVG drawings of a class: all students in grey; the page's style highlights one.
+//! SVG drawings of a class. All students are grey, and the style of the page highlights one student.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub(super) struct PointDrawing<'a> {
     pub title: String,
     /// Label of the horizontal axis.
     pub x_label: String,
-    /// Lines or points.
+    /// Lines or points to draw.
     pub points: &'a [StudentPoints<'a>],
     /// Whether the points of a student are connected.
     pub is_line: bool,
@@ -26,7 +26,7 @@ pub(super) struct PointDrawing<'a> {
     pub has_diagonal: bool,
 }
 
-/// Draws the points. `class_of` returns the CSS class and the title of a student's marks.
+/// Draws the lines or points as SVG. `class_of` returns the CSS class and the title of a student's marks.
 pub(super) fn draw(
     drawing: &PointDrawing<'_>,
     class_of: &dyn Fn(&str) -> Option<(String, String)>,
@@ -79,7 +79,8 @@ pub(super) fn draw(
             row(to)
         );
     }
-    // The reference play covers the other students; the highlighted student covers the reference play.
+    // Later marks cover earlier ones: the reference play covers the students, and the highlighted student covers the
+    // reference play.
     let (good, students): (Vec<_>, Vec<_>) =
         drawing.points.iter().partition(|student_points| student_points.label.is_none());
     for student_points in students.into_iter().chain(good) {

@@ -4,20 +4,20 @@ use super::ClassView;
 use super::curves::StudentPoints;
 use novamind_course::{ClassRun, GuessForm};
 
-/// A question of the lesson with the answers of the class.
+/// A question of the lesson with the guesses of all students.
 pub struct ClassQuestion<'a> {
-    /// Part, numbered from 1.
+    /// Part of the lesson, numbered from 1.
     pub part: u32,
-    /// The question.
+    /// Text of the question.
     pub question: &'a str,
-    /// Choices; empty if the question asks for a number.
+    /// Possible answers; empty if the question asks for a number.
     pub choices: &'a [String],
-    /// Label, guess and outcome of every student who has both.
+    /// Label, guess and outcome of every student with a guess and an outcome.
     pub answers: Vec<(&'a str, f64, f64)>,
 }
 
 impl<'a> ClassQuestion<'a> {
-    /// Returns a point for each student: guess horizontally, outcome vertically.
+    /// Returns a point for each student, with the guess on the horizontal and the outcome on the vertical axis.
     pub fn points(&self) -> Vec<StudentPoints<'a>> {
         let answers = self.answers.iter();
         answers
@@ -29,7 +29,7 @@ impl<'a> ClassQuestion<'a> {
     }
 }
 
-/// Returns the questions of the lesson, in order.
+/// Returns the questions of the lesson with the students' guesses, in order.
 pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let mut all = Vec::new();
@@ -50,7 +50,7 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
     all
 }
 
-/// Returns the first run of each student in a part, because later tries know the outcome.
+/// Returns the first run of each student in a part. Guesses of later tries are ignored because the student knows the outcome.
 fn first_attempts<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
     let of_part: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
@@ -77,13 +77,13 @@ pub(super) fn count_correct_guesses(view: &ClassView<'_>, run: &ClassRun) -> usi
 pub struct PitfallCount<'a> {
     /// Name of the pitfall.
     pub name: &'a str,
-    /// Its explanation.
+    /// Explanation of the pitfall.
     pub explanation: String,
-    /// Number of students who triggered it.
+    /// Number of students who triggered the pitfall.
     pub students: usize,
 }
 
-/// Returns the triggered pitfalls, most frequent first.
+/// Returns the pitfalls that students triggered, most frequent first.
 pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
     let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
     let met_by = |name: &str| {

@@ -1,5 +1,5 @@
-//! The class as a self-contained HTML page for a projector, without scripts. Radio buttons highlight one student, by
-//! mouse or arrow keys.
+//! Results of a class as a self-contained HTML page for a projector, without scripts. The user highlights a student by
+//! radio buttons, with the mouse or the arrow keys.
 
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ use novamind_base::formatting::{escape_html, percent};
 
 const CLASS_STYLE: &str = include_str!("../../../assets/class.css");
 
-/// Returns the page.
+/// Returns the results of a class as an HTML page.
 pub fn class_to_html(view: &ClassView<'_>) -> String {
     let ranking = rank_students(view);
     let lit = view.display.highlighted_student.as_deref().or(ranking.first().map(|first| first.label));
@@ -32,7 +32,7 @@ pub fn class_to_html(view: &ClassView<'_>) -> String {
         pluralize(finished as u32, "run"),
         escape_html(&view.describe_measure())
     );
-    // CSS can only style elements after the buttons, so the buttons come first.
+    // The CSS selectors match only elements after the radio buttons, so the buttons are written first.
     for (at, student) in ranking.iter().enumerate() {
         let checked = if Some(student.label) == lit { " checked=\"checked\"" } else { "" };
         let name = escape_html(&student.name);
@@ -103,7 +103,7 @@ fn part_drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32)
     let curves =
         PointDrawing { title, x_label: "day".to_owned(), points: &all, is_line: true, has_diagonal: false };
     let mut text = format!("<section>\n<h2>{}</h2>\n", escape_html(heading));
-    text += &figure_html("Cash, dollars; the dashed curve is the reference play", &curves, ranking);
+    text += &figure_html("Cash, dollars. The dashed curve is the reference play", &curves, ranking);
     if let Some(scatter) = scatter(view, ranking, part) {
         let caption = format!("Final {} by {}", scatter.figure, scatter.decision);
         let across = format!("{}, mean over the weeks", scatter.decision);
@@ -121,7 +121,7 @@ fn part_drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32)
 }
 
 fn ranking_table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
-    let score = if view.lesson.is_some() { "Of reference" } else { "Cash" };
+    let score = if view.lesson.is_some() { "Share of reference" } else { "Cash" };
     let mut text = format!(
         "<section>\n<h2>Ranking</h2>\n<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\" class=\"number\">Rank</th>\
          <th scope=\"col\">Student</th><th scope=\"col\" class=\"number\">{score}</th><th scope=\"col\" class=\"number\">Tries\

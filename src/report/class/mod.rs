@@ -25,33 +25,33 @@ use novamind_course::{
 
 const DEFAULT_FIGURE: &str = "cash";
 
-/// A class with its submissions and display options.
+/// The results of a class with display options.
 pub struct ClassView<'a> {
-    /// The class.
+    /// The class with its students.
     pub class: &'a Class,
-    /// The lesson, if one was handed out.
+    /// The lesson of the class; `None` if a run was handed out.
     pub lesson: Option<&'a Arc<Lesson>>,
-    /// The submissions.
+    /// The submissions of the class.
     pub collection: &'a ClassCollection,
-    /// Display options.
+    /// Display options of the results.
     pub display: ClassDisplayOptions,
 }
 
-/// Display options of a class.
+/// Display options of the results of a class.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ClassDisplayOptions {
-    /// Shows ranks in place of labels.
+    /// Whether ranks are shown instead of labels.
     pub hides_names: bool,
-    /// Highlighted student; `None` for the first of the ranking.
+    /// Label of the highlighted student; `None` for the first student of the ranking.
     pub highlighted_student: Option<String>,
-    /// Decision of the scatter plot; `None` for the one in which students differ most.
+    /// Decision of the scatter plot; `None` for the decision in which students differ most.
     pub decision: Option<String>,
     /// Figure of the scatter plot; `None` for cash.
     pub figure: Option<String>,
 }
 
 impl<'a> ClassView<'a> {
-    /// Returns a view of a class.
+    /// Creates a view of a class with display options.
     pub fn new(class: &'a CollectedClass, display_options: ClassDisplayOptions) -> ClassView<'a> {
         let CollectedClass { class, lesson, collection } = class;
         ClassView { class, lesson: lesson.as_ref(), collection, display: display_options }
@@ -59,7 +59,7 @@ impl<'a> ClassView<'a> {
 }
 
 impl ClassView<'_> {
-    /// Checks that the selected student, decision and figure exist.
+    /// Checks that the student, the decision and the figure in the display options exist.
     ///
     /// # Errors
     /// Returns an error if no student has the label, or no run has the decision or the figure.
@@ -96,18 +96,18 @@ impl ClassView<'_> {
             .filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished))
     }
 
-    /// Returns the number of parts.
+    /// Returns the number of parts of the lesson, or 1 if a run was handed out.
     pub fn part_count(&self) -> u32 {
         self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32)
     }
 
-    /// Returns the title of a part if there are several. Parts are numbered from 1.
+    /// Returns the title of a part, or `None` if the lesson has only one part. Parts are numbered from 1.
     pub fn part_title(&self, part: u32) -> Option<&str> {
         let lesson_part = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
         (self.part_count() > 1).then_some(lesson_part.title.as_str())
     }
 
-    /// Returns a short title: the lesson or the run.
+    /// Returns the title of the lesson, or a title that names the run that was handed out.
     pub fn title(&self) -> String {
         match (self.lesson, &self.class.run) {
             (Some(lesson), _) => lesson.plan.title.clone(),
@@ -120,7 +120,7 @@ impl ClassView<'_> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
 
-    /// Returns the value of a goal relative to the reference play on the same seed. Steps and goals are numbered from
+    /// Returns the ratio of a goal's value to the reference play on the same seed. Steps and goals are numbered from
     /// 0.
     fn goal_share(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
         let value = |evidence: &Evidence| evidence.steps.get(step)?.goals.get(goal)?.value;
@@ -135,8 +135,7 @@ impl ClassView<'_> {
         all.into_iter().find(|good| (good.part, good.seed) == (of.part, of.seed))
     }
 
-    /// Returns the lesson's measure of a finished run relative to the reference play on the same seed: the last goal,
-    /// or cash if it has none.
+    /// Returns the score of a run: its last goal, or cash without goals, relative to the reference play on the same seed.
     fn score_share(&self, run: &ClassRun) -> Option<f64> {
         let part = self.part_of_run(run)?;
         match ranked_goal(part) {
@@ -149,14 +148,14 @@ impl ClassView<'_> {
         }
     }
 
-    /// Describes the measure of the ranking.
+    /// Describes the measure by which the ranking is sorted.
     pub fn describe_measure(&self) -> String {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();
         };
         let of_part = |part: &LessonPart| match ranked_goal(part) {
             Some((step, goal)) => {
-                // The goal's target, after the colon, is not part of the measure.
+                // The goal's target after the colon does not belong to the name of the measure.
                 let text = lesson.fill_figures(&part.steps[step].goals[goal].text);
                 text.split_once(": ").map_or(text.clone(), |(measure, _)| measure.to_owned())
             }

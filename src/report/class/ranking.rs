@@ -1,4 +1,4 @@
-//! The ranking of a class: by the lesson's measure, relative to the reference play on the same seed.
+//! The ranking of a class by the measure of the lesson, relative to the reference play on the same seed.
 
 use super::ClassView;
 use novamind_course::{ClassRun, RunVerdict};
@@ -6,17 +6,17 @@ use novamind_course::{ClassRun, RunVerdict};
 /// A student in the ranking.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RankedStudent<'a> {
-    /// Label.
+    /// Label of the student.
     pub label: &'a str,
-    /// Displayed name: the rank if labels are hidden.
+    /// Displayed name: the label, or the rank if labels are hidden.
     pub name: String,
     /// Score relative to the reference play, or dollars without a lesson.
     pub score: f64,
-    /// Best finished try of each part; without a lesson, the only run.
+    /// The best finished run of each part of the lesson. Without a lesson, the student's only run.
     pub runs: Vec<&'a ClassRun>,
 }
 
-/// Returns students by score, the best first. Omits students without a counted run.
+/// Returns the students by score, highest score first. Omits students without a run that counts.
 pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     let day = common_day(view);
     let of_student = |label: &'a str| {

@@ -32,23 +32,23 @@ fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
         "part", "", "part of the lesson, numbered from 1; 1 if a run was handed out" => row.run.evidence.part;
         "seed", "", "seed of the run" => row.run.evidence.seed;
         "day", "", "last simulated day" => row.run.evidence.day;
-        "tries", "", "number of the try: the highest of its steps" => row.run.evidence.tries;
+        "tries", "", "highest number of tries of any step" => row.run.evidence.tries;
         "hints", "", "hints used" => row.run.evidence.hints;
         "goals", "", "goals of the part" => row.steps().iter().map(|step| step.goals.len()).sum::<usize>();
         "goals_reached", "", "goals reached" => row.run.evidence.steps.iter().map(goals_met).sum::<usize>();
         "guesses_right", "", "correct guesses among choices" => super::guesses::count_correct_guesses(row.view, row.run);
         "pitfalls", "", "names of the pitfalls triggered, in order" => row.run.evidence.pitfalls.join(" ");
         "cash", "", "final cash, dollars" => format_optional(row.run.evidence.cash.last().map(|(_, cash)| *cash));
-        "of_good", "", "the measure of the lesson relative to the reference play on the same seed: 1 is equal; empty if \
-         there is none" => format_optional(row.view.score_share(row.run));
+        "of_good", "", "score relative to the reference play on the same seed: 1 means equal; empty if there is no \
+         score" => format_optional(row.view.score_share(row.run));
         "verdict", "", "finished, not finished, altered, twice, other lesson, other hand-out or unknown; only finished runs \
          are ranked" => row.run.verdict.label();
     };
     for step in 0..max_steps(view) {
         columns.extend(columns! { row: ClassRow<'a>;
-            format!("guess_{}", step + 1), "", "guess before the step; for choices, the number of the selected one"
+            format!("guess_{}", step + 1), "", "guess before the step; for choices, the number of the selected choice"
                 => format_optional(row.step(step).and_then(|step_evidence| step_evidence.guess));
-            format!("outcome_{}", step + 1), "", "outcome; for choices, the number of the correct one"
+            format!("outcome_{}", step + 1), "", "outcome; for choices, the number of the correct choice"
                 => format_optional(row.step(step).and_then(|evidence| evidence.outcome));
         });
     }
@@ -63,7 +63,7 @@ fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
     columns
 }
 
-/// Returns the descriptions of the columns, with a header.
+/// Returns the descriptions of the columns of `class.csv`, with a header.
 pub fn column_descriptions(view: &ClassView<'_>) -> Vec<Vec<String>> {
     let heading = vec!["column".to_owned(), "meaning".to_owned()];
     let all = columns(view)
@@ -72,7 +72,7 @@ pub fn column_descriptions(view: &ClassView<'_>) -> Vec<Vec<String>> {
     std::iter::once(heading).chain(all).collect()
 }
 
-/// Returns the table, with a header.
+/// Returns the rows of `class.csv`, with a header.
 pub fn rows(view: &ClassView<'_>) -> Vec<Vec<String>> {
     let columns = columns(view);
     let heading = columns.iter().map(|column| column.heading.name.clone().into_owned()).collect();

@@ -1,4 +1,4 @@
-//! Results of a class as text.
+//! Results of a class as text for the terminal.
 
 use super::ClassView;
 use super::curves::{scatter, student_curves};
@@ -9,13 +9,13 @@ use crate::plot::{PlotSeries, plot_report};
 use novamind_base::formatting::{compact_number, escape_control_characters, percent};
 use novamind_course::{ClassFinding, RunVerdict};
 
-/// Describes a finding and what to do about it.
+/// Describes a finding and what the instructor can do about it.
 pub fn describe_finding(finding: &ClassFinding) -> String {
     match finding {
         ClassFinding::Unreadable { label, path, problem } => {
             let who = label.as_ref().map(|label| format!("{label}: ")).unwrap_or_default();
             let place = path.display().to_string();
-            // Most problems name their path.
+            // Most problem texts already contain the path.
             let place = if problem.contains(&place) { String::new() } else { format!("{place}: ") };
             format!("{who}not collected: {place}{problem}")
         }
@@ -60,7 +60,7 @@ pub fn describe_finding(finding: &ClassFinding) -> String {
         }
         ClassFinding::AlteredHandout { label } => {
             format!(
-                "{label}: the handout in the class folder was altered; runs started before that are not affected"
+                "{label}: the handout in the class folder was altered; runs started before the change are not affected"
             )
         }
     }
@@ -75,7 +75,7 @@ pub fn describe_collection(view: &ClassView<'_>) -> String {
         text += &format!("{records} found as duplicates or in an earlier state: the latest counts\n");
     }
     if collection.others > 0 {
-        text += &format!("{} of other origin, ignored\n", pluralize(collection.others, "run"));
+        text += &format!("{} of a different origin ignored\n", pluralize(collection.others, "run"));
     }
     for finding in &collection.findings {
         text += &format!("! {}\n", escape_control_characters(&describe_finding(finding)));
@@ -129,7 +129,7 @@ pub fn class_to_text(view: &ClassView<'_>) -> String {
         }
     }
     match view.display.hides_names {
-        // Findings name students.
+        // Findings are omitted if names are hidden, because findings contain labels of students.
         true => text,
         false => {
             let wrong: String = view
@@ -184,13 +184,13 @@ impl RankedStudent<'_> {
         self.runs.iter().map(|run| run.evidence.hints).sum()
     }
 
-    /// Returns the goals reached and judged: `2/3`.
+    /// Formats the number of reached goals and of judged goals: `2/3`.
     pub fn format_goals(&self) -> String {
         let goals = || self.runs.iter().flat_map(|run| &run.evidence.steps).flat_map(|step| &step.goals);
         format!("{}/{}", goals().filter(|goal| goal.met).count(), goals().count())
     }
 
-    /// Returns the names of the triggered pitfalls.
+    /// Formats the names of the triggered pitfalls.
     pub fn format_pitfalls(&self) -> String {
         let all: Vec<&str> =
             self.runs.iter().flat_map(|run| &run.evidence.pitfalls).map(String::as_str).collect();

@@ -1,4 +1,4 @@
-//! Text for breakpoints: conditions, why a run stopped, and since when a condition is true.
+//! Text for breakpoints: their conditions, the reason why a run stopped, and the day since which a condition is true.
 
 use super::clean_up_numbers;
 use crate::formatting::pluralize;
@@ -21,7 +21,8 @@ pub fn describe_breakpoints(set: &[Breakpoint]) -> Vec<String> {
     }
 }
 
-/// Explains why a run stopped: each breakpoint that became true, with both sides, or that none did.
+/// Explains why a run stopped. Lists each breakpoint that became true with both sides of its condition, or states that
+/// no breakpoint became true.
 pub fn describe_stop(run: &BreakpointRun, day: u32, breakpoints: usize) -> Vec<String> {
     let hit = |hit: &BreakpointHit| {
         let BreakpointHit { breakpoint, state: judged } = hit;
@@ -78,15 +79,15 @@ fn describe_still_true(true_breakpoint: &StillTrueBreakpoint, day: u32) -> Strin
     )
 }
 
-/// Describes since when a condition has its current value, with both sides of the change.
+/// Describes the day since which a condition is true or false, with both sides of the comparison before and after that day.
 pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<String> {
     let ConditionHistory { condition, today, last_true, last_false } = condition_history;
     let is = if today.is_true { "true" } else { "false" };
     let mut lines =
         vec![format!("{condition} is {is} on day {}: {}", today.day, describe_comparison(condition, today))];
     lines.push(match if today.is_true { last_false } else { last_true } {
-        None if today.is_true => "it was true on every day".to_owned(),
-        None => "it was never true".to_owned(),
+        None if today.is_true => "the condition was true on every day".to_owned(),
+        None => "the condition was never true".to_owned(),
         Some(other) => format!(
             "last {} on day {}: {}; {is} since day {}",
             if today.is_true { "false" } else { "true" },
@@ -98,7 +99,7 @@ pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<S
     clean_up_numbers(lines)
 }
 
-/// Lists the days on which a condition became true, marking first values of its figure.
+/// Lists the days on which a condition became true. Marks days on which the condition's figure had its first value.
 pub fn describe_found_days(condition: &Condition, found: &[ConditionState], last_day: u32) -> Vec<String> {
     let days = pluralize(last_day, "day");
     let head = match found.iter().filter(|condition_state| condition_state.becomes_true()).count() {
@@ -112,8 +113,8 @@ pub fn describe_found_days(condition: &Condition, found: &[ConditionState], last
     clean_up_numbers(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
 
-/// Formats both sides: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. If the comparison is false, shows the
-/// opposite sign.
+/// Formats both sides of a comparison: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A false comparison is
+/// shown with the opposite sign.
 fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String {
     let value = |value: Option<f64>, others: &[f64]| {
         value.map_or("no value".to_owned(), |number| format_distinct(number, others))
@@ -156,7 +157,7 @@ fn opposite_symbol(relation: Relation) -> &'static str {
     }
 }
 
-/// Formats a number with as few decimals as distinguish it from others; whole numbers without any.
+/// Formats a number with the fewest decimals that distinguish it from the other numbers. Whole numbers have no decimals.
 fn format_distinct(value: f64, others: &[f64]) -> String {
     if value.fract() == 0.0 && value.abs() < 1e15 {
         return format!("{value:.0}");

@@ -1,5 +1,5 @@
-//! Debug commands that inspect hidden state or change a parameter, with their results, shared by plain mode and the
-//! console (docs/debugging.md).
+//! Debug commands that inspect hidden state or change a parameter, and their results. Plain mode and the console share
+//! these commands (docs/debugging.md).
 
 use serde_json::Value;
 
@@ -17,37 +17,37 @@ const DIFF_USAGE: &str = "specify two days: diff 83 84";
 const SET_USAGE: &str =
     "specify a parameter, its value and optionally a day: set group.S1.c_max_mean 300 from 30";
 
-/// A parsed debug command.
+/// A parsed command that inspects hidden state or changes a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InspectionCommand {
     /// `find CONDITION`: the days on which a condition became true.
     Find(Condition),
-    /// `who FIGURE [DAY]`: the writes to a figure on a day, the last day by default.
+    /// `who FIGURE [DAY]`: the writes to a figure on a day. The default is the last day.
     Who(WriteTarget, Option<u32>),
     /// `diff DAY DAY`: the differences between the ends of two days.
     Diff(u32, u32),
-    /// `set`: lists the changed parameters.
+    /// `set`: the list of changed parameters.
     Parameters,
-    /// `set KEY`: shows a parameter.
+    /// `set KEY`: the value of a parameter.
     Parameter(String),
-    /// `set KEY VALUE [from DAY]`: changes a parameter.
+    /// `set KEY VALUE [from DAY]`: a change of a parameter.
     Set(String, Value, Option<u32>),
 }
 
 /// Result of a debug command.
 #[derive(Debug, Clone)]
 pub enum InspectionOutput {
-    /// The days, and the last simulated day.
+    /// The days on which a condition became true, and the last simulated day.
     Days(Condition, Vec<ConditionState>, u32),
-    /// The writes.
+    /// The writes to a figure on a day.
     Writes(FigureWrites),
-    /// Differences between two days.
+    /// The differences between the ends of two days.
     Difference(u32, u32, DayDifference),
-    /// Changed parameters.
+    /// The parameters that the run has changed.
     Parameters(ChangedParameters),
-    /// A parameter and its value.
+    /// The key of a parameter and its value.
     Parameter(String, Value),
-    /// The change, with the current day.
+    /// The changed parameter, and the current day.
     Set(ChangedParameter, u32),
 }
 
@@ -55,7 +55,7 @@ impl InspectionCommand {
     /// First words of the commands.
     pub const COMMAND_NAMES: [&str; 4] = ["find", "who", "diff", "set"];
 
-    /// Parses a line that starts with one of these words.
+    /// Parses a command line, which starts with one of [`COMMAND_NAMES`].
     ///
     /// # Errors
     /// Returns the problem and its column.
@@ -149,15 +149,15 @@ impl InspectionCommand {
         }
     }
 
-    /// Returns whether the command changes the run.
+    /// Returns whether the command changes a parameter of the run.
     pub fn changes_run(&self) -> bool {
         matches!(self, InspectionCommand::Set(..))
     }
 
-    /// Rejects a command that the run does not permit, whatever its arguments.
+    /// Checks that the run permits a command, without parsing its arguments.
     ///
     /// # Errors
-    /// Returns `not_in_this_mode`.
+    /// Returns `not_in_this_mode` if the command is not permitted.
     pub fn check_permission(word: &str, session: &Session) -> Result<(), Rejection> {
         if word == "set" {
             session.company().debug_parameters().map(drop)
@@ -166,10 +166,10 @@ impl InspectionCommand {
         }
     }
 
-    /// Executes the command. Inspections and changes are recorded.
+    /// Executes the command and records the inspection or the change.
     ///
     /// # Errors
-    /// Returns those of [`Inspector::find_condition_days`], [`Inspector::figure_writes`], [`Inspector::compare_days`],
+    /// Returns the errors of [`Inspector::find_condition_days`], [`Inspector::figure_writes`], [`Inspector::compare_days`],
     /// [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
     ///
     /// [`CompanyView::debug_parameters`]: novamind_session::CompanyView::debug_parameters
@@ -208,7 +208,7 @@ impl InspectionCommand {
 }
 
 impl InspectionOutput {
-    /// Returns the result as lines of text.
+    /// Returns the result of the command as lines of text.
     pub fn describe(&self) -> Vec<String> {
         match self {
             InspectionOutput::Days(condition, found, last) => describe_found_days(condition, found, *last),
@@ -221,7 +221,7 @@ impl InspectionOutput {
     }
 }
 
-/// Shifts the column of a problem to its position in the line.
+/// Converts the column of a parse error from the argument to the whole line.
 fn at_line_column(problem: ConditionParseError, column: usize) -> ParseError {
     ParseError { text: problem.message, column: column + problem.column - 1 }
 }

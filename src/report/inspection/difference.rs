@@ -1,4 +1,4 @@
-//! Text for differences between two days or between two runs on a day.
+//! Text for the differences between two days of a run, or between two runs on one day.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use novamind_base::formatting::grouped_number;
 use novamind_insight::{CustomerDifference, DayDifference, RunDifference};
 
 const MAX_LISTED_FIGURES: usize = 40;
-/// Minimum number of decimals of a figure, and of one of at least a thousand.
+/// Minimum number of decimals of a figure below one thousand.
 const MIN_DECIMALS: usize = 4;
 const MIN_DECIMALS_LARGE: usize = 2;
 /// Maximum number of decimals, used to distinguish close numbers.
@@ -19,7 +19,7 @@ pub fn describe_day_difference(found: &DayDifference, (one, other): (u32, u32)) 
     describe_difference(found, (&format!("day {one}"), &format!("day {other}")), "on")
 }
 
-/// Describes the differences between two named states. `before` is the preposition of the names: `on` or `in`.
+/// Describes the differences between two named states. `before` is the preposition before a name: `on` a day or `in` a run.
 fn describe_difference(found: &DayDifference, names: (&str, &str), before: &str) -> Vec<String> {
     if found.is_empty() {
         return vec!["no differences".to_owned()];
@@ -51,7 +51,7 @@ pub fn describe_run_difference(found: &RunDifference, names: (&str, &str)) -> Ve
     lines
 }
 
-/// Returns the differences as JSON.
+/// Returns the differences between two days as JSON.
 pub fn difference_to_json(found: &DayDifference) -> Value {
     let figure =
         |(name, value, other): &(String, f64, f64)| json!({ "figure": name, "values": [value, other] });
@@ -140,7 +140,7 @@ fn customer_line(customer_difference: &CustomerDifference, names: (&str, &str), 
     format!("  {} {}: {what}", customer_difference.customer, customer_difference.group)
 }
 
-/// Formats a number with as few decimals as distinguish it from another.
+/// Formats a number with the fewest decimals that distinguish it from the other number.
 fn format_distinct(value: f64, other: f64) -> String {
     if value.fract() == 0.0 {
         return grouped_number(value, 0);
@@ -153,7 +153,7 @@ fn format_distinct(value: f64, other: f64) -> String {
     }
 }
 
-/// Formats two cells likewise if they are numbers with a fraction.
+/// Formats two cells with [`format_distinct`] if both cells are numbers with a fraction.
 fn format_distinct_cells(one: &str, other: &str) -> (String, String) {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|value| value.is_finite());
     match (number(one), number(other)) {

@@ -1,4 +1,4 @@
-//! Text for the inspection of an individual: its decisions and their terms.
+//! Text for the inspection of an individual: decisions, and the terms that determine them.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{
@@ -7,13 +7,13 @@ use novamind_insight::{
 use novamind_session::EndCause;
 use novamind_session::identifiers::Plan;
 
-/// Start of the line that lists satisfaction.
+/// Prefix of the line that lists satisfaction values.
 pub const SATISFACTION_PREFIX: &str = "satisfaction:";
 
-/// Interval between listed satisfaction values, days.
+/// Number of days between two listed satisfaction values.
 const SATISFACTION_STEP_DAYS: usize = 7;
 
-/// Describes the headline, curve, plans today and at the last bill, satisfaction and events.
+/// Describes an individual: headline, participation curve, plans today and at the last bill, satisfaction and events.
 pub fn describe_individual(view: &IndividualView) -> Vec<String> {
     let first = &view.signup;
     let arrival = format!("arrived on day {} through {}", first.day, first.source.id());
@@ -43,7 +43,7 @@ pub fn describe_individual(view: &IndividualView) -> Vec<String> {
     clean_up_numbers(lines)
 }
 
-/// Describes the outcome of a day and the terms that would have changed it.
+/// Describes the decision of the individual on a day, and the terms that would have changed the decision.
 fn headline(view: &IndividualView) -> String {
     let Some(individual_day) = view.day_shown() else { return signup_headline(view) };
     let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &individual_day.weighed_decision;
@@ -83,7 +83,10 @@ fn headline(view: &IndividualView) -> String {
 fn describe_retaining_terms(turning: &[DecisiveTerm], view: &IndividualView) -> String {
     let turned = |without: &DecisiveTerm| {
         let (plan, surplus) = without.plan?;
-        Some(format!("without {}, plan {plan} would be, by {surplus:.4}", describe_term(without.term, view)))
+        Some(format!(
+            "without {}, it would be plan {plan}, by {surplus:.4}",
+            describe_term(without.term, view)
+        ))
     };
     match turning.iter().find_map(turned) {
         Some(text) => text,
@@ -195,7 +198,7 @@ fn describe_signup(first: &SignupDecision) -> Vec<String> {
     lines
 }
 
-/// Lists satisfaction every seventh day, back from the inspected day.
+/// Lists satisfaction on the inspected day and on every seventh day before it.
 fn satisfaction_line(view: &IndividualView) -> String {
     let listed = view.days.iter().rev().step_by(SATISFACTION_STEP_DAYS).take(12);
     let mut listed: Vec<String> = listed

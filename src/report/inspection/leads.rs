@@ -1,14 +1,14 @@
-//! Text for the equation of a group's leads.
+//! Text for the equation that determines the leads of a group.
 
 use super::clean_up_numbers;
 use novamind_insight::{LeadEquation, LeadFactor};
 
-/// Returns the index of a factor's line in [`describe_lead_equation`].
+/// Returns the index of the line that [`describe_lead_equation`] writes for a factor.
 pub fn factor_line_index(factor: LeadFactor) -> usize {
     2 + factor as usize
 }
 
-/// Describes the equation of the last day, each factor with its range over all days, and λ with factors held fixed.
+/// Describes the lead equation of the last day, the range of each factor over all days, and λ with the factors in `held` fixed.
 pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
     let Some(lead_equation) = days.last() else { return Vec::new() };
     let mut lines = vec![format!("leads of {} on day {}", lead_equation.group, lead_equation.day)];
@@ -37,14 +37,14 @@ pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)])
         ));
     }
     lines.push(format!(
-        "  p {:.2}: the share of draws around λ that are at least as far from it as {}",
+        "  p {:.2}: the share of draws that are at least as far from λ as {}",
         lead_equation.p_value(),
         lead_equation.actual_leads
     ));
     clean_up_numbers(lines)
 }
 
-/// Formats `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
+/// Formats the lead equation of a day: `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
 fn format_equation(lead_equation: &LeadEquation) -> String {
     let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", lead_equation.factor(factor)));
     let mut sources: Vec<String> =

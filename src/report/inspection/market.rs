@@ -5,7 +5,7 @@ use novamind_insight::{CompetitorState, DriftState, GroupDriftState, NextCompeti
 
 const MAX_LISTED_MOVES: usize = 10;
 
-/// Describes what competitors could copy, their moves so far, and the next move.
+/// Describes the improvements that competitors have not copied yet, their past moves, and their next move.
 pub fn describe_competitors(competitor_state: &CompetitorState) -> Vec<String> {
     let CompetitorState { day, shared_bonus, shared_bank, common_expectation: everyone, .. } =
         competitor_state;
@@ -34,10 +34,10 @@ pub fn describe_competitors(competitor_state: &CompetitorState) -> Vec<String> {
 fn move_lines(competitor_state: &CompetitorState) -> Vec<String> {
     let count = competitor_state.moves.len();
     let mut lines = vec![match count {
-        0 => "  no move so far".to_owned(),
-        1 => "  1 move so far".to_owned(),
-        count if count > MAX_LISTED_MOVES => format!("  {count} moves so far, the last {MAX_LISTED_MOVES}:"),
-        count => format!("  {count} moves so far:"),
+        0 => "  no move yet".to_owned(),
+        1 => "  1 move".to_owned(),
+        count if count > MAX_LISTED_MOVES => format!("  {count} moves, the last {MAX_LISTED_MOVES}:"),
+        count => format!("  {count} moves:"),
     }];
     let rows: Vec<Vec<String>> = competitor_state.moves[count.saturating_sub(MAX_LISTED_MOVES)..]
         .iter()
@@ -70,22 +70,22 @@ fn next_move_lines(next: &NextCompetitorMove, competitor_state: &CompetitorState
     )];
     lines.push(match made {
         Some(made) if made.by_feedback => {
-            format!("  it copied and raised expectations by {:.4}", made.boost)
+            format!("  the move copied quality and raised expectations by {:.4}", made.boost)
         }
-        Some(made) => format!("  the drawn size applied: expectations rose by {:.4}", made.boost),
-        None => format!("  they copy if the bank is above {:.4} on that day", next.copy_threshold()),
+        Some(made) => format!("  the move had its drawn size and raised expectations by {:.4}", made.boost),
+        None => format!("  competitors copy if the bank is above {:.4} on that day", next.copy_threshold()),
     });
     if !next.group_shares.is_empty() {
         let shares = next.group_shares.iter().map(|(group, share)| format!("{group} {:.1} %", share * 100.0));
         lines.push(format!(
-            "  of the targeted banks, if no other group has one by then: {}",
+            "  copied share of targeted banks, if no further group has one: {}",
             shares.collect::<Vec<String>>().join(", ")
         ));
     }
     lines
 }
 
-/// Describes what the market has added to expectations and budgets, and what the next drift adds.
+/// Describes how much competitors and drift have added to expectations and budgets, and how much the next drift adds.
 pub fn describe_drift(drift_state: &DriftState) -> Vec<String> {
     let DriftState { day, common_expectation: everyone, next_common_step: step, next_day, groups } =
         drift_state;
@@ -98,9 +98,9 @@ pub fn describe_drift(drift_state: &DriftState) -> Vec<String> {
             None => "  no further drift before the end of the run".to_owned(),
         },
     ];
-    let mut head = vec!["group", "all groups", "own", "expects more", "pays more, $"];
+    let mut head = vec!["group", "all groups", "own", "expectation", "budget, $"];
     if next_day.is_some() {
-        head.extend(["next drift: expects", "pays, $"]);
+        head.extend(["next expectation", "next budget, $"]);
     }
     let row = |state: &GroupDriftState| {
         let mut row = vec![

@@ -32,10 +32,10 @@ pub use writes::{describe_source, describe_writes};
 use self::number_cleanup::{clean_up_line, clean_up_numbers};
 use crate::formatting::pluralize;
 
-/// Start of the line about the last days of a group.
+/// Prefix of the line that describes the last days of a group.
 pub const RECENT_DAYS_PREFIX: &str = "  end of day, last";
 
-/// Describes the range of a figure over some days; `None` without values.
+/// Describes the range of a figure over the last days. Returns `None` if there are no values.
 fn describe_recent_days(values: impl Iterator<Item = f64> + Clone) -> Option<String> {
     let days = values.clone().count();
     let (least, most) =

@@ -1,16 +1,16 @@
-//! Normalizes numbers in text: no zero has a sign, and no number has more digits than significant.
+//! Normalizes numbers in text: zeros have no sign, and large numbers are written in powers of ten.
 
 use novamind_base::formatting::grouped_number;
 
-/// Number of digits before the point from which powers of ten are used.
+/// Number of digits before the decimal point from which a number is written in powers of ten.
 const MAX_INTEGER_DIGITS: usize = 16;
 
-/// Normalizes the numbers of lines.
+/// Normalizes the numbers in lines of text.
 pub fn clean_up_numbers(lines: Vec<String>) -> Vec<String> {
     lines.into_iter().map(|line| clean_up_line(&line)).collect()
 }
 
-/// Removes the minus sign of zeros, and writes numbers above 1e15 in powers of ten.
+/// Normalizes the numbers in a line: removes the minus sign of zeros, and writes numbers above 1e15 in powers of ten.
 pub fn clean_up_line(text: &str) -> String {
     let mut settled = String::with_capacity(text.len());
     let mut rest = text;
@@ -43,7 +43,7 @@ pub fn clean_up_line(text: &str) -> String {
     settled + rest
 }
 
-/// Writes a number with too many digits before its point in powers of ten.
+/// Writes a number in powers of ten if it has too many digits before the decimal point.
 fn to_scientific(number: &str) -> Option<String> {
     let plain = number.replace(',', "");
     let digits = plain.split('.').next().map_or(0, str::len);

@@ -1,10 +1,10 @@
-//! Text for the quality delivered to a group on each plan.
+//! Text for the quality that each plan delivers to a group.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{DeliveredPlanQuality, QualityEquation, SharedQualityGains};
 use novamind_session::identifiers::Plan;
 
-/// Describes the equation of each plan, the sources of shared quality, and the expectations of the market.
+/// Describes the quality equation of each plan, the sources of shared quality, and the expectations of the market.
 pub fn describe_quality(quality_equation: &QualityEquation) -> Vec<String> {
     let QualityEquation { group, day, base, shared, group_gain: targeted, service_penalty, .. } =
         quality_equation;
@@ -31,7 +31,7 @@ pub fn describe_quality(quality_equation: &QualityEquation) -> Vec<String> {
          + daily noise {noise:.4}"
     ));
     lines.push(format!(
-        "  not copied by competitors: {:.4} of the shared improvements, {:.4} of those for {group}",
+        "  not copied by competitors: {:.4} of the shared improvements, {:.4} of the improvements for {group}",
         quality_equation.shared_bank, quality_equation.group_bank
     ));
     lines.push(format!(

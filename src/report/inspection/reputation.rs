@@ -5,7 +5,7 @@ use novamind_insight::{ChangeThresholds, DepartureEffect, ReputationEquation, Su
 use novamind_session::SpilloverEffect;
 use novamind_session::identifiers::Group;
 
-/// Describes the reputation of a group: before, every term, after, and dropped terms.
+/// Describes how the reputation of a group changed on a day: value before, every applied term, value after, and dropped terms.
 pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<String> {
     let ReputationEquation { group, day, before, after, thresholds: least, .. } = reputation_equation;
     let plain = |name: &str, value: f64| vec![name.to_owned(), format!("{value:.8}")];
@@ -18,7 +18,7 @@ pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<Stri
     ));
     let counted = reputation_equation.spillovers.iter().filter(|spill| spill.counts);
     rows.extend(counted.map(|spill| term_row(&spillover_product(spill), spill.change)));
-    // Rounding errors are not limits.
+    // Ignores rounding errors, which are not the effect of a limit.
     if reputation_equation.bounds.abs() > 1e-12 {
         rows.push(term_row("limits", reputation_equation.bounds));
     }
@@ -32,7 +32,7 @@ pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<Stri
     clean_up_numbers(lines)
 }
 
-/// Formats `spillover: +0.00476883 of S1 × weight 0.4 × 0.3`.
+/// Formats the factors of a spillover: `spillover: +0.00476883 of S1 × weight 0.4 × 0.3`.
 fn spillover_product(spill: &SpilloverEffect) -> String {
     let SpilloverEffect { from, source_change, weight, factor, .. } = spill;
     format!("spillover: {source_change:+.8} of {from} × weight {weight} × {factor}")
@@ -65,12 +65,12 @@ fn describe_contribution(
     }
 }
 
-/// Formats `0.0001`, never `1e-4`.
+/// Formats a small number in decimal notation: `0.0001` instead of `1e-4`.
 pub(super) fn format_small(value: f64) -> String {
     format!("{value}")
 }
 
-/// Lists dropped spillovers, a line for each source.
+/// Lists dropped spillovers, with a line for each source group.
 pub(super) fn describe_dropped_spillovers(
     dropped: &[&SpilloverEffect],
     least: &ChangeThresholds,

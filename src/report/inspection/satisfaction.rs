@@ -3,7 +3,8 @@
 use super::{clean_up_numbers, describe_recent_days, indented_table};
 use novamind_insight::{SatisfactionEquation, SatisfactionTerm};
 
-/// Describes the mean before, each term, the mean after, and the mean at the end of the day.
+/// Describes the mean satisfaction of a group on a day: value before, each term, value after the update, and value at
+/// the end of the day.
 pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Vec<String> {
     let SatisfactionEquation { group, day, weight, departed: left, joined, subscribers, .. } =
         *satisfaction_equation;

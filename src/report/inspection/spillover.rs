@@ -6,46 +6,46 @@ use novamind_insight::Spillover;
 use novamind_session::SpilloverEffect;
 use novamind_session::identifiers::Group;
 
-/// Marks of a heat map, from the smallest share of the largest spillover to the largest.
+/// Marks of a heat map, from the smallest to the largest spillover.
 pub const HEAT_MARKS: [&str; 4] = ["░", "▒", "▓", "█"];
 
-/// The spillover of a day: rows are sources, columns are targets.
+/// The spillovers of a day. Rows are source groups, columns are target groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpilloverMap {
-    /// Heading.
+    /// Heading of the map, with the day.
     pub heading: String,
-    /// Columns: target groups.
+    /// Target groups, one for each column.
     pub targets: Vec<Group>,
-    /// Rows: source groups.
+    /// Rows of the map, one for each source group.
     pub rows: Vec<SpilloverRow>,
-    /// Dropped changes and other notes.
+    /// Notes below the map, for example on dropped changes.
     pub notes: Vec<String>,
 }
 
-/// Effects of a source group.
+/// Effects of one source group on all target groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpilloverRow {
-    /// Source group.
+    /// The source group.
     pub from: Group,
-    /// Change of its own reputation.
+    /// Change of the source group's own reputation.
     pub own_change: String,
     /// Effect on each target.
     pub cells: Vec<SpilloverCell>,
 }
 
-/// Effect of a group on another.
+/// Effect of a source group on a target group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SpilloverCell {
-    /// The source has no weight for the target.
+    /// The source group has no influence on the target group.
     NoWeight,
     /// The effect was too small and was dropped.
     Dropped,
-    /// Change of the target's reputation, and the index of its mark in [`HEAT_MARKS`].
+    /// Change of the target group's reputation, and the index of its mark in [`HEAT_MARKS`].
     Applied(f64, usize),
 }
 
 impl SpilloverMap {
-    /// Returns the map of a day.
+    /// Creates the map from the spillovers of a day.
     pub fn new(spillover: &Spillover) -> SpilloverMap {
         let Spillover { day, known_groups: known, spillovers: spills, .. } = spillover;
         let heading = format!("changes of reputation on day {day}: rows are sources, columns are targets");
@@ -79,7 +79,7 @@ impl SpilloverMap {
 }
 
 impl SpilloverCell {
-    /// Formats the cell: a mark and the change.
+    /// Formats the cell as a mark and the change of reputation.
     pub fn describe(self) -> String {
         match self {
             SpilloverCell::NoWeight => "·".to_owned(),
@@ -127,7 +127,7 @@ fn notes(spillover: &Spillover, sources: &[Group], is_silent: bool) -> Vec<Strin
     lines
 }
 
-/// Returns the spillover of a day as a table in text.
+/// Returns the spillovers of a day as a text table.
 pub fn describe_spillover(spillover: &Spillover) -> Vec<String> {
     let SpilloverMap { heading, targets, rows, notes } = SpilloverMap::new(spillover);
     let mut lines = vec![heading];

@@ -1,4 +1,4 @@
-//! Text for the next random draws of a part.
+//! Text for the next random draws of a part of the simulator.
 
 use super::{clean_up_numbers, indented_table};
 use novamind_insight::{DrawEffect, KeyedDraws, NextDraws};
@@ -6,7 +6,7 @@ use novamind_insight::{DrawEffect, KeyedDraws, NextDraws};
 const MAX_ROW_DRAWS: usize = 8;
 const MAX_LISTED_CUSTOMERS: usize = 12;
 
-/// Lists the streams of the next day, their first draws, and the results.
+/// Lists the random streams of the next day, the first draws of each stream, and the results of the draws.
 pub fn describe_next_draws(next_draws: &NextDraws) -> Vec<String> {
     let NextDraws { part, day, streams, .. } = next_draws;
     let over = if next_draws.is_over { "; the run has ended, so this day is not simulated" } else { "" };
@@ -74,17 +74,17 @@ fn describe_effect(follows: &DrawEffect) -> String {
         DrawEffect::Project { tier, days, gain } => {
             format!("a project of tier {tier} takes {days} days and adds {gain:.4}")
         }
-        DrawEffect::Found(Some(group)) => format!("finds {group}"),
-        DrawEffect::Found(None) => "finds nothing".to_owned(),
+        DrawEffect::Found(Some(group)) => format!("discovers {group}"),
+        DrawEffect::Found(None) => "discovers no group".to_owned(),
         DrawEffect::Surge(Some(surge)) => {
-            format!("a surge: {:.2} times the leads until day {}", surge.multiplier, surge.end_day - 1)
+            format!("a demand surge: {:.2} times the leads until day {}", surge.multiplier, surge.end_day - 1)
         }
-        DrawEffect::Surge(None) => "no surge".to_owned(),
-        DrawEffect::Index { before, after } => format!("the index changes from {before:.2} to {after:.2}"),
+        DrawEffect::Surge(None) => "no demand surge".to_owned(),
+        DrawEffect::Index { before, after } => format!("the PMI changes from {before:.2} to {after:.2}"),
         DrawEffect::CompetitorMove(Some((sampled, u))) => {
-            format!("a move: drawn size {sampled:.4}, or {:.1} % of the shared bank", u * 100.0)
+            format!("a competitor move: drawn size {sampled:.4}, or {:.1} % of the shared bank", u * 100.0)
         }
-        DrawEffect::CompetitorMove(None) => "no move".to_owned(),
+        DrawEffect::CompetitorMove(None) => "no competitor move".to_owned(),
     }
 }
 

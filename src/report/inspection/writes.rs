@@ -6,7 +6,7 @@ use novamind_base::formatting::{cents, grouped_number};
 use novamind_insight::{FigureWrite, FigureWrites, WriteSource, WriteTarget};
 use novamind_session::{EndCause, ReputationCause};
 
-/// Describes the figure before and after the day, and each write with its amount and result.
+/// Describes a figure before and after a day, and each write to the figure with its amount and result.
 pub fn describe_writes(figure_writes: &FigureWrites) -> Vec<String> {
     let FigureWrites { target, day, opening_value: first, closing_value: last, writes } = figure_writes;
     let value = |value: f64| format_value(*target, value);
@@ -25,7 +25,7 @@ pub fn describe_writes(figure_writes: &FigureWrites) -> Vec<String> {
     clean_up_numbers(lines)
 }
 
-/// Names the source of a write: `churn (17)`, `spillover from S1`, `payments`.
+/// Returns the name of the source of a write: `churn (17)`, `spillover from S1`, `payments`.
 pub fn describe_source(write: &FigureWrite) -> String {
     let count = format_whole(write.changes.len() as f64);
     match write.source {
@@ -59,7 +59,7 @@ fn end_cause_name(cause: EndCause) -> &'static str {
     }
 }
 
-/// Describes how the amount was computed, and whether a limit applied.
+/// Describes how the amount of a write was computed, and whether a limit applied.
 fn write_notes(target: WriteTarget, write: &FigureWrite) -> String {
     let how = match write.source {
         WriteSource::Reputation(ReputationCause::Spillover(spill)) => {

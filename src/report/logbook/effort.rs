@@ -1,4 +1,4 @@
-//! Counts of a player's actions between two weeks.
+//! Counts a player's actions between two simulated weeks.
 
 use std::collections::BTreeMap;
 
@@ -7,48 +7,48 @@ use serde::{Serialize, Serializer};
 use novamind_record::trajectory::record::{Activity, DialogOutcome, TextEditOutcome};
 use novamind_session::TimeSpent;
 
-/// Counts and times of a player's actions between two weeks.
+/// Counts and durations of a player's actions between two simulated weeks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PlayerEffort {
     /// Time by class: active, idle, away.
     #[serde(flatten)]
     pub time: TimeSpent,
-    /// Number of breaks: more than ten minutes without play.
+    /// Number of breaks: gaps of more than ten minutes in play.
     pub breaks: u32,
-    /// Accepted calls.
+    /// Number of accepted tool calls.
     pub calls: u32,
-    /// Rejected calls.
+    /// Number of rejected tool calls.
     pub refused: u32,
-    /// Calls that undid another.
+    /// Number of tool calls that undid an earlier call.
     pub undone: u32,
-    /// Accepted calls by tool.
+    /// Number of accepted calls by tool.
     pub tools: BTreeMap<String, u32>,
-    /// SQL queries.
+    /// Number of SQL queries.
     pub queries: u32,
-    /// Queries that were rejected or failed.
+    /// Number of SQL queries that were rejected or failed.
     pub queries_failed: u32,
-    /// Views of screens.
+    /// Number of times that a screen was opened.
     pub views: u32,
-    /// Time on each screen.
+    /// Time spent on each screen.
     #[serde(serialize_with = "active_seconds")]
     pub screens: BTreeMap<String, TimeSpent>,
-    /// Objects opened.
+    /// Number of objects that were opened, such as groups and threads.
     pub selects: u32,
-    /// Dialogs confirmed.
+    /// Number of dialogs that were confirmed.
     pub dialogs_confirmed: u32,
-    /// Dialogs cancelled.
+    /// Number of dialogs that were cancelled.
     pub dialogs_cancelled: u32,
-    /// Explanations of terms opened.
+    /// Number of explanations of terms that were opened.
     pub helps: u32,
-    /// Texts edited and not submitted.
+    /// Number of texts that were edited and not submitted.
     pub drafts_left: u32,
-    /// Characters typed into texts.
+    /// Number of characters typed into texts.
     pub typed: u64,
-    /// Characters deleted from texts.
+    /// Number of characters deleted from texts.
     pub deleted: u64,
-    /// Characters pasted into texts.
+    /// Number of characters pasted into texts.
     pub pasted: u64,
-    /// Changes to the notes.
+    /// Number of changes to the notes.
     pub memos: u32,
 }
 

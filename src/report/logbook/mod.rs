@@ -1,6 +1,6 @@
-//! Log of a run for researchers: times, screens, queries and calls by week.
+//! Logbook of a run for researchers: times, screens, queries and tool calls by week.
 //!
-//! Everything is derived from the lines of the trajectory and from the replayed run. Only [`BehaviorMeasures::truly_best`]
+//! The logbook is derived from the lines of the trajectory and from the replayed run. Only [`BehaviorMeasures::truly_best`]
 //! uses hidden state, and only for finished runs.
 
 mod effort;
@@ -25,50 +25,50 @@ use novamind_record::trajectory::{Line, Record, find_end, find_policy};
 use novamind_session::{Attendance, ModelStamp, ScoredForecast, Session, SessionCount, TimeSpent};
 use timeline::{Timeline, WeekSpan};
 
-/// Log of how a run was played.
+/// Log of a run and of the player's actions in it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Logbook {
     /// Run ID.
     pub run: String,
     /// Label of the participant, as the experimenter assigned it.
     pub participant: Option<String>,
-    /// Digest of the consent text and time of consent; `None` if the study asked for none.
+    /// Digest of the consent text and time of consent; `None` if no consent was required.
     pub consent: Option<Consent>,
-    /// Mode.
+    /// Mode of the run.
     pub mode: Mode,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// Last day of the run.
+    /// Planned last day of the run.
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
-    /// Format version of its trajectory.
+    /// Format version of the trajectory.
     pub format: u32,
-    /// Study of the run.
+    /// Stamp of the study to which the run belongs; `None` without a study.
     pub study: Option<StudyStamp>,
-    /// Program version that recorded it.
+    /// Version of the program that recorded the run.
     pub version: String,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
-    /// The parameters differ, or differed for some days, from those of the bundled scenario of that name.
+    /// Whether the parameters differ, or differed on some days, from the bundled scenario of the same name.
     pub has_own_parameters: bool,
-    /// The language model used as voice.
+    /// The language model that was used as voice; `None` for the built-in voice.
     pub voice: Option<ModelStamp>,
-    /// Number of earlier runs with this seed and scenario on the machine.
+    /// Number of earlier runs with the same seed and scenario on the machine.
     pub earlier_runs: u32,
-    /// Parent run.
+    /// ID of the parent run, if the run is a branch.
     pub parent: Option<String>,
-    /// The policy that decided all weeks; `None` if anyone else decided one.
+    /// Name of the policy that decided all weeks; `None` if at least one week was not decided by this policy.
     pub policy: Option<String>,
-    /// Time of creation, RFC 3339.
+    /// Time at which the run was created, RFC 3339.
     pub created: String,
-    /// Time of its last line, RFC 3339.
+    /// Time of the last line of the trajectory, RFC 3339.
     pub last_at: String,
-    /// Time of its end, RFC 3339.
+    /// Time at which the run ended, RFC 3339.
     pub ended_at: Option<String>,
-    /// Reason for its end.
+    /// Reason why the run ended.
     pub ended: Option<RunEndReason>,
     /// Last simulated day.
     pub day: u32,
@@ -76,91 +76,91 @@ pub struct Logbook {
     pub cash: f64,
     /// Final score, dollars.
     pub score: Option<f64>,
-    /// Simulated weeks.
+    /// Simulated weeks with the actions before each week.
     pub weeks: Vec<WeekRecord>,
-    /// Actions after the last week.
+    /// Actions after the last simulated week.
     pub open_week: PlayerEffort,
-    /// Breaks: more than ten minutes without play.
+    /// Breaks: gaps of more than ten minutes in play.
     pub breaks: Vec<PlayBreak>,
     /// Number of times that the system clock was set back during the run.
     pub clock_set_back: u32,
-    /// Number of times that the run was opened, from its lines.
+    /// Number of times that the run was opened, counted from its lines.
     pub sittings: SessionCount,
-    /// Notes of the run.
+    /// Summary of the player's notes.
     pub notes: NotesSummary,
     /// Number of weeks decided in less than ten active seconds.
     pub fast_weeks: u32,
-    /// Sums over the whole run.
+    /// Sums of all counts and durations over the whole run.
     pub total: PlayerEffort,
-    /// Median of the seconds for deciding a week, without breaks; `None` before the first week.
+    /// Median time to decide a week, in seconds without breaks; `None` before the first week.
     pub median_week_seconds: Option<f64>,
-    /// Time from the end of the run to the last line recorded after it; `None` before the end.
+    /// Time from the end of the run to the last line that was recorded after the end; `None` before the end.
     pub after_end: Option<TimeSpent>,
     /// Word counts of all rationales.
     pub wording: WordCounts,
-    /// Behavior measures.
+    /// Behavior measures of the run.
     pub measures: BehaviorMeasures,
-    /// Advertising by group and channel.
+    /// Advertising results by group and channel.
     pub ads: Vec<ChannelRow>,
     /// State hash after the last week.
     pub state_hash: Option<String>,
-    /// Number of the last line.
+    /// Number of the last line of the trajectory.
     pub last_seq: u64,
-    /// Hash of the last line, which identifies the whole trajectory.
+    /// Hash of the last line of the trajectory, which identifies the whole trajectory.
     pub last_hash: String,
 }
 
-/// The notes of a run.
+/// Summary of the notes of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct NotesSummary {
-    /// Number of times that notes were saved.
+    /// Number of times that the player saved the notes.
     pub versions: u32,
-    /// Words of the last saved text; `None` if the record does not contain it.
+    /// Word counts of the last saved text; `None` if the record does not contain the text.
     pub wording: Option<WordCounts>,
 }
 
-/// A week, or single days, with the actions before it.
+/// A simulated week, or days that were simulated one by one, with the actions before.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WeekRecord {
     /// Number of the week, from 1.
     pub week: u32,
-    /// Decision day.
+    /// Day on which the week was decided.
     pub decision_day: u32,
-    /// Last simulated day.
+    /// Last simulated day of the week.
     pub day: u32,
     /// Number of simulated days.
     pub days_run: u32,
-    /// The week was inherited from the parent run, not played in this one.
+    /// Whether the week was copied from the parent run instead of being played in this run.
     pub inherited: bool,
-    /// The week was decided here in less than ten active seconds.
+    /// Whether the week was decided in this run in less than ten active seconds.
     pub implausibly_fast: bool,
-    /// Start of deciding, RFC 3339.
+    /// Time at which the player could start to decide, RFC 3339.
     pub began_at: String,
-    /// End of deciding, RFC 3339.
+    /// Time at which the decisions were submitted, RFC 3339.
     pub decided_at: String,
-    /// Actions before the week.
+    /// Counts and durations of the actions before the week.
     #[serde(flatten)]
     pub effort: PlayerEffort,
-    /// Number of words in the rationale.
+    /// Word counts of the rationale.
     pub wording: WordCounts,
-    /// Descriptions of the decisions.
+    /// Descriptions of the decisions before the week.
     pub decisions: Vec<String>,
-    /// Forecasts.
+    /// Forecasts that were filed before the week.
     pub forecasts: Vec<ScoredForecast>,
-    /// Which forecasts are naive.
+    /// Whether each forecast is naive, in the order of `forecasts`.
     pub naive_forecasts: Vec<bool>,
-    /// Whether any forecast is naive; `None` if none was filed.
+    /// Whether at least one forecast is naive; `None` if no forecast was filed.
     pub filled_naively: Option<bool>,
-    /// The week was filed by a time limit.
+    /// Whether a time limit filed the week.
     pub filed_at_limit: bool,
-    /// Figures of the week, as in its line.
+    /// Figures of the week, as recorded in its line of the trajectory.
     pub figures: Map<String, Value>,
     /// State hash after the week.
     pub state_hash: String,
 }
 
 impl Logbook {
-    /// Returns the label of the participant, or the policy; `None` for an unnamed player.
+    /// Returns the label of the participant or the name of the policy, or `None` for an unnamed player.
     pub fn player_name(&self) -> Option<String> {
         let policy = || self.policy.as_ref().map(|name| format!("policy {name}"));
         self.participant.clone().or_else(policy)
@@ -270,7 +270,7 @@ fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
     }
 }
 
-/// Returns the time after the last line of a run, up to the last line recorded after its end.
+/// Returns the time from the last line of a run to the last line that was recorded after its end.
 fn time_after_end(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
     let mut attendance = Attendance::from_lines(lines);
     let end = attendance.end_ns();

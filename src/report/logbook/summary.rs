@@ -1,4 +1,4 @@
-//! Summary of a session as a page, for its experimenter.
+//! Summary of a session as a page for the experimenter.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::page::{Block, NamedValue, Page, Table};
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::{MIN_BREAK_SECONDS, ModelStamp, TimeSpent};
 
-/// Returns the page about a session.
+/// Returns the summary of a session as a page.
 pub fn session_page(book: &Logbook) -> Page {
     let mut blocks = vec![Block::Facts(summary_facts(book))];
     if book.clock_set_back > 0 {
@@ -83,7 +83,7 @@ fn summary_facts(book: &Logbook) -> Vec<NamedValue> {
         NamedValue::new("Ended", book.ended_at.as_deref().map_or("not yet".to_owned(), format_minute), ended),
         NamedValue::new("Last line", format_minute(&book.last_at), ""),
         NamedValue::new(
-            "Time played",
+            "Playing time",
             format_duration(total.time.active_seconds()),
             format!(
                 "idle {}, away {}; {}",

@@ -1,4 +1,4 @@
-//! Splits the lines of a trajectory into spans of time: one for each week and the actions before it.
+//! Splits the lines of a trajectory into time spans, one for each week with the actions before the week.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -11,16 +11,16 @@ use novamind_record::trajectory::record::{
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Attendance, AttendedWeek, Attention, MIN_BREAK_SECONDS};
 
-/// A break: more than ten minutes without play.
+/// A break: a gap of more than ten minutes in play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlayBreak {
-    /// Day of the run.
+    /// Day of the run on which the break occurred.
     pub day: u32,
-    /// Start, RFC 3339.
+    /// Start of the break, RFC 3339.
     pub from: String,
-    /// End, RFC 3339.
+    /// End of the break, RFC 3339.
     pub to: String,
-    /// Duration in seconds.
+    /// Duration of the break in seconds.
     pub seconds: f64,
 }
 
@@ -34,19 +34,19 @@ pub(super) struct WeekSpan {
     pub effort: PlayerEffort,
     pub rationale: Option<String>,
     pub forecasts: Vec<FiledForecast>,
-    /// Whether any forecast is naive; `None` if none was filed.
+    /// Whether at least one forecast is naive; `None` if no forecast was filed.
     pub filled_naively: Option<bool>,
-    /// The week was filed by a time limit, without a rationale from the player.
+    /// Whether a time limit filed the week, without a rationale from the player.
     pub filed_at_limit: bool,
     pub figures: Map<String, Value>,
     pub state_hash: String,
-    /// Position on the time axis of the run.
+    /// Start and end of the span on the time axis of the run.
     pub attended: AttendedWeek,
 }
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Timeline {
-    /// One span for each line that closes days.
+    /// One span for each line that closes one or more days.
     pub spans: Vec<WeekSpan>,
     pub open: WeekSpan,
     pub breaks: Vec<PlayBreak>,
@@ -54,7 +54,7 @@ pub(super) struct Timeline {
 }
 
 impl Timeline {
-    /// Reads lines in order.
+    /// Builds a timeline from the lines of a trajectory in order.
     pub fn from_lines(lines: &[Line]) -> Timeline {
         let mut timeline = Timeline::default();
         let mut before: Option<&Line> = None;
@@ -75,7 +75,7 @@ impl Timeline {
             before = Some(line);
         }
         timeline.clock_set_back = attendance.clock_set_back_count();
-        // A later line reports when idleness began, so times can be classified only after all lines are read.
+        // The start of an idle period is recorded by a later line, so times can be classified only after all lines are read.
         let last =
             AttendedWeek { from: attendance.week_start_ns(), to: attendance.end_ns(), is_inherited: false };
         let spans = timeline.spans.iter_mut().chain([&mut timeline.open]);
@@ -90,7 +90,7 @@ impl Timeline {
         timeline
     }
 
-    /// Records times without play that are longer than ten minutes. Each belongs to the week in which it ended.
+    /// Records breaks: gaps of more than ten minutes in play. A break belongs to the week in which it ended.
     fn add_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
         let mut apart: Vec<(i64, i64)> = Vec::new();
         for time in attendance.spans() {
@@ -119,8 +119,8 @@ impl Timeline {
         }
     }
 
-    /// Distributes the active time of a view over the weeks that it overlaps. A view ends at the position of its
-    /// line.
+    /// Distributes the active time of a screen view over the weeks that the view overlaps. The view ends when its line
+    /// is written.
     fn distribute_view_time(&mut self, week: usize, place: i64, view: &ScreenView, attendance: &Attendance) {
         let length = i64::try_from(view.for_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
         let began = place.saturating_sub(length).max(0);

@@ -8,14 +8,14 @@ use novamind_session::ScoredForecast;
 
 const MAX_GROUPS: usize = 6;
 
-/// Charts cash by day, with the last forecasts until they are due.
+/// Returns the chart of cash by day. It includes the last forecasts that are not due yet.
 pub fn cash_chart(report: &RunReport) -> Option<Block> {
     let points: Vec<(f64, f64)> =
         report.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
     if points.len() < 2 {
         return None;
     }
-    // Cash on day 0 includes that day's purchases; the range also includes the starting cash.
+    // Cash on day 0 is lower than the starting cash if there were purchases on day 0. The range includes both values.
     let low = report.cash_by_day.iter().copied().fold(report.start_cash, f64::min);
     let high = report.cash_by_day.iter().copied().fold(report.start_cash, f64::max);
     let mut curves = vec![Curve { name: "cash".to_owned(), points }];
@@ -43,7 +43,8 @@ pub fn cash_chart(report: &RunReport) -> Option<Block> {
     }))
 }
 
-/// Returns the open forecasts as a fan from today's cash, and the predicted values; `None` after the end of the run.
+/// Returns the intervals of the open forecasts as a fan that starts at today's cash, and the predicted values. Returns
+/// `None` after the end of the run.
 fn pending_forecast_fan(report: &RunReport) -> Option<(Band, Curve)> {
     let filed_last = report.forecasts.last().filter(|_| report.observation.ended.is_none())?.day;
     let (day, cash) = (f64::from(report.observation.day), report.observation.cash);
@@ -140,7 +141,7 @@ fn last_point(points: &[(f64, f64)]) -> f64 {
     points.last().map_or(0.0, |point| point.1)
 }
 
-/// Charts the customers of the largest groups by week, if there are several.
+/// Returns the chart of customers by week for the largest groups, or `None` if fewer than two groups have customers.
 pub fn group_chart(report: &RunReport) -> Option<Block> {
     let weight = |active: &[f64]| active.iter().copied().fold(0.0, f64::max);
     let mut largest: Vec<_> = report
@@ -151,7 +152,7 @@ pub fn group_chart(report: &RunReport) -> Option<Block> {
         .collect();
     largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
     largest.truncate(MAX_GROUPS);
-    // Skips groups that are too small to be visible.
+    // Omits groups that are too small to be visible in the chart.
     let most = largest.first().map_or(0.0, |book| weight(&book.active));
     largest.retain(|book| weight(&book.active) >= 0.01 * most);
     if largest.len() < 2 {
@@ -203,7 +204,7 @@ fn forecast_chart(report: &RunReport, horizon: u32) -> Option<Block> {
         due.len(),
         inside.count()
     );
-    // Outliers among forecasts must not flatten the actual values.
+    // The limits of the axis follow the actual values, because outliers among forecasts would flatten the curve.
     let low = actual.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
     let high = actual.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
     let reach = (high - low).max(0.1 * high.abs()).max(1.0);

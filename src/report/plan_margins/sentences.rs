@@ -1,4 +1,4 @@
-//! Gross margins in sentences, for screen readers: the current model tier first, the others in one line.
+//! Gross margins in sentences for screen readers. The current model tier is described first, the other tiers in one line.
 
 use super::{
     DraftPlanTerms, MarginSetting, NO_USAGE_MESSAGE, PlanSales, PlanUsage, differs_by_a_cent, margin,
@@ -7,7 +7,7 @@ use crate::formatting::format_whole;
 use novamind_base::formatting::{cents, grouped_number, percent};
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// Returns the margins of every plan under its terms as sentences.
+/// Describes the margins of every plan in sentences.
 pub fn margin_sentences(
     sales: &PlanSales,
     terms: &ByPlan<DraftPlanTerms>,
@@ -89,7 +89,7 @@ fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Opti
     })
 }
 
-/// Lists profitable tiers one by one and combines those with a loss.
+/// Lists profitable tiers one by one and combines the tiers with a loss.
 fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     let (earns, loses): (Vec<_>, Vec<_>) = margins.iter().partition(|(_, margin)| *margin >= 0.0);
     let mut parts: Vec<String> =
@@ -103,7 +103,7 @@ fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// Describes a margin as a share of the price; a loss as the ratio of compute to price.
+/// Describes a positive margin as a share of the price, and a loss as the ratio of compute to the price.
 fn describe_margin(margin: Option<f64>, of: &str) -> String {
     match margin {
         None => format!("an unknown share of {of}"),

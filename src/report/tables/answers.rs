@@ -1,4 +1,4 @@
-//! `answers.csv`: a row for each question of the study that was shown.
+//! `answers.csv`: a row for each question that was shown to a participant.
 
 use super::column::{Column, columns};
 use super::located_line::{LineRow, LocatedLine, with_location_columns};
@@ -17,7 +17,7 @@ impl ShownQuestion<'_> {
     }
 }
 
-/// Returns the columns. The place columns are those of the question.
+/// Returns the columns of `answers.csv`. The location columns describe the line of the question.
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, ShownQuestion<'a>>>> {
     with_location_columns(columns! { row: LineRow<'a, ShownQuestion<'a>>;
         "questionnaire", "name", "name of the questionnaire" => row.row.asked.questionnaire;
@@ -27,7 +27,7 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, ShownQuestion<'a>>>> {
         "shown", "text", "text of the question" => row.row.asked.text;
         "options", "text", "options, one per line" => row.row.asked.options.join("\n");
         "answered", "0 or 1", "1: answered or skipped; 0: the run ends before the answer" => row.row.answer.is_some();
-        "value", "text", "the answer; several options one per line; empty if skipped"
+        "value", "text", "answer of the participant; several options one per line; empty if skipped"
             => row.row.answer_part(|answer| format_answer(&answer.value));
         "as_expected", "0 or 1", "attention checks: 1 for the expected answer; empty otherwise"
             => row.row.answer_part(|answer| answer.as_expected);
@@ -37,7 +37,7 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, ShownQuestion<'a>>>> {
     })
 }
 
-/// Returns the rows of a run: each question with the answer that follows it.
+/// Returns the rows of a run: each question with the answer in a later line.
 pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = LineRow<'a, ShownQuestion<'a>>> {
     lines.iter().enumerate().filter_map(|(at, placed)| {
         let Record::Activity(Activity::Question(question_shown)) = &placed.line.record else { return None };
@@ -45,7 +45,7 @@ pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = Lin
             Record::Activity(Activity::Answer(answer)) if is_answer_to(answer, question_shown) => {
                 Some(Some((later, answer)))
             }
-            // The question is shown again, so the answer belongs to the later display.
+            // If the question is shown again before it is answered, the answer belongs to the later line.
             Record::Activity(Activity::Question(again))
                 if again.id == question_shown.id && is_same_question(again, question_shown) =>
             {
@@ -69,7 +69,7 @@ fn is_same_question(one: &QuestionShown, other: &QuestionShown) -> bool {
     (&one.questionnaire, &one.occasion) == (&other.questionnaire, &other.occasion)
 }
 
-/// Formats an answer for a cell: several options one per line.
+/// Formats an answer for a cell. Several options are written one per line.
 pub(super) fn format_answer(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

@@ -1,13 +1,13 @@
-//! Columns of tables. Each column is declared once: headers, rows and the codebook follow from the declaration.
+//! Columns of tables. Each column is declared once. Headers, rows and the codebook are derived from the declaration.
 
 use std::borrow::Cow;
 
 use serde::Serialize;
 
-/// Name of a column, and unit and meaning of its values.
+/// Name of a column, with the unit and the meaning of its values.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ColumnHeading {
-    /// Name, as in the header line.
+    /// Name of the column in the header line.
     pub name: Cow<'static, str>,
     /// Unit or kind of the values.
     pub unit: &'static str,
@@ -16,13 +16,13 @@ pub struct ColumnHeading {
 }
 
 pub(crate) struct Column<Row> {
-    /// Name, unit and meaning.
+    /// Name, unit and meaning of the column.
     pub heading: ColumnHeading,
     pub cell: Box<dyn Fn(&Row) -> String>,
 }
 
 impl<Row> Column<Row> {
-    /// Declares a column whose cells `cell` returns.
+    /// Creates a column. `cell` returns the cell of a row.
     pub fn new(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,
@@ -33,7 +33,7 @@ impl<Row> Column<Row> {
     }
 }
 
-/// Declares the columns of a table: `name, unit, meaning => value;`, where the value is an expression of the row.
+/// Declares the columns of a table: `name, unit, meaning => value;`. The value is an expression that uses the row.
 macro_rules! columns {
     ($row:ident: $Row:ty; $($name:expr, $unit:literal, $meaning:expr => $value:expr;)*) => {
         vec![$($crate::tables::column::Column::<$Row>::new($name, $unit, $meaning, move |$row| {
@@ -45,10 +45,10 @@ macro_rules! columns {
 
 pub(crate) use columns;
 
-/// A value of a cell.
+/// A value that can be formatted as a cell.
 pub(crate) trait CellValue {
-    /// Returns the cell: texts unchanged, flags as 0 and 1, numbers in the shortest form that parses to the same value,
-    /// and an empty string for a missing value.
+    /// Returns the text of the cell. Texts are unchanged, flags become 0 or 1, and a missing value becomes an empty
+    /// string. Numbers have the shortest form that parses to the same value.
     fn to_cell(&self) -> String;
 }
 

@@ -14,8 +14,8 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, EventRow>>> {
     with_location_columns(columns! { row: LineRow<'a, EventRow>;
         "afterwards", "0 or 1", "1: the line is in afterwards.jsonl" => row.located.is_after_end;
         "kind", "word", "kind of the line" => row.located.line.record.kind();
-        "what", "text", "call: tool; view: screen; select: kind of object; dialog, draft: which; help: term; session, clock: \
-         event; limit: which; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; \
+        "what", "text", "call: tool; view: screen; select: kind of object; dialog, draft, limit: name; help: term; \
+         session, clock: event; question, answer: questionnaire; look: command; xray: what was shown; query, advance: via; \
          start: mode; override: key; voice: kind of event; end: reason" => row.row.what;
         "which", "text", "call: via; view: screen before; select: object; dialog, draft: outcome; help: place; session: \
          interface or cause; limit: event; question, answer: question; xray: group, customer, part or statement; query: error; \
@@ -23,11 +23,11 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, EventRow>>> {
         "value", "text", "call: accepted or code of the rejection; query: rows; draft, note, memo: length; limit: minutes; \
          question: form; answer: answer; week, step, end: cash; start: seed; branch: line; override: new value; xray: day \
          shown; voice: groups or posts" => row.row.value;
-        "for_ms", "milliseconds", "how long: view, dialog, draft, answer, query; call, voice: duration; limit: active time \
-         used; clock: time it stood; session: time since the last key" => row.row.for_ms;
+        "for_ms", "milliseconds", "view, dialog, draft, answer, query, call, voice: duration; limit: active time \
+         used; clock: time for which it was stopped; session: time since the last key press" => row.row.for_ms;
         "detail", "name=value", "other values of the line" => row.row.format_detail();
         "text", "text", "call: arguments; query: statement; advance: rationale; draft: text not submitted; question: text shown; clock: \
-         reason; look: its request" => row.row.text;
+         reason; look: request" => row.row.text;
     })
 }
 

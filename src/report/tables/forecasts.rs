@@ -15,16 +15,16 @@ pub(super) fn columns<'a>() -> Vec<Column<FiledForecastRow<'a>>> {
     columns! { row: FiledForecastRow<'a>;
         "run", "name", "name of the run" => row.logbook.run;
         "participant", "label", "label of the participant" => row.logbook.participant;
-        "week", "number", "week before which it was filed, from 1" => row.week.week;
-        "decision_day", "day", "day on which it was filed" => row.week.decision_day;
+        "week", "number", "week before which the forecast was filed, from 1" => row.week.week;
+        "decision_day", "day", "day on which the forecast was filed" => row.week.decision_day;
         "inherited", "0 or 1", "1: filed in the parent run" => row.week.inherited;
-        "horizon_days", "days", "days ahead" => row.scored.forecast.horizon_days;
-        "due_day", "day", "day of the predicted cash" => row.scored.due_day();
+        "horizon_days", "days", "days from filing to the predicted day" => row.scored.forecast.horizon_days;
+        "due_day", "day", "day for which cash was predicted" => row.scored.due_day();
         "point", "dollars", "predicted cash" => row.scored.forecast.point;
         "lower", "dollars", "lower end of the 95 % interval" => row.scored.forecast.lower;
         "upper", "dollars", "upper end of the 95 % interval" => row.scored.forecast.upper;
         "filled_naively", "0 or 1", "1: the naive forecast was used, in whole or in part" => row.is_naive;
-        "outcome", "dollars", "cash on that day; this and the following columns are empty if the run did not reach it"
+        "outcome", "dollars", "actual cash on the predicted day; this and the following columns are empty if the run did not reach that day"
             => row.scored.outcome;
         "error", "share", "(point - outcome) / max(|outcome|, 1): positive if the forecast was too high" => row.scored.relative_error();
         "absolute_error", "share", "absolute value of error" => row.scored.relative_error().map(f64::abs);

@@ -1,4 +1,4 @@
-//! The place of a line: run, time, week, and whether it is after the end.
+//! Location of a line in a study: run, time, week, and whether the line is after the end of the run.
 
 use super::column::{Column, columns};
 use super::rounded;
@@ -10,18 +10,18 @@ pub(super) struct LocatedLine<'a> {
     pub line: &'a Line,
     run: &'a str,
     participant: &'a str,
-    /// The line was written after the end of the run.
+    /// Whether the line was written after the end of the run.
     pub is_after_end: bool,
     seconds: f64,
 }
 
-/// A row about a line: the line with its place, and the values of the table.
+/// A table row about a line: the line with its location, and the values of the table.
 pub(super) struct LineRow<'a, T> {
     pub located: &'a LocatedLine<'a>,
     pub row: T,
 }
 
-/// Prepends the place columns, which all tables about lines share.
+/// Prepends the location columns, which all tables about lines share.
 pub(super) fn with_location_columns<'a, T>(
     row_columns: Vec<Column<LineRow<'a, T>>>,
 ) -> Vec<Column<LineRow<'a, T>>> {
@@ -55,7 +55,7 @@ pub(super) fn locate_lines<'a>(
 }
 
 impl LocatedLine<'_> {
-    /// Returns the week being decided; for a closing line, the closed week.
+    /// Returns the week that is being decided. For a closing line, returns the closed week.
     pub fn week(&self) -> u32 {
         let is_closed = self.line.closes_days() || self.is_after_end || self.line.record.kind() == "end";
         week_of(if is_closed { self.line.day } else { self.line.day + 1 })

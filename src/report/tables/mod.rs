@@ -27,12 +27,13 @@ use novamind_study::FoundVisit;
 
 pub use column::ColumnHeading;
 
-/// Returns a value that only the console records, or `None` for a run without a console session.
+/// Returns a value that only the console records, or `None` for a run that was never open in the console.
 fn console_only<T>(run: &Logbook, value: T) -> Option<T> {
     (run.sittings.in_console > 0).then_some(value)
 }
 
-/// Returns a value about views of screens, which the console recorded before lines contained sessions.
+/// Returns a value about screen views. Returns `None` for a run whose lines contain sessions but no console session.
+/// Old versions of the console recorded screen views but no sessions.
 fn recorded_screens_only<T>(run: &Logbook, value: T) -> Option<T> {
     if run.sittings.opened == 0 { Some(value) } else { console_only(run, value) }
 }
@@ -54,7 +55,7 @@ pub fn table_headings() -> Vec<(&'static str, Vec<ColumnHeading>)> {
     ]
 }
 
-/// Returns table, column, unit and meaning of every column.
+/// Returns the table, name, unit and meaning of every column.
 pub fn column_descriptions() -> Vec<Vec<String>> {
     let mut rows = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
     for (table, columns) in table_headings() {
@@ -67,10 +68,10 @@ pub fn column_descriptions() -> Vec<Vec<String>> {
     rows
 }
 
-/// The tables of several runs, filled run by run.
+/// The tables of a study, to which runs are added one by one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyTables {
-    // Rows by table, starting with the header.
+    // Rows of each table, starting with the header.
     tables: Vec<(&'static str, Vec<Vec<String>>)>,
 }
 
@@ -101,12 +102,12 @@ impl StudyTables {
         self.append_rows("notes", &notes::columns(), notes::rows(&lines));
     }
 
-    /// Adds lines of visit lists.
+    /// Adds visits, which are the lines of visit lists.
     pub fn add_visits(&mut self, visits: &[FoundVisit]) {
         self.append_rows("visits", &visits::columns(), visits);
     }
 
-    /// Adds a run that could not be read: only its name and the problem.
+    /// Adds a row for a run that could not be read. It contains only the run's name and the problem.
     pub fn add_unreadable_run(&mut self, run: &str, problem: &str) {
         let cell = |column: Column<Logbook>| match &*column.heading.name {
             "run" => run.to_owned(),
@@ -116,7 +117,7 @@ impl StudyTables {
         self.extend("runs", [runs::columns().into_iter().map(cell).collect()]);
     }
 
-    /// Returns the name and rows of every table, each with a header. The last table describes the columns.
+    /// Returns the name and the rows of every table, starting with the header. The last table describes the columns.
     pub fn into_files(self) -> Vec<(&'static str, Vec<Vec<String>>)> {
         let mut files = self.tables;
         files.push(("columns", column_descriptions()));
@@ -153,7 +154,7 @@ fn format_flag(is: bool) -> String {
     u8::from(is).to_string()
 }
 
-/// Returns a word of an enumeration, as in the record.
+/// Returns the name of an enum variant as it is written in the record.
 fn serialized_name(value: &impl Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(serde_json::Value::String(word)) => word,
@@ -165,7 +166,7 @@ fn score_at_horizon(scores: &[ForecastScore], horizon_days: u32) -> Option<&Fore
     scores.iter().find(|score| score.horizon_days == horizon_days && score.scored > 0)
 }
 
-/// Joins names and numbers in one cell: `cash=12.5;overview=3`.
+/// Joins pairs of names and numbers in one cell: `cash=12.5;overview=3`.
 fn format_pairs<N: AsRef<str>>(all: impl IntoIterator<Item = (N, f64)>) -> String {
     let one = |(name, value): (N, f64)| format!("{}={}", name.as_ref(), format_number(rounded(value)));
     all.into_iter().map(one).collect::<Vec<_>>().join(";")

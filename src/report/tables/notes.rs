@@ -21,9 +21,9 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, NotesVersion<'a>>>> {
         "length", "bytes", "length of the text" => row.row.length;
         "words", "count", "words of the text; this and the following columns are empty if the line does not contain the text"
             => row.row.wording.map(|wording| wording.words);
-        "planning_words", "count", "planning words among them (as in runs.csv)"
+        "planning_words", "count", "planning words of the text (as in runs.csv)"
             => row.row.wording.map(|wording| wording.planning);
-        "if_words", "count", "occurrences of \"if\"" => row.row.wording.map(|wording| wording.ifs);
+        "if_words", "count", "occurrences of \"if\" in the text" => row.row.wording.map(|wording| wording.ifs);
         "text", "text", "the text; empty in format 1 and if the rules mask it" => row.row.text;
     })
 }

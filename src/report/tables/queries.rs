@@ -9,13 +9,13 @@ use novamind_record::trajectory::record::Query;
 pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, &'a Query>>> {
     with_location_columns(columns! { row: LineRow<'a, &'a Query>;
         "via", "word", "typed, library, drill_down, derived or script; empty in format 1" => row.row.via.map(|via| serialized_name(&via));
-        "rows", "count", "number of returned rows; empty if it failed" => row.row.rows;
-        "truncated", "0 or 1", "1: more rows existed than were shown" => row.row.truncated;
+        "rows", "count", "number of returned rows; empty if the query failed" => row.row.rows;
+        "truncated", "0 or 1", "1: the result has more rows than were shown" => row.row.truncated;
         "error", "code", "error code; empty without an error" => row.row.error;
-        "stopped", "0 or 1", "1: the user stopped it" => row.row.stopped;
+        "stopped", "0 or 1", "1: the user stopped the query" => row.row.stopped;
         "took_ms", "milliseconds", "duration" => row.row.took_ms;
         "message", "text", "error message; empty in format 1" => row.row.message;
-        "sql", "text", "the statement" => row.row.sql;
+        "sql", "text", "SQL statement" => row.row.sql;
     })
 }
 

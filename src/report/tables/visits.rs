@@ -10,7 +10,7 @@ pub(super) fn columns() -> Vec<Column<FoundVisit>> {
         "event", "word", "came, label_refused, consent_declined, passed_practice, withdrew, finished, or code_refused: an entry \
          that was not the experimenter's code" => serialized_name(&visit.line.event);
         "at", "RFC 3339", "time of the event" => visit.line.at;
-        "machine", "hash", "identifies the machine" => visit.line.machine;
+        "machine", "hash", "identifier of the machine" => visit.line.machine;
         "folder", "path", "runs folder that contains the list" => visit.folder.display().to_string();
         "study_digest", "hash", "BLAKE3 hash of the protocol of the study" => visit.line.study;
     }

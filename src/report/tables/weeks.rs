@@ -16,11 +16,11 @@ impl WeekRow<'_> {
     }
 }
 
-const LOWER_MEANING: &str = "lower end of its interval";
-const UPPER_MEANING: &str = "upper end of its interval";
-const OUTCOME_MEANING: &str = "outcome; empty before its day or if the run ended earlier";
+const LOWER_MEANING: &str = "lower end of the forecast's 95 % interval";
+const UPPER_MEANING: &str = "upper end of the forecast's 95 % interval";
+const OUTCOME_MEANING: &str = "actual cash; empty before the target day or if the run ended earlier";
 
-/// Figures of the closing line: name, unit, meaning. Columns have the same names.
+/// Name, unit and meaning of the figures in the closing line of a week. The columns have the same names.
 const FIGURES: [(&str, &str, &str); 19] = [
     ("cash", "dollars", "cash at the end of the week"),
     ("individual_subscribers", "count", "active subscriptions of individuals"),
@@ -40,7 +40,7 @@ const FIGURES: [(&str, &str, &str); 19] = [
     ("error_rate_peak", "share", "highest error rate of a day"),
     ("payments", "dollars", "payments of subscribers"),
     ("costs", "dollars", "running costs"),
-    ("recurring_revenue", "dollars a month", "monthly recurring revenue at the end"),
+    ("recurring_revenue", "dollars a month", "monthly recurring revenue at the end of the week"),
 ];
 
 pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
@@ -52,23 +52,23 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "day", "day", "last day of the week" => row.week.day;
         "days_run", "days", "simulated days: 7 except in a shortened last week, a bankruptcy, or steps of a debug run"
             => row.week.days_run;
-        "inherited", "0 or 1", "1: inherited from the parent run, not played in this one"
+        "inherited", "0 or 1", "1: copied from the parent run, not played in this run"
             => row.week.inherited;
-        "began_at", "RFC 3339", "start of deciding: the end of the week before, or the start of the run" => row.week.began_at;
+        "began_at", "RFC 3339", "time at which the player could start to decide: end of the week before, or start of the run" => row.week.began_at;
         "decided_at", "RFC 3339", "time when rationale and forecasts were filed" => row.week.decided_at;
-        "elapsed_seconds", "seconds", "sum of active, answering, idle and away before the week"
+        "elapsed_seconds", "seconds", "sum of active, answering, idle and away time before the week"
             => row.week.effort.time.elapsed_seconds();
         "active_seconds", "seconds", "active time" => row.week.effort.time.active_seconds();
         "answering_seconds", "seconds", "time with questions of the study" => row.week.effort.time.answering_seconds();
-        "idle_seconds", "seconds", "time without a key while the program is in front" => row.week.effort.time.idle_seconds();
-        "away_seconds", "seconds", "time in which the run was closed, suspended, in the background, or its clock stopped"
+        "idle_seconds", "seconds", "time without a key press while the program is in front" => row.week.effort.time.idle_seconds();
+        "away_seconds", "seconds", "time in which the run was closed, suspended or in the background, or its clock was stopped"
             => row.week.effort.time.away_seconds();
         "paused_seconds", "seconds", "part of away_seconds: time with the clock stopped" => row.week.effort.time.paused_seconds();
-        "breaks", "count", "breaks: more than ten minutes without play" => row.week.effort.breaks;
+        "breaks", "count", "breaks: gaps of more than ten minutes in play" => row.week.effort.breaks;
         "implausibly_fast", "0 or 1", "1: decided in less than ten active seconds" => row.week.implausibly_fast;
         "calls", "count", "accepted tool calls" => row.week.effort.calls;
         "refused", "count", "rejected tool calls" => row.week.effort.refused;
-        "undone", "count", "accepted calls that undid another" => row.week.effort.undone;
+        "undone", "count", "accepted calls that undid an earlier call" => row.week.effort.undone;
         "tools", "tool=count", "accepted calls by tool" => format_tool_counts(&row.week.effort);
         "queries", "count", "SQL queries" => row.week.effort.queries;
         "queries_failed", "count", "queries that were rejected or failed" => row.week.effort.queries_failed;
@@ -83,16 +83,16 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "drafts_left", "count", "texts edited and not submitted (console only)"
             => console_only(row.run, row.week.effort.drafts_left);
         "typed_characters", "count", "characters typed into texts (console only)" => console_only(row.run, row.week.effort.typed);
-        "deleted_characters", "count", "characters deleted from them (console only)"
+        "deleted_characters", "count", "characters deleted from texts (console only)"
             => console_only(row.run, row.week.effort.deleted);
-        "pasted_characters", "count", "characters of them that came from the clipboard (console only)"
+        "pasted_characters", "count", "typed characters that came from the clipboard (console only)"
             => console_only(row.run, row.week.effort.pasted);
         "memos", "count", "changes to the notes" => row.week.effort.memos;
         "decisions", "count", "settings that differ from the week before, purchases, offers and posts"
             => row.week.decisions.len();
         "rationale_words", "count", "words of the rationale" => row.week.wording.words;
-        "planning_words", "count", "planning words among them (as in runs.csv)" => row.week.wording.planning;
-        "if_words", "count", "occurrences of \"if\"" => row.week.wording.ifs;
+        "planning_words", "count", "planning words of the rationale (as in runs.csv)" => row.week.wording.planning;
+        "if_words", "count", "occurrences of \"if\" in the rationale" => row.week.wording.ifs;
         "filled_naively", "0 or 1", "1: at least one forecast was naive" => row.week.filled_naively;
         "filed_at_limit", "0 or 1", "1: a time limit filed the week" => row.week.filed_at_limit;
         "forecast_7_point", "dollars", "cash predicted for 7 days ahead" => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.point);

@@ -6,7 +6,7 @@ use super::{AgentContext, Transcript, TranscriptAction, TranscriptStep, WeekResu
 
 const VERSION: &str = "ATIF-v1.8";
 
-/// Returns the run in this format.
+/// Returns the run in the Agent Trajectory Interchange Format.
 pub fn to_atif(run: &Transcript, agent_context: &AgentContext) -> Value {
     let mut steps = vec![
         json!({ "source": "system", "message": agent_context.instructions }),
@@ -32,7 +32,7 @@ pub fn to_atif(run: &Transcript, agent_context: &AgentContext) -> Value {
     })
 }
 
-/// Returns the step of an action; `None` for actions that no interface offers.
+/// Returns the step of an action, or `None` for an action that no interface for programs offers.
 fn step_json(act: &TranscriptStep) -> Option<Value> {
     let id = format!("line-{}", act.seq);
     let called = |name: &str, args: &Value, content: String, extra: &Map<String, Value>| {
@@ -100,7 +100,7 @@ fn describe_week(passed: Option<&WeekResult>) -> String {
     }
 }
 
-/// Wraps arguments that are not an object: this format requires one, even for rejected calls.
+/// Wraps arguments that are not an object. The format requires an object, even for rejected calls.
 fn as_object(args: &Value) -> Value {
     match args {
         Value::Object(_) => args.clone(),

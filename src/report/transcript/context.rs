@@ -1,4 +1,4 @@
-//! Metadata of actions: interface, duration, and undone calls.
+//! Metadata of actions: interface, duration, and calls that were undone.
 
 use serde_json::{Map, Value, json};
 
@@ -8,9 +8,9 @@ use novamind_record::trajectory::record::{QuerySource, Reversal, Via};
 /// Information that the player receives before the first action.
 #[derive(Debug, Clone, Default)]
 pub struct AgentContext {
-    /// Goal, rules and calls as text.
+    /// Goal, rules and available calls as text.
     pub instructions: String,
-    /// Tools as functions, with the schema of their arguments.
+    /// Definitions of the tools as functions, with the schema of their arguments.
     pub tools: Vec<Value>,
 }
 

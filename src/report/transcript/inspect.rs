@@ -14,14 +14,14 @@ const VERSION: u32 = 2;
 const TASK: &str = "novamind";
 const SCORER: &str = "cash";
 
-/// Returns the name of a run's log in Inspect's scheme. Inspect does not list JSON logs with other names.
+/// Returns the file name of a run's log in the naming scheme of Inspect. Inspect does not list JSON logs with other names.
 pub fn inspect_file_name(manifest: &Manifest) -> String {
-    // Time in UTC, without fractional seconds.
+    // Start time in UTC, without fractional seconds.
     let created = manifest.created.get(..19).unwrap_or(&manifest.created).replace(':', "-");
     format!("{created}-00-00_{TASK}_{}.json", manifest.id)
 }
 
-/// Returns the run in this format.
+/// Returns the run as an evaluation log of Inspect.
 pub fn to_inspect(run: &Transcript, agent_context: &AgentContext) -> Value {
     let steps = to_atif(run, agent_context);
     let steps = steps["steps"].as_array().map(Vec::as_slice).unwrap_or_default();
@@ -83,7 +83,7 @@ fn run_status(run: &Transcript) -> &'static str {
     }
 }
 
-/// Returns the score of the sample. `None` for runs without one: unfinished, abandoned, or in a lesson.
+/// Returns the score of the sample, or `None` for a run without a score: unfinished, abandoned or in a lesson.
 fn sample_score(run: &Transcript) -> Option<Value> {
     let end = run.end.as_ref()?;
     let explanation = match end.reason {
@@ -112,7 +112,7 @@ struct MessageStep {
 }
 
 impl MessageStep {
-    /// Reads a step of a trajectory. Identifiers are unique across runs, because Inspect's tables drop duplicates.
+    /// Reads a step of an exported trajectory. Identifiers are unique across runs, because Inspect's tables drop duplicates.
     fn from_json(step: &Value, manifest: &Manifest) -> MessageStep {
         let role = match step["source"].as_str() {
             Some("agent") => "assistant",
@@ -150,9 +150,9 @@ impl MessageStep {
     }
 }
 
-/// Returns the steps as events, from which Inspect builds its message tables: a model event for each step of the
-/// player, with the messages new to it, and a tool event for each call. The last model event has no output; its input
-/// is the last result.
+/// Returns the steps as events, from which Inspect builds its message tables. Each step of the player is a model event
+/// with the messages since the previous step. Each call is a tool event. The last model event has no output, and its
+/// input is the last result.
 fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);
@@ -198,7 +198,7 @@ fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> 
     events
 }
 
-/// Returns the seconds between two times; 0 if either cannot be parsed.
+/// Returns the number of seconds between two times, or 0 if one of the times cannot be parsed.
 fn seconds_between(from: &str, to: &str) -> f64 {
     let moment = |text: &str| OffsetDateTime::parse(text, &Rfc3339).ok();
     moment(to).zip(moment(from)).map_or(0.0, |(to, from)| (to - from).as_seconds_f64())

@@ -1,8 +1,8 @@
-//! A run as a sequence of actions, exported to formats of programs that study or train agents
+//! A run as a sequence of actions, which can be exported to formats of programs that study or train agents
 //! (docs/formats/exports.md).
 //!
 //! The run is replayed from its lines to reproduce the rows of every query, which the record does not contain. The
-//! actions contain only what the player could see. Inspections and timings are kept separately.
+//! actions contain only data that the player could see. Inspections and timings are stored separately.
 
 mod atif;
 mod context;
@@ -37,30 +37,30 @@ pub struct Transcript {
     pub manifest: Manifest,
     /// Parameters in force on day 0, as documented in manuals.
     pub numbers: ParameterNumbers,
-    /// Dashboard of day 0.
+    /// Dashboard of day 0 as text.
     pub opening_dashboard: String,
-    /// Actions in order.
+    /// Actions of the player in order.
     pub steps: Vec<TranscriptStep>,
     /// Lines that changed nothing, such as inspections, timings and presence.
     pub other_lines: Vec<Value>,
-    /// End of the run, if it has ended.
+    /// Record of the end of the run; `None` if the run has not ended.
     pub end: Option<End>,
     /// Day and cash of the last recorded state.
     pub last_day_and_cash: (u32, f64),
-    /// Hash of that state.
+    /// Hash of the last recorded state.
     pub state_hash: String,
 }
 
-/// An action with its place.
+/// An action with its line, day and time.
 #[derive(Debug)]
 pub struct TranscriptStep {
-    /// Number of the action's line.
+    /// Number of the line that recorded the action.
     pub seq: u64,
-    /// Day of the run.
+    /// Day of the run on which the player acted.
     pub day: u32,
-    /// Time, RFC 3339.
+    /// Time of the action, RFC 3339.
     pub at: String,
-    /// The action.
+    /// The action of the player.
     pub action: TranscriptAction,
 }
 
@@ -69,36 +69,36 @@ pub struct TranscriptStep {
 pub enum TranscriptAction {
     /// A tool call.
     Call {
-        /// Tool, which can be unknown.
+        /// Called tool, which can be unknown to the program.
         tool: CalledTool,
-        /// Its arguments.
+        /// Arguments of the call.
         args: Value,
-        /// Result or rejection.
+        /// Result or rejection of the call.
         answer: Result<Value, RejectionRecord>,
-        /// Interface and duration.
+        /// Metadata of the call: interface and duration.
         extra: Map<String, Value>,
     },
     /// A database query.
     Query {
         /// SQL statement.
         sql: String,
-        /// Rows as programs receive them, or error code and message.
+        /// Rows in the form that programs receive, or error code and message.
         answer: Result<Value, (String, String)>,
-        /// Source of the statement, and duration.
+        /// Metadata of the query: source of the statement and duration.
         extra: Map<String, Value>,
     },
     /// Saved notes; `None` if the record does not contain the text.
     Note(Option<String>),
     /// A simulated week.
     Week {
-        /// Rationale.
+        /// Rationale of the player.
         rationale: String,
-        /// Forecasts.
+        /// Forecasts that were filed before the week.
         forecasts: Vec<FiledForecast>,
-        /// Result; `None` if the week did not end.
+        /// Result of the week; `None` if the week did not end.
         result: Option<WeekResult>,
     },
-    /// Actions that no interface for programs offers: single days and changed parameters.
+    /// Command of an action that no interface for programs offers: a single day or a changed parameter.
     Debugging(String),
 }
 
@@ -107,9 +107,9 @@ pub enum TranscriptAction {
 pub struct WeekResult {
     /// Last day of the week.
     pub day: u32,
-    /// Cash on that day, dollars.
+    /// Cash at the end of the week, dollars.
     pub cash: f64,
-    /// Dashboard on that day.
+    /// Dashboard at the end of the week as text.
     pub dashboard: String,
 }
 
@@ -117,8 +117,8 @@ impl Transcript {
     /// Reads a run folder or a trajectory file and replays it. `progress` is called with each simulated day.
     ///
     /// # Errors
-    /// Returns an error if the run is missing, damaged or of another version. The error names the place and what is
-    /// intact.
+    /// Returns an error if the run is missing, is damaged or has a different version. The error names the damaged line
+    /// and the part that is intact.
     pub fn open(path: &Path, progress: &mut dyn FnMut(u32)) -> Result<Transcript, RunError> {
         let mut playback = Playback::open(path)?;
         let lines: Vec<Line> = playback.lines().to_vec();
@@ -155,7 +155,7 @@ impl Transcript {
                 };
                 TranscriptAction::Call { tool: call.tool.clone(), args: call.args.clone(), answer, extra }
             }
-            // Queries of a script are part of its call.
+            // Queries of a script belong to the tool call that ran the script.
             Record::Query(query) if query.via == Some(QuerySource::Script) => {
                 return self.other_lines.push(context::line_as_json(line));
             }
@@ -190,7 +190,7 @@ impl Transcript {
                 self.end = Some(end.clone());
                 return;
             }
-            // Notes contain the final text; edits are kept separately.
+            // Saved notes contain the final text. Edits are stored with the other lines.
             Record::Activity(_) | Record::Voice(_) => {
                 return self.other_lines.push(context::line_as_json(line));
             }
@@ -204,7 +204,7 @@ impl Transcript {
         });
     }
 
-    /// Attaches the result of a week to the action that ran it.
+    /// Attaches the result of a week to the action that ran the week.
     fn close_week(&mut self, day: u32, cash: f64, state_hash: &str, session: &Session) {
         self.last_day_and_cash = (day, cash);
         self.state_hash = state_hash.to_owned();
@@ -222,7 +222,7 @@ impl Transcript {
         self.manifest.participant.clone().unwrap_or_else(|| "unnamed player".to_owned())
     }
 
-    /// Returns the definition and result of the run, for metadata fields of the formats.
+    /// Returns the definition and the result of the run for the metadata fields of the export formats.
     fn run_facts(&self) -> Map<String, Value> {
         let manifest = &self.manifest;
         let all = json!({

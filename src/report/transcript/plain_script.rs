@@ -1,4 +1,4 @@
-//! Export to a script of plain mode: the same decisions, replayed by `novamind play --plain --strict`.
+//! Export to a plain-mode script, which repeats the decisions of the run with `novamind play --plain --strict`.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use super::{Transcript, TranscriptAction, TranscriptStep, forecasts_as_json};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::CalledTool;
 
-/// Returns the script, with the command that runs it in the first lines.
+/// Returns the plain-mode script. The command that runs the script is in its first lines.
 pub fn to_plain_script(run: &Transcript) -> String {
     let manifest = &run.manifest;
     let head = format!(
@@ -18,7 +18,7 @@ pub fn to_plain_script(run: &Transcript) -> String {
         run.last_day_and_cash.0,
         run.state_hash,
         new_run_options(run),
-        // The label must not be the original participant's.
+        // The label must differ from the label of the original participant.
         if manifest.mode == Mode::Baseline { " --participant again" } else { "" },
     );
     let head = head + &describe_unreproducible(run).map(|words| format!("# {words}\n")).unwrap_or_default();
@@ -26,7 +26,7 @@ pub fn to_plain_script(run: &Transcript) -> String {
     head + &lines
 }
 
-/// Explains why replaying the run may end in a different state.
+/// Explains why the script may end in a different state, or returns `None` if it ends in the same state.
 pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> {
     let is_judged = run.manifest.voice.as_ref().is_some_and(|model| model.judge);
     is_judged.then_some(
@@ -34,8 +34,7 @@ pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> 
     )
 }
 
-/// Writes a rejected call as a comment in one line. Escapes the name of an unknown tool, which can contain any
-/// characters.
+/// Formats a rejected call as a one-line comment. Escapes the name of an unknown tool, because it can contain any characters.
 pub(super) fn rejected_call_comment(tool: &CalledTool, args: &Value, code: &str) -> String {
     let name = tool.tool_id().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
     format!("# refused ({code}): {name} {args}")
@@ -70,7 +69,7 @@ fn collect_parameters(above: &str, table: &toml::Table, all: &mut Vec<(String, S
     }
 }
 
-/// Returns the plain-mode line of an action; `None` if it changes nothing.
+/// Returns the plain-mode command of an action, or `None` if the action changes nothing.
 fn step_line(act: &TranscriptStep) -> Option<String> {
     match &act.action {
         TranscriptAction::Call { tool, args, answer: Ok(_), .. } => Some(format!("{tool} {args}")),

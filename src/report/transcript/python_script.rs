@@ -1,4 +1,4 @@
-//! Export to a Python program that uses the client: the same decisions on a served run.
+//! Export to a Python program, which repeats the decisions of the run through the client library on a served run.
 
 use serde_json::{Value, json};
 
@@ -6,10 +6,10 @@ use super::plain_script::{describe_unreproducible, new_run_options, rejected_cal
 use super::{Transcript, TranscriptAction, forecasts_as_json};
 use novamind_record::error::RunError;
 
-/// Returns the program.
+/// Returns the run as a Python program.
 ///
 /// # Errors
-/// Returns an error if the run has single days or changed parameters, which no server offers.
+/// Returns an error if the run has single days or changed parameters, because no server offers these actions.
 pub fn to_python_script(run: &Transcript) -> Result<String, RunError> {
     let manifest = &run.manifest;
     let mut text = format!(
@@ -58,8 +58,8 @@ fn python_literal(value: &Value) -> String {
         Value::Null => "None".to_owned(),
         Value::Bool(true) => "True".to_owned(),
         Value::Bool(false) => "False".to_owned(),
-        // JSON escapes are valid in Python except for surrogate pairs, so other text is not escaped. `/` is not
-        // escaped either.
+        // JSON escapes are valid in Python except for surrogate pairs. The JSON text therefore contains non-ASCII
+        // characters and `/` without escapes.
         Value::String(_) | Value::Number(_) => value.to_string(),
         Value::Array(all) => format!("[{}]", in_order(all.iter().map(python_literal).collect())),
         Value::Object(all) => {

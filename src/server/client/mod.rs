@@ -1,4 +1,4 @@
-//! The Python client: a package without dependencies, with modules generated from the catalog.
+//! The Python client: a package without dependencies, whose modules are generated from the catalog.
 
 mod module;
 
@@ -15,7 +15,7 @@ const PACKAGE: &str = include_str!("../../../assets/client/package.py");
 const PROJECT: &str = include_str!("../../../assets/client/pyproject.toml");
 const NOTEBOOK: &str = include_str!("../../../assets/client/twelve-weeks.ipynb");
 
-/// Writes the package to a folder for `pip install`. Replaces the files of an earlier client.
+/// Writes the Python package to a folder from which `pip install` can install it. Replaces the files of an earlier client.
 ///
 /// # Errors
 /// The folder cannot be written.

@@ -1,26 +1,27 @@
-//! A module of the Python client: a method and a function for each tool, with type hints and docstrings from the catalog.
+//! Generates a module of the Python client: a method and a function for each tool, with type hints and docstrings from
+//! the catalog.
 
 use std::fmt::Write;
 
 use crate::schema;
 use novamind_tools::{Argument, ArgumentKind, ParameterNumbers, ToolId, ToolModule, ToolSpec};
 
-/// Line width of a docstring.
+/// Line width of a docstring, in characters.
 const DOCSTRING_COLUMNS: usize = 116;
 
-/// Returns the name of the module in Python.
+/// Returns the name of the Python module that contains the tools of a catalog module.
 pub fn module_name(module: ToolModule) -> &'static str {
-    // A module `time` would shadow that of the standard library.
+    // A module `time` would shadow the module of the standard library.
     if module == ToolModule::Time { "scripts" } else { module.id() }
 }
 
-/// Returns the name of the class with the tools of a module.
+/// Returns the name of the Python class that contains the tools of a module.
 fn class_name(module: ToolModule) -> String {
     let name = module_name(module);
     name[..1].to_uppercase() + &name[1..]
 }
 
-/// Returns the source of a module: a class whose methods are the tools, and functions that use the default connection.
+/// Returns the Python source of a module: a class with a method per tool, and functions that use the default connection.
 pub fn module_source(module: ToolModule, numbers: &ParameterNumbers) -> String {
     let (name, class) = (module_name(module), class_name(module));
     let mut text = format!(
@@ -29,7 +30,7 @@ pub fn module_source(module: ToolModule, numbers: &ParameterNumbers) -> String {
          from .connection import Connection, default\n\n\nclass {class}:\n    \"\"\"The tools of {name}, of one run.\"\"\"\n\n    \
          def __init__(self, connection: Connection) -> None:\n        self._connection = connection\n"
     );
-    // The package has separate functions for these.
+    // Other modules of the package contain the functions for these tools.
     let elsewhere = [ToolId::NextWeek, ToolId::Query, ToolId::GetVars];
     let own_specs = || schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id));
     own_specs().for_each(|spec| text += &method_source(spec, numbers));

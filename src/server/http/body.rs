@@ -1,4 +1,4 @@
-//! The body of a request: one JSON object of limited size that must arrive within a time limit.
+//! Reads the body of a request: one JSON object of limited size that must arrive within a time limit.
 
 use std::time::Duration;
 
@@ -9,32 +9,32 @@ use crate::non_finite;
 use crate::request::{ApiResponse, ResponseStatus};
 use novamind_tools::Rejection;
 
-/// Maximum size of a body in bytes.
+/// Maximum size of a request body in bytes.
 const MAX_BODY_BYTES: usize = 1024 * 1024;
-/// Maximum time for a body to arrive.
+/// Time limit for the arrival of a request body.
 const BODY_DEADLINE: Duration = Duration::from_secs(30);
 
-/// The fields of a body.
+/// The fields of a request body.
 #[derive(Debug)]
 pub struct BodyFields {
     fields: Map<String, Value>,
-    /// Rejection of a body that was read but contains a value that JSON cannot represent.
+    /// Rejection if the body contains a value that JSON cannot represent, such as `NaN`.
     pub rejection: Option<Rejection>,
 }
 
 impl BodyFields {
-    /// Removes and returns a field, or null if it is missing.
+    /// Removes and returns a field of the body. Returns null if the field is missing.
     pub fn take(&mut self, name: &str) -> Value {
         self.fields.remove(name).unwrap_or(Value::Null)
     }
 
-    /// Returns the remaining fields.
+    /// Returns the remaining fields of the body.
     pub fn into_remaining(self) -> Value {
         self.fields.into()
     }
 }
 
-/// Reads a body.
+/// Reads the body of a request.
 ///
 /// # Errors
 /// The body is too large, too slow, not valid JSON, or not an object.

@@ -1,6 +1,8 @@
-//! Access control: accepts requests of programs on this machine that address it by name and have the token, if one is required.
+//! Access control. Requests must come from programs on this machine, name this machine as their host, and include the
+//! token if a token is required.
 //!
-//! Web pages can reach loopback ports, but they cannot choose the `Host` header, and their requests carry an `Origin`.
+//! Web pages can send requests to loopback ports, but cannot choose the `Host` header, and their requests include an
+//! `Origin` header.
 
 use std::io;
 use std::path::Path;
@@ -11,15 +13,15 @@ use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 use crate::request::{ApiResponse, ResponseStatus};
 use novamind_record::error::RunError;
 
-/// Requirements on requests.
+/// Requirements that a request must meet.
 #[derive(Debug, Clone)]
 pub struct RequestGuard {
-    /// The token of `Authorization: Bearer`.
+    /// Token that requests must send as `Authorization: Bearer`, if a token is required.
     pub token: Option<String>,
 }
 
 impl RequestGuard {
-    /// Checks the head of a request. Returns the rejection, or `None` if the request is allowed.
+    /// Checks the headers of a request. Returns a rejection, or `None` if the request is allowed.
     pub fn rejection_for(&self, head: &HeaderMap) -> Option<ApiResponse> {
         let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
         if head.get_all(HOST).iter().count() != 1 || !text(HOST).is_some_and(is_loopback) {
@@ -41,7 +43,7 @@ impl RequestGuard {
     }
 }
 
-/// Returns the token of an `Authorization` header. The scheme is case-insensitive.
+/// Returns the token of an `Authorization` header. The case of the scheme is ignored.
 fn bearer_token(header: &str) -> Option<&str> {
     let (scheme, token) = header.split_once(' ')?;
     scheme.eq_ignore_ascii_case("bearer").then(|| token.trim_start_matches(' '))
@@ -64,12 +66,12 @@ fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Compares in constant time, so that the duration does not reveal a correct prefix.
+/// Compares tokens in constant time, so that the duration does not reveal a correct prefix.
 fn constant_time_eq(given: &str, expected: &str) -> bool {
     blake3::hash(given.as_bytes()) == blake3::hash(expected.as_bytes())
 }
 
-/// Returns a random token.
+/// Generates a random token.
 ///
 /// # Errors
 /// The system returns no random numbers.

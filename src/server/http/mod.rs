@@ -28,30 +28,30 @@ use novamind_session::Session;
 use routes::ServedRun;
 use shutdown::Shutdown;
 
-/// Maximum number of open connections. Further ones are rejected with status 503.
+/// Maximum number of open connections. Additional connections are rejected with status 503.
 const MAX_CONNECTIONS: usize = 64;
-/// Time after which a rejected connection is closed at the latest.
+/// Maximum time before a rejected connection is closed.
 const REFUSED_CONNECTION_DEADLINE: Duration = Duration::from_secs(2);
-/// Maximum time for the head of a request to arrive.
+/// Time limit for the arrival of a request's headers.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
-/// Time for pending requests to arrive and be answered after a request to stop.
+/// Time limit for answering pending requests after a request to stop the server.
 const SHUTDOWN_DEADLINE: Duration = Duration::from_secs(60);
-/// Interval between attempts to stop code that keeps the server from ending.
+/// Interval between attempts to stop running code while the server shuts down.
 const STOP_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Options of the server.
+/// Options of the HTTP server.
 #[derive(Debug, Clone, Default)]
 pub struct HttpOptions {
-    /// File with the token that requests must carry.
+    /// File with the token that requests must include.
     pub token: Option<PathBuf>,
 }
 
-/// A bound port. It is bound before the run is created, so that no run is created that cannot be served.
+/// A bound port on 127.0.0.1. The port is bound before the run is created, so that every created run can be served.
 #[derive(Debug)]
 pub struct BoundPort(std::net::TcpListener);
 
 impl BoundPort {
-    /// Binds a port of 127.0.0.1, or any free one if `port` is `None`.
+    /// Binds a port of 127.0.0.1, or any free port if `port` is `None`.
     ///
     /// # Errors
     /// The port is in use.
@@ -64,15 +64,15 @@ impl BoundPort {
         match bound {
             Ok(listener) => Ok(BoundPort(listener)),
             Err(error) => Err(RunError::InvalidRequest(format!(
-                "cannot use port {} of 127.0.0.1 ({error}); give another one, or none to use any free port",
+                "cannot use port {} of 127.0.0.1 ({error}); give another port, or none to use any free port",
                 address.1
             ))),
         }
     }
 }
 
-/// Serves a run until a signal or a request asks to stop. `ready` is called with the address when requests are accepted;
-/// `on_defect` is called with reports of internal errors.
+/// Serves a run until a signal or a request stops the server. Calls `ready` with the address when the server accepts
+/// requests, and `on_defect` with reports of internal errors.
 ///
 /// # Errors
 /// The token file cannot be read, or the end of the record cannot be written.
@@ -112,7 +112,7 @@ pub fn serve_http(
         accept_connections(&listener, router, shutdown, &owner).await;
         Ok(())
     });
-    // Requests that were cut off still hold handles of the owner.
+    // Drop aborted requests, because they still own handles of the session worker.
     drop(runtime);
     // The run is still locked, so no other server can have written an announcement.
     if let Some(folder) = &folder {
@@ -122,7 +122,7 @@ pub fn serve_http(
     served
 }
 
-/// Reads the token of a file, or creates the file with a new one.
+/// Reads the token from a file, or creates the file with a new token.
 fn read_or_create_token(path: &Path) -> Result<String, RunError> {
     let failed = RunError::io(path);
     match std::fs::read_to_string(path) {
@@ -152,7 +152,7 @@ async fn accept_connections(
         let stream = tokio::select! {
             accepted = listener.accept() => match accepted {
                 Ok((stream, _)) => stream,
-                // Too many open files, or a connection that has gone; the next attempt may succeed.
+                // Too many files are open, or the client closed the connection. The next attempt may succeed.
                 Err(_) => {
                     tokio::time::sleep(Duration::from_millis(20)).await;
                     continue;
@@ -174,12 +174,12 @@ async fn accept_connections(
             http.serve_connection(TokioIo::new(stream), TowerToHyperService::new(router.clone()));
         let watched = open.watch(connection);
         tokio::spawn(async move {
-            // A client that disconnects does not affect the run.
+            // Ignore errors, because a client that disconnects does not affect the run.
             let _ = watched.await;
             drop(place);
         });
     }
-    // Repeated, because a week has several calculations, and a waiting request may contain a script.
+    // Repeat the stop, because a week has several calculations and a queued request may contain a script.
     let stop_code = async {
         loop {
             owner.stop_running_code();
@@ -206,7 +206,7 @@ async fn refuse_connection(mut stream: TcpStream) {
          connection: close\r\n\r\n",
         body.len()
     );
-    // Some clients report a response that arrives before their request as a connection error.
+    // Some clients report a connection error if the response arrives before they have sent their request.
     let mut unread = [0; 4096];
     let _ = tokio::time::timeout(REFUSED_CONNECTION_DEADLINE / 2, stream.read(&mut unread)).await;
     let answered = stream.write_all(format!("{head}{body}").as_bytes()).await;

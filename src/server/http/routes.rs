@@ -1,4 +1,4 @@
-//! The routes: how each reads its body, and the status of its response.
+//! The routes of the HTTP server: they convert request bodies to requests, and responses to HTTP status codes.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use novamind_database::tables;
 use novamind_tools::describe::{ToolDocument, document_tool};
 use novamind_tools::{CATALOGUE, ParameterNumbers, ToolId};
 
-/// State of the routes.
+/// State that all routes share.
 #[derive(Clone)]
 struct RouteState {
     handle: SessionHandle,
@@ -30,16 +30,16 @@ struct RouteState {
     served: ServedRun,
 }
 
-/// The run of the server and its stop notification.
+/// The id of the served run, and the notification that stops the server.
 #[derive(Clone)]
 pub struct ServedRun {
-    /// Run id.
+    /// Id of the served run.
     pub run: String,
-    /// Notified when a request asks to stop.
+    /// Notification that a request to stop the server has arrived.
     pub stop: Arc<Notify>,
 }
 
-/// Returns all routes, protected by the guard.
+/// Returns a router with all routes, which the guard protects.
 pub fn router(
     handle: SessionHandle,
     guard: RequestGuard,
@@ -133,7 +133,7 @@ async fn call(State(door): State<RouteState>, body: Body) -> Response {
         Ok(fields) => fields,
         Err(wrong) => return close_connection(to_http_response(&wrong)),
     };
-    // A name that is not a text cannot be a tool.
+    // Convert a name of another type to text, so that the tool is rejected as unknown.
     let tool = match fields.take("tool") {
         Value::String(name) => name,
         Value::Null => String::new(),
@@ -143,7 +143,7 @@ async fn call(State(door): State<RouteState>, body: Body) -> Response {
         Value::Null => json!({}),
         given => given,
     };
-    // The request id may be next to the arguments or among them.
+    // Clients may send `request_id` and `expected_day` next to the arguments or among the arguments.
     if let (Value::Object(args), day @ Value::Number(_)) = (&mut args, fields.take("expected_day")) {
         args.entry("expected_day").or_insert(day);
     }
@@ -208,7 +208,7 @@ fn to_http_response(answer: &ApiResponse) -> Response {
     response
 }
 
-/// Closes the connection after the response. Otherwise the unread rest of a body would be taken for the next request.
+/// Closes the connection after the response. Otherwise, the server would read the unread rest of the body as the next request.
 fn close_connection(mut response: Response) -> Response {
     response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
     response

@@ -1,4 +1,4 @@
-//! Signals and requests that stop a server.
+//! Waits for signals and requests that stop the server.
 
 use std::io;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub struct Shutdown {
 }
 
 impl Shutdown {
-    /// Starts listening. From now on these signals do not end the program at once.
+    /// Starts to listen for signals. After this call, these signals no longer end the program immediately.
     #[cfg(unix)]
     pub fn listen() -> io::Result<Shutdown> {
         use tokio::signal::unix::{SignalKind, signal};
@@ -28,18 +28,18 @@ impl Shutdown {
         })
     }
 
-    /// Starts listening. From now on ctrl-c does not end the program at once.
+    /// Starts to listen for ctrl-c. After this call, ctrl-c no longer ends the program immediately.
     #[cfg(not(unix))]
     pub fn listen() -> io::Result<Shutdown> {
         Ok(Shutdown { request: Arc::default() })
     }
 
-    /// Returns the notification for a request to stop.
+    /// Returns the notification with which a request stops the server.
     pub fn stop_notifier(&self) -> Arc<Notify> {
         self.request.clone()
     }
 
-    /// Completes when the server is asked to stop.
+    /// Completes when a signal or a request stops the server.
     #[cfg(unix)]
     pub async fn wait(&mut self) {
         let [interrupt, terminate, hangup] = &mut self.signals;
@@ -51,7 +51,7 @@ impl Shutdown {
         }
     }
 
-    /// Completes when the server is asked to stop.
+    /// Completes when a signal or a request stops the server.
     #[cfg(not(unix))]
     pub async fn wait(&mut self) {
         tokio::select! {

@@ -28,11 +28,11 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_tools::ParameterNumbers;
 
-/// Instructions for clients.
+/// Instructions that clients pass to their model.
 const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \
      with next_week. Read the resources novamind://goal and novamind://manual first.";
 
-/// Serves a run on standard input and output until the input ends. `on_defect` is called with reports of internal errors.
+/// Serves a run on standard input and output until the input ends. Calls `on_defect` with reports of internal errors.
 ///
 /// # Errors
 /// The end of the record cannot be written, or standard input and output cannot be used.
@@ -53,7 +53,7 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
         let (streams, writing) = stdio::open();
         let running = McpServer { handle, numbers, goal }.serve(streams).await.map_err(io::Error::other)?;
         let ended = running.waiting().await.map_err(io::Error::other);
-        // The last answer may not have been written yet.
+        // Wait for the output, because the last response may not have been written yet.
         writing.await.map_err(io::Error::other)?;
         ended
     });
@@ -67,11 +67,11 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     served.map(drop).map_err(RunError::io(Path::new("standard input")))
 }
 
-/// A client and its run.
+/// The protocol server for one run.
 struct McpServer {
     handle: SessionHandle,
     numbers: Arc<ParameterNumbers>,
-    /// Goal, calendar and rules of the run.
+    /// Text that describes the goal, calendar and rules of the run.
     goal: String,
 }
 

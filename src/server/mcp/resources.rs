@@ -15,7 +15,7 @@ const MANUAL: &str = "novamind://manual";
 const TABLES: &str = "novamind://tables";
 const NOTES: &str = "novamind://memo";
 
-/// Returns all resources.
+/// Returns the list of all resources.
 pub fn list() -> Vec<Resource> {
     let one = |uri: &str, name: &str, title: &str| {
         Resource::new(uri, name).with_title(title).with_mime_type("text/plain")
@@ -29,10 +29,10 @@ pub fn list() -> Vec<Resource> {
     ]
 }
 
-/// Reads a resource.
+/// Returns the content of a resource.
 ///
 /// # Errors
-/// There is no such resource.
+/// There is no resource with this URI.
 pub async fn read(
     uri: &str,
     handle: &SessionHandle,
@@ -52,7 +52,7 @@ pub async fn read(
             texts.join("\n")
         }
         _ => {
-            let message = format!("there is no resource {uri}; resources/list lists them");
+            let message = format!("there is no resource {uri}; resources/list lists all resources");
             return Err(ErrorData::resource_not_found(message, None));
         }
     };

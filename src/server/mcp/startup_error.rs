@@ -1,26 +1,26 @@
-//! The error for a client whose run cannot be opened. Without it the client would only see a closed connection.
+//! Reports an error to a client whose run cannot be opened. Without this error, the client would only see a closed connection.
 
 use std::io::{BufRead, IsTerminal, Write, stdin, stdout};
 
 use serde_json::{Value, json};
 
-/// Code for errors defined by a server.
+/// JSON-RPC error code that is reserved for errors defined by servers.
 const SERVER_ERROR: i32 = -32000;
 
-/// Answers the first request on standard input, which is `initialize`, with an error. Returns at once if standard input is a
-/// terminal.
+/// Responds to the first request on standard input, which is `initialize`, with an error. Returns immediately if
+/// standard input is a terminal.
 pub fn reject_mcp_client(problem: &str) {
     if stdin().is_terminal() {
         return;
     }
     if let Some(refusal) = error_response(stdin().lock(), problem) {
         let mut out = stdout().lock();
-        // The client may have gone.
+        // Ignore errors, because the client may have closed the connection.
         let _ = writeln!(out, "{refusal}").and_then(|()| out.flush());
     }
 }
 
-/// Returns the error for the first request among messages, or `None` if there is no request.
+/// Returns the error response for the first request in `messages`, or `None` if there is no request.
 fn error_response(messages: impl BufRead, problem: &str) -> Option<Value> {
     let messages = messages.lines().map_while(Result::ok);
     let id =

@@ -1,6 +1,6 @@
-//! Standard input and output of the protocol. Lines that are not JSON are answered with a parse error.
+//! Connects the protocol to standard input and output. The response to a line that is not valid JSON is a parse error.
 //!
-//! The protocol library drops such lines, and their sender would wait forever.
+//! The protocol library drops such lines, so that the client would wait forever.
 
 use serde_json::{Value, json};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream, duplex};
@@ -9,7 +9,7 @@ use tokio::task::JoinHandle;
 
 use crate::non_finite;
 
-/// Size of the buffer between the streams and the protocol, in bytes.
+/// Size of the buffers between standard input or output and the protocol library, in bytes.
 const BUFFER_BYTES: usize = 64 * 1024;
 /// Maximum size of a message in bytes.
 const MAX_MESSAGE_BYTES: usize = 16 * 1024 * 1024;
@@ -24,7 +24,7 @@ pub fn open() -> ((DuplexStream, DuplexStream), JoinHandle<()>) {
     ((input, output), writing)
 }
 
-/// Forwards each line that is JSON, until the input ends.
+/// Forwards each valid JSON line to the protocol library until the input ends.
 async fn forward_lines(mut forward: DuplexStream, problems: UnboundedSender<String>) {
     let mut input = BufReader::new(tokio::io::stdin());
     let mut line = Vec::new();
@@ -61,7 +61,7 @@ async fn forward_lines(mut forward: DuplexStream, problems: UnboundedSender<Stri
     }
 }
 
-/// Skips the rest of a line in pieces of limited size.
+/// Skips the rest of a line without storing the whole line in memory.
 async fn skip_line(input: &mut BufReader<tokio::io::Stdin>) {
     let mut piece = Vec::new();
     loop {
@@ -92,7 +92,7 @@ async fn write_lines(answers: DuplexStream, mut problems: UnboundedReceiver<Stri
     }
 }
 
-/// Returns the parse error for a message. It carries the id if only `NaN` or `Infinity` makes the message invalid JSON.
+/// Returns the parse error for a message. `id` is the id of the message, or null if the message could not be parsed.
 fn parse_error(id: &Value, message: &str) -> String {
     json!({ "jsonrpc": "2.0", "id": id, "error": { "code": -32700, "message": message } }).to_string()
 }

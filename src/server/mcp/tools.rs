@@ -1,4 +1,4 @@
-//! The tools of the catalog in the form of the protocol.
+//! Converts the tools of the catalog to the types of the Model Context Protocol.
 
 use std::sync::Arc;
 
@@ -10,12 +10,12 @@ use crate::schema;
 use novamind_tools::describe::format_manual;
 use novamind_tools::{ParameterNumbers, ToolKind, ToolSpec};
 
-/// Returns all tools.
+/// Returns the descriptions of all tools.
 pub fn list(numbers: &ParameterNumbers) -> Vec<Tool> {
     schema::specs().map(|spec| describe_tool(spec, numbers)).collect()
 }
 
-/// Returns the tool of a name.
+/// Returns the description of the tool with this name.
 pub fn find(name: &str, numbers: &ParameterNumbers) -> Option<Tool> {
     schema::specs().find(|spec| spec.name() == name).map(|spec| describe_tool(spec, numbers))
 }
@@ -38,7 +38,8 @@ fn tool_annotations(spec: &ToolSpec) -> ToolAnnotations {
         .open_world(false)
 }
 
-/// Converts an answer to the result of a call. A rejection is an error that the model reads, not a protocol error.
+/// Converts a response to the result of a tool call. A rejection becomes a tool error, which the model reads, and not
+/// a protocol error.
 pub fn to_call_result(answer: ApiResponse) -> CallToolResult {
     if answer.is_success() {
         CallToolResult::structured(answer.body)

@@ -1,4 +1,4 @@
-//! Creates archives.
+//! Export of runs to archives.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -28,23 +28,23 @@ use novamind_record::trajectory::{Line, Trajectory};
 
 /// A verified copy of a run, ready to be inspected and archived.
 ///
-/// The copy is the run on disk at the time of the call. A program that plays the run is not disturbed.
+/// The copy contains the files of the run at the time of the export. Another program can play the run during the export.
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
     afterwards_lines: Vec<Line>,
-    /// Folder with copies of the files; must outlive the session.
+    /// Folder with copies of the run's files; must outlive the session.
     copied_folder: PathBuf,
     _temporary_folder: TemporaryFolder,
 }
 
 impl Export {
     /// Copies the run in a folder and verifies it by simulation. The copies are in a hidden folder in `parent`, which
-    /// should be on the disk of the archive. `key` is the key of the run's snapshots.
+    /// should be on the same disk as the archive. `key` is the seal key of the run's snapshots.
     ///
     /// # Errors
-    /// [`RunError::Damaged`] if the run is damaged, with the file, the line and what is safe. Other errors if the run
-    /// has another version, or if `parent` cannot be written.
+    /// [`RunError::Damaged`] if the run is damaged; names the file, the line and the data that is safe. Other errors
+    /// if the run was recorded with another version, or if `parent` cannot be written.
     pub fn prepare(folder: &Path, parent: &Path, key: &SealKey) -> Result<Export, RunError> {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();
@@ -63,7 +63,7 @@ impl Export {
             }
             Some(_) => manifest.write(copied_folder)?,
         }
-        // A line without a line end was never confirmed: another program may be writing it.
+        // Omit a last line without a line feed: another program may still be writing this line.
         put(TRAJECTORY_FILE, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
         trajectory.unfinished_bytes = 0;
         let after = read_afterwards(folder, &trajectory)?;
@@ -93,7 +93,7 @@ impl Export {
         })
     }
 
-    /// Returns the run, open for reading.
+    /// Returns a read-only session of the copied run.
     pub fn session(&self) -> &Session {
         &self.session
     }
@@ -108,17 +108,18 @@ impl Export {
         &self.afterwards_lines
     }
 
-    /// Writes the archive atomically. Signs it if `key` is given.
+    /// Writes the archive atomically. Signs the archive if `key` is given.
     ///
     /// # Errors
-    /// [`RunError::AlreadyExists`] if the file exists and `replace` is false. [`RunError::Io`] if the disk fails.
+    /// [`RunError::AlreadyExists`] if the file exists and `replace` is false. [`RunError::Io`] if the archive cannot
+    /// be written.
     pub fn write(&self, archive: &Path, replace: bool, key: Option<&LabKey>) -> Result<Seal, RunError> {
         if !replace && archive.exists() {
             let message = format!("{} already exists: choose another name, or remove it", archive.display());
             return Err(RunError::AlreadyExists(message));
         }
         let database = self.copied_folder.join(DATABASE_FILE);
-        // The archive can be written twice. The database is copied for each.
+        // The archive can be written more than once, so remove the database of an earlier call.
         let _ = std::fs::remove_file(&database);
         self.session.database().copy_to(&database)?;
         let seal = self.build_seal()?;
@@ -150,7 +151,8 @@ impl Export {
         let seal = Seal {
             format: SEAL_FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            // Not the time of the export: an unchanged run always has the same seal.
+            // The time of the last line is used instead of the time of the export, so that an unchanged run always has
+            // the same seal.
             created: last.map(|line| line.at.clone()).unwrap_or_default(),
             run: self.session.manifest().id.clone(),
             last_seq: last.map_or(0, |line| line.seq),
@@ -195,8 +197,8 @@ impl Export {
     }
 }
 
-/// Reads a trajectory that another program may be writing, and checks it against manifest and integrity. Reads these
-/// two first, so that the trajectory is at least as new as they are.
+/// Reads a trajectory that another program may be writing, and checks the trajectory against the manifest and the
+/// integrity file. Reads these two files first, so that the trajectory is at least as new.
 fn read_stable_trajectory(
     folder: &Path,
     manifest: &Manifest,
@@ -211,7 +213,7 @@ fn read_stable_trajectory(
     Ok((bytes, trajectory))
 }
 
-/// Returns a tar header without owner and time, so that it does not depend on the machine.
+/// Returns a tar header without owner and time, so that archives do not depend on the machine.
 fn entry_header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
     let mut header = tar::Header::new_ustar();
     header.set_path(format!("{run}/{name}"))?;
@@ -222,7 +224,7 @@ fn entry_header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Heade
     Ok(header)
 }
 
-/// Replaces paths of the copies in an error by the original paths.
+/// Replaces the path of a copied file in an error with the path of the original file.
 fn with_original_path(error: RunError, copies: &Path, folder: &Path) -> RunError {
     let original = |path: PathBuf| match path.strip_prefix(copies) {
         Ok(name) => folder.join(name),

@@ -1,4 +1,4 @@
-//! Imports archives.
+//! Import of runs from archives.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -28,9 +28,9 @@ use novamind_record::trajectory::{Line, Record, Trajectory};
 pub enum ImportOutcome {
     /// The run was imported into this folder.
     New(PathBuf),
-    /// An identical run exists already; nothing was changed.
+    /// An identical run already exists; nothing was changed.
     AlreadyPresent {
-        /// The notes in the archive differ from those of the existing run.
+        /// Whether the notes in the archive differ from the notes of the existing run.
         notes_differ: bool,
     },
 }
@@ -38,17 +38,16 @@ pub enum ImportOutcome {
 /// The seal of an archive, its signer and the result of the import.
 pub type ImportResult = (Seal, Option<LabPublicKey>, ImportOutcome);
 
-/// Imports the run of an archive into a folder of runs and returns the signer, if the archive is signed. Checks
-/// everything before it creates the run: the seal, the hash of every file, the hash chain of the trajectory, and that
-/// the archive has no other files.
+/// Imports the run in an archive into a runs folder. Returns the seal, the signer (if the archive is signed) and the
+/// outcome. Before creating the run, checks the seal, the hash of every file, the hash chain of the trajectory, and
+/// that the archive has no other files.
 ///
-/// With `name`, the run is imported under that name, next to another record of the same run. Its lines keep the
-/// original identifier.
+/// With `name`, imports the run under that name, next to another record of the same run. The lines keep the original run id.
 ///
 /// # Errors
-/// [`RunError::InvalidArchive`] if the archive is damaged, foreign or unsafe; names the file. [`RunError::AlreadyExists`] if
-/// another state of the run exists, or the name is taken. [`RunError::InvalidRequest`] if `name` is invalid. Nothing has
-/// changed then.
+/// [`RunError::InvalidArchive`] if the archive is damaged or unsafe, or is not an archive of a run; names the file.
+/// [`RunError::AlreadyExists`] if another state of the run exists, or the name is taken. [`RunError::InvalidRequest`]
+/// if `name` is invalid. After an error, nothing has changed.
 pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportResult, RunError> {
     if let Some(name) = name.filter(|name| !is_valid_run_name(name)) {
         let message = format!(
@@ -68,7 +67,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
     let draft = workshop.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
     let folder = destination_folder(runs, &draft, &seal)?;
-    // A name must be unique on a machine, across all participants.
+    // A run name must be unique on a machine, across all participants.
     let own_name = name.unwrap_or(&seal.run);
     let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|path| path.join(own_name));
     if let Some(place) = there.into_iter().find(|place| place.exists()) {
@@ -89,7 +88,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
     Ok((seal, signer, ImportOutcome::New(place)))
 }
 
-/// Returns the folder of runs for a run: that of its participant, if it exists on this machine.
+/// Returns the runs folder for an imported run: the folder of its participant, if that folder exists on this machine.
 fn destination_folder(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunError> {
     let whose = Manifest::read(draft)?.participant;
     match (participant_of_folder(runs), whose) {
@@ -112,7 +111,7 @@ struct UnpackedArchive {
     signature_text: Option<String>,
 }
 
-/// Copies the files of an archive into `workshop/<run>/`. The database is hashed, but not copied.
+/// Unpacks the files of an archive to `workshop/<run>/`. The database is hashed but not copied.
 fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> {
     let broken = |error: io::Error| {
         archive_error(archive, format!("this is not an archive of a run, or it is truncated ({error})"))
@@ -124,7 +123,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> 
         seal_text: String::new(),
         signature_text: None,
     };
-    // Raw mode rejects extensions that rename or enlarge the next file.
+    // Raw mode reads tar extensions as normal entries, so they cannot rename or enlarge the next file.
     for entry in tar.entries().map_err(broken)?.raw(true) {
         let mut entry = entry.map_err(broken)?;
         let name = String::from_utf8_lossy(&entry.path_bytes()).into_owned();
@@ -161,7 +160,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> 
         let path = workshop.join(run).join(file);
         let measured = store_entry(&mut entry, &path, file).map_err(|error| match error {
             CopyError::Read(error) => unreadable_entry(archive, &name, &error),
-            // The archive is intact; the disk has no space.
+            // The archive is intact, but the copy cannot be written to the disk.
             CopyError::Write(error) => RunError::Io { path, error },
         })?;
         if file == SEAL_FILE || file == SIGNATURE_FILE {
@@ -173,7 +172,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> 
         }
         found.files.push(measured);
     }
-    // The checksum at the end of a compressed file covers all of it.
+    // Read the compressed file to its end, where its checksum is verified.
     io::copy(&mut tar.into_inner().take(1 << 20), &mut io::sink()).map_err(broken)?;
     Ok(found)
 }
@@ -188,7 +187,7 @@ fn open_archive(archive: &Path) -> Result<Box<dyn Read>, RunError> {
     Ok(if compressed { Box::new(MultiGzDecoder::new(reader)) } else { Box::new(reader) })
 }
 
-/// Splits an entry name into run and file, if it has exactly that form.
+/// Splits an entry name of the form `run/file` into run and file. Returns `None` for other names.
 fn split_entry_name(name: &str) -> Option<(&str, &str)> {
     let (run, file) = name.strip_prefix("./").unwrap_or(name).split_once('/')?;
     is_run_id(run).then_some((run, file))
@@ -211,7 +210,7 @@ fn store_entry(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFi
     Ok(SealedFile { name, bytes, blake3 })
 }
 
-/// Parses the seal and compares it with the contents.
+/// Parses the seal and compares it with the contents of the archive.
 fn check_seal(archive: &Path, found: &UnpackedArchive) -> Result<Seal, RunError> {
     if found.seal_text.is_empty() {
         return Err(archive_error(archive, "seal.toml is missing: this is not an archive of a run"));
@@ -220,7 +219,7 @@ fn check_seal(archive: &Path, found: &UnpackedArchive) -> Result<Seal, RunError>
         .map_err(|error| archive_error(archive, format!("seal.toml cannot be read ({})", error.message())))?;
     if seal.format > SEAL_FORMAT {
         let problem = format!(
-            "version {} created it in format {}; this program reads format {SEAL_FORMAT}. Use that version",
+            "version {} created this archive in format {}; this program reads format {SEAL_FORMAT}. Use that version",
             seal.program, seal.format
         );
         return Err(archive_error(archive, problem));
@@ -277,7 +276,7 @@ fn check_run(archive: &Path, draft: &Path, seal: &Seal) -> Result<(), RunError> 
     Ok(())
 }
 
-/// Describes an error of the copies without their paths.
+/// Describes an error in the unpacked copies without the temporary path.
 fn problem_without_path(error: RunError) -> String {
     match error {
         RunError::Damaged { path, line, problem, .. } => {
@@ -288,7 +287,7 @@ fn problem_without_path(error: RunError) -> String {
     }
 }
 
-/// Compares the existing run with that of the archive.
+/// Compares the existing run with the run in the archive.
 fn compare_with_existing(draft: &Path, place: &Path, seal: &Seal) -> Result<ImportOutcome, RunError> {
     let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).unwrap_or_default();
     let (bytes, there) = (read(draft, TRAJECTORY_FILE), read(place, TRAJECTORY_FILE));
@@ -298,9 +297,10 @@ fn compare_with_existing(draft: &Path, place: &Path, seal: &Seal) -> Result<Impo
         });
     }
     let how = if there.starts_with(&bytes) {
-        "it is the same run and was continued after the export".to_owned()
+        "the existing run was continued after the export".to_owned()
     } else if bytes.starts_with(&there) {
-        "the archive has a later state of it; delete or move the older run to import it".to_owned()
+        "the archive has a later state of this run; delete or move the existing run to import the archive"
+            .to_owned()
     } else {
         describe_difference(draft, place)
     };
@@ -347,12 +347,12 @@ fn describe_difference(draft: &Path, place: &Path) -> String {
 fn describe_line(line: &Line) -> String {
     let what = match &line.record {
         Record::Call(call) => format!("a call of {}", call.tool),
-        record => format!("a line {}", record.kind()),
+        record => format!("a {} line", record.kind()),
     };
     format!("{what} on day {}, written {}", line.day, line.at)
 }
 
-/// Returns whether a folder of runs can contain a run with this name.
+/// Returns whether a run in a runs folder can have this name.
 fn is_valid_run_name(name: &str) -> bool {
     let fits = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'-' | b'_');
     (1..=40).contains(&name.len()) && name.bytes().all(fits) && name != PARTICIPANTS_FOLDER

@@ -1,5 +1,5 @@
-//! Signing keys of a laboratory. A signed archive comes from the holder of the key and is unchanged
-//! (docs/formats/archive.md#signature).
+//! Signing keys of a laboratory. A valid signature proves that the owner of the key signed the archive and that the
+//! archive is unchanged (docs/formats/archive.md#signature).
 
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -14,15 +14,15 @@ use novamind_record::files::{parent_folder, sync_folder};
 const PRIVATE_KEY_TITLE: &str = "novamind lab key 1: keep it secret, and keep a copy";
 const PUBLIC_KEY_TITLE: &str = "novamind lab public key 1";
 const SEAL_KEY_TITLE: &str = "novamind seal key 1: keep it secret";
-/// Separates the snapshot key from other uses of the same hash.
+/// Context string that separates the seal key from other keys that BLAKE3 derives from the lab key.
 const SEAL_KEY_CONTEXT: &str = "novamind 2026-11 seal key of a lab";
-/// Prefix of every signed message, so that a signature is valid for archives only.
+/// Prefix of every signed message, so that signatures are valid only for seals of archives.
 const SIGNATURE_CONTEXT: &[u8] = b"novamind seal of an archive 1\n";
 
-/// A private key.
+/// Private signing key of a laboratory.
 pub struct LabKey(SigningKey);
 
-/// The public key that belongs to a private one.
+/// Public key of a laboratory, which verifies signatures of its private key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabPublicKey(VerifyingKey);
 
@@ -36,7 +36,7 @@ struct SignatureFile {
 }
 
 impl LabKey {
-    /// Generates a key.
+    /// Generates a private key.
     ///
     /// # Errors
     /// The system provides no random numbers.
@@ -50,15 +50,15 @@ impl LabKey {
         Ok(LabKey(SigningKey::from_bytes(&secret)))
     }
 
-    /// Reads `lab.key`.
+    /// Reads the private key from `lab.key`.
     ///
     /// # Errors
-    /// The file cannot be read, or is not a private key.
+    /// The file cannot be read or is not a private key.
     pub fn read(file: &Path) -> Result<LabKey, RunError> {
         Ok(LabKey(SigningKey::from_bytes(&read_key_file(file, PRIVATE_KEY_TITLE)?)))
     }
 
-    /// Writes the key into a new file that only its owner can read.
+    /// Writes the private key to a new file that only its owner can read.
     ///
     /// # Errors
     /// The file exists, or cannot be written.
@@ -66,12 +66,12 @@ impl LabKey {
         write_secret_file(file, &format_key_file(PRIVATE_KEY_TITLE, &self.0.to_bytes()))
     }
 
-    /// Returns the secret that seals the snapshots of a study. The key cannot be derived from it.
+    /// Returns the secret that seals the snapshots of a study. The lab key cannot be derived from this secret.
     pub fn seal_secret(&self) -> [u8; 32] {
         blake3::derive_key(SEAL_KEY_CONTEXT, &self.0.to_bytes())
     }
 
-    /// Returns the public key.
+    /// Returns the public key of this private key.
     pub fn public_key(&self) -> LabPublicKey {
         LabPublicKey(self.0.verifying_key())
     }
@@ -88,16 +88,16 @@ impl LabKey {
 }
 
 impl LabPublicKey {
-    /// Reads `lab.pub`.
+    /// Reads the public key from `lab.pub`.
     ///
     /// # Errors
-    /// The file cannot be read, or is not a public key.
+    /// The file cannot be read or is not a public key.
     pub fn read(file: &Path) -> Result<LabPublicKey, RunError> {
         let bytes = read_key_file(file, PUBLIC_KEY_TITLE)?;
         VerifyingKey::from_bytes(&bytes).map(LabPublicKey).map_err(|_| invalid_key_error(file))
     }
 
-    /// Writes the key into a new file.
+    /// Writes the public key to a new file.
     ///
     /// # Errors
     /// The file exists, or cannot be written.
@@ -107,7 +107,7 @@ impl LabPublicKey {
         written.map_err(RunError::io(file))
     }
 
-    /// Returns 16 hexadecimal digits that identify the key, for comparison by eye.
+    /// Returns 16 hexadecimal digits that identify the key, for comparison by people.
     pub fn fingerprint(&self) -> String {
         let digits = blake3::hash(self.0.as_bytes()).to_hex();
         [&digits[..4], &digits[4..8], &digits[8..12], &digits[12..16]].join("-")
@@ -132,12 +132,12 @@ pub(super) fn verify_signature(seal: &str, signature: &str) -> Result<LabPublicK
         .map_err(|_| "seal.sig does not belong to seal.toml: one of them was changed".to_owned())
 }
 
-/// Reads `seal.key`.
+/// Reads the seal key from `seal.key`.
 pub fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
     read_key_file(file, SEAL_KEY_TITLE)
 }
 
-/// Writes `seal.key` into a new file that only its owner can read.
+/// Writes the seal key to a new file that only its owner can read.
 pub fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
     write_secret_file(file, &format_key_file(SEAL_KEY_TITLE, secret))
 }
@@ -168,7 +168,10 @@ fn read_key_file(file: &Path, title: &str) -> Result<[u8; 32], RunError> {
 }
 
 fn invalid_key_error(file: &Path) -> RunError {
-    RunError::InvalidRequest(format!("{} is not a key of this kind; nothing was changed", file.display()))
+    RunError::InvalidRequest(format!(
+        "{} is not a key file of this kind; nothing was changed",
+        file.display()
+    ))
 }
 
 fn to_hex(bytes: &[u8]) -> String {
@@ -211,7 +214,7 @@ mod tests {
         for text in ["", "novamind lab key 1", &std::fs::read_to_string(&public).expect("text")] {
             std::fs::write(&path, text).expect("written");
             let problem = LabKey::read(&path).err().expect("no key").to_string();
-            assert!(problem.contains("is not a key of this kind"), "{problem}");
+            assert!(problem.contains("is not a key file of this kind"), "{problem}");
         }
     }
 
@@ -230,7 +233,7 @@ mod tests {
                 "the change of character {at} was not detected"
             );
         }
-        // A signature with another key is valid and names its signer.
+        // A signature with another key is valid, and verification returns that key.
         let other = LabKey::generate().expect("a key");
         assert_eq!(verify_signature(seal, &other.sign(seal)), Ok(other.public_key()));
     }

@@ -4,7 +4,7 @@
 //! after the run, with these files:
 //! | file | |
 //! |---|---|
-//! | `seal.toml` | length and BLAKE3 hash of every file, last line of the trajectory, a checksum of all this |
+//! | `seal.toml` | length and BLAKE3 hash of every file, last line of the trajectory, and a checksum of the seal |
 //! | `seal.sig` | the signature of the seal, if a lab signed it |
 //! | `run.toml` | the manifest |
 //! | `trajectory.jsonl` | the trajectory, up to its last confirmed line |
@@ -13,9 +13,9 @@
 //! | `memo.md` | the player's notes, if there are any |
 //! | `world.db` | the observable company in ordinary tables, for any SQLite tool |
 //!
-//! It contains no other files of the run's folder. In particular it has no snapshot, so no hidden state. The export
-//! simulates the run again to create the database, so every archive is verified. The import writes all files but the
-//! seal, the signature and the database, which is rebuilt.
+//! An archive contains no other files of the run folder. In particular, it contains no snapshot and therefore no
+//! hidden state. The export simulates the run again to create the database, so every archive is verified. The import
+//! writes all files except the seal, the signature and the database. The database is rebuilt.
 
 mod export;
 mod import;
@@ -36,7 +36,8 @@ use crate::recording::recorder::AFTERWARDS_FILE;
 use novamind_record::error::RunError;
 use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 
-/// Files that an archive can contain, with their maximum sizes in bytes: enough for any run, too few to fill a disk.
+/// Files that an archive can contain, with their maximum sizes in bytes. The limits are large enough for any run and
+/// too small to fill a disk.
 const ENTRY_LIMITS: [(&str, u64); 9] = [
     (SEAL_FILE, 1 << 20),
     (SIGNATURE_FILE, 1 << 10),
@@ -61,17 +62,17 @@ fn is_compressed(archive: &Path) -> bool {
     ending.is_some_and(|ending| ending == "gz" || ending == "tgz")
 }
 
-/// Returns whether the name is that of an archive.
+/// Returns whether a file name has the extension of an archive.
 pub fn is_archive_name(name: &str) -> bool {
     [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
 }
 
-/// Returns whether the name is a run identifier: eight hexadecimal digits.
+/// Returns whether a name is a run id: eight hexadecimal digits.
 pub fn is_run_id(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// Returns the error for an unusable archive. Nothing was changed.
+/// Returns the error for an unusable archive. The message says that nothing was changed.
 fn archive_error(archive: &Path, problem: impl AsRef<str>) -> RunError {
     RunError::InvalidArchive {
         path: archive.to_owned(),
@@ -82,8 +83,7 @@ fn archive_error(archive: &Path, problem: impl AsRef<str>) -> RunError {
     }
 }
 
-/// Makes a text that can quote bytes of a foreign file safe to print on one line: escapes control characters and
-/// truncates it.
+/// Escapes control characters in a text from an untrusted file and truncates the text, so that it can be printed on one line.
 fn escape_untrusted(text: &str) -> String {
     const MAX_CHARACTERS: usize = 400;
     let mut line = String::new();

@@ -1,4 +1,4 @@
-//! `seal.toml`: the list of an archive's files.
+//! The seal of an archive, `seal.toml`: a list of the archive's files with their hashes.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -8,20 +8,20 @@ use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
 
-/// Format of seals that this program writes.
+/// Format number of the seals that this program writes.
 pub const SEAL_FORMAT: u32 = 1;
 
-/// The seal of an archive.
+/// The seal of an archive, which reveals changes to its files.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Seal {
-    /// Format of the archive.
+    /// Format number of the archive.
     pub format: u32,
-    /// Version of the program that created it.
+    /// Version of the program that created the archive.
     pub program: String,
     /// Time of the last line of the trajectory, RFC 3339.
     pub created: String,
-    /// Identifier of the run.
+    /// Id of the run.
     pub run: String,
     /// Number of the last line of the trajectory.
     pub last_seq: u64,
@@ -29,24 +29,24 @@ pub struct Seal {
     pub last_hash: String,
     /// Hash of the seal with this field empty.
     pub checksum: String,
-    /// The other files of the archive.
+    /// All files of the archive except the seal and the signature.
     pub file: Vec<SealedFile>,
 }
 
-/// A file of an archive.
+/// A file of an archive, as listed in the seal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SealedFile {
-    /// File name.
+    /// Name of the file.
     pub name: String,
-    /// Length in bytes.
+    /// Length of the file in bytes.
     pub bytes: u64,
-    /// BLAKE3 hash in hexadecimal digits.
+    /// BLAKE3 hash of the file, in hexadecimal digits.
     pub blake3: String,
 }
 
 impl SealedFile {
-    /// Reads a file and returns its length and hash.
+    /// Reads a file and returns its name, length and hash.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -60,12 +60,12 @@ impl SealedFile {
 }
 
 impl Seal {
-    /// Returns the seal with its checksum.
+    /// Returns the seal with the checksum filled in.
     pub fn with_checksum(self) -> Seal {
         Seal { checksum: self.compute_checksum(), ..self }
     }
 
-    /// Returns whether the checksum is correct.
+    /// Returns whether the checksum matches the seal.
     pub fn is_intact(&self) -> bool {
         self.checksum == self.compute_checksum()
     }
@@ -81,7 +81,7 @@ impl Seal {
     }
 }
 
-/// The side that failed in a copy.
+/// The side of a copy operation that failed.
 #[derive(Debug)]
 pub enum CopyError {
     /// The source cannot be read.
@@ -98,7 +98,7 @@ impl From<CopyError> for io::Error {
     }
 }
 
-/// Copies everything and returns the length and the BLAKE3 hash.
+/// Copies all bytes and returns their number and their BLAKE3 hash.
 pub fn copy_hashed(from: &mut dyn Read, to: &mut dyn Write) -> Result<(u64, String), CopyError> {
     let (mut hasher, mut length) = (blake3::Hasher::new(), 0u64);
     let mut buffer = vec![0u8; 1 << 16];

@@ -1,4 +1,4 @@
-//! The state hash: a hash of the world's parts and of the week's facts.
+//! The state hash: a hash of all parts of the world and the facts of the week.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use novamind_world::canonical::hash_of;
 use novamind_world::events::Facts;
 use novamind_world::state::{PartHash, combined_hash};
 
-/// Hash of the state and of the week's facts, and the short hash of each part by name.
+/// Hash of the state including the facts of the week, and the short hash of each part by name.
 pub type StateHash = (String, BTreeMap<String, String>);
 
 pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> StateHash {
@@ -16,10 +16,10 @@ pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> State
     (combined_hash(&parts).to_hex().to_string(), by_name)
 }
 
-/// A hash chain over the facts of a week, one link per day and call.
+/// A hash chain over the facts of a week, with one link per day and per call.
 pub(crate) struct FactsChain {
     hash: blake3::Hash,
-    /// The week has ended: the next facts start a new chain.
+    /// Whether the week has ended, so that the next facts start a new chain.
     is_closed: bool,
 }
 
@@ -52,7 +52,7 @@ impl FactsChain {
         self.is_closed = true;
     }
 
-    /// Returns the hash of the current week, or of the last one if none has started since.
+    /// Returns the hash of the current week, or of the last week if no facts were added since its end.
     pub(crate) fn hash(&self) -> blake3::Hash {
         self.hash
     }

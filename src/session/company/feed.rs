@@ -1,7 +1,7 @@
 //! The social feed of a session: all posts as text, and the judgements of the player's posts.
 //!
-//! Texts are not part of the state. A replay of the run produces the same texts; those of a language model come from
-//! the record.
+//! The texts of posts are not part of the simulator state. A replay of the run produces the same texts, because the
+//! texts of a language model are in the record.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -19,14 +19,14 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 
-/// All posts so far, and the judgements of the player's posts.
+/// All posts since day 0, and the judgements of the player's posts.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Feed {
     writer: PostWriter,
     /// Posts of other authors as the player sees them, ordered by number.
     #[serde(with = "kept_posts")]
     pub posts: Vec<PublicPost>,
-    /// Texts of the built-in voice that a language model has reworded, by post number.
+    /// Original texts of the posts that a language model has reworded, by post number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     built_in: BTreeMap<u32, String>,
     complains: Vec<bool>,
@@ -34,7 +34,7 @@ pub struct Feed {
     pub judgements: Vec<Vec<Judgement>>,
 }
 
-/// Serializes posts with all fields, including those that tools do not return.
+/// Serialization of posts with all fields, including fields that tools do not return.
 mod kept_posts {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -87,7 +87,7 @@ impl Feed {
         }
     }
 
-    /// Returns the texts of the posts in `facts`, which must be the newest ones.
+    /// Returns the texts of the posts in `facts`, which must be the newest posts of the feed.
     pub(crate) fn texts_of(&self, facts: &Facts) -> Vec<String> {
         let first = self.posts.len().saturating_sub(facts.posts.len());
         self.posts[first..].iter().map(|post| post.content.clone()).collect()
@@ -101,8 +101,8 @@ impl Feed {
         self.built_in.entry(post).or_insert(before);
     }
 
-    /// Returns the post with this number as the original of a reply. Always uses the text of the built-in voice,
-    /// because the effect of a reply is part of the world's state.
+    /// Returns the post to which the player replies. Always uses the text of the built-in voice, because the effect of
+    /// a reply is part of the world's state.
     pub(crate) fn original_post(&self, post: u32) -> Option<OriginalPost<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let public_post = self.posts.get(at)?;

@@ -1,4 +1,4 @@
-//! The hidden state after the last day, for policies and the figures of debug runs.
+//! A view of the hidden state after the last day, for policies and for figures of debug runs.
 
 use std::sync::Arc;
 
@@ -42,12 +42,12 @@ impl<'a> HiddenState<'a> {
         }
     }
 
-    /// Returns the ledger entries of calls between the two last days.
+    /// Returns the ledger entries of calls between the last two days.
     pub fn call_ledger(&self) -> &'a [LedgerEntry] {
         self.call_ledger
     }
 
-    /// Returns the world.
+    /// Returns the state of the company and its market.
     pub fn world(&self) -> &'a World {
         self.world
     }
@@ -57,37 +57,38 @@ impl<'a> HiddenState<'a> {
         self.facts
     }
 
-    /// Returns the parameters in force.
+    /// Returns the parameters in force on the last day.
     pub fn params(&self) -> &'a Arc<Params> {
         self.params
     }
 
-    /// Returns the streams of random numbers.
+    /// Returns the random number streams of the run.
     pub fn streams(&self) -> &'a Streams {
         self.streams
     }
 
-    /// Returns the factors of a group's leads on the last day.
+    /// Returns the factors that determine a group's leads on the last day.
     pub fn lead_factors(&self, group: Group) -> &'a LeadFactors {
         &self.trace.leads[group]
     }
 
-    /// Returns the reputation in a group.
+    /// Returns the reputation of the company in a group.
     pub fn reputation(&self, group: Group) -> f64 {
         self.world.market.reputation.get(group)
     }
 
-    /// Returns the macroeconomic multiplier of a group.
+    /// Returns the multiplier that the economy applies to a group in a dimension.
     pub fn macro_multiplier(&self, group: Group, dimension: Dimension) -> f64 {
         self.world.market.economy.multiplier(group, dimension, self.params)
     }
 
-    /// Returns the yield of a channel for a group: leads a day per 1,000 dollars a day.
+    /// Returns the yield of a channel for a group: leads per day for 1,000 dollars per day.
     pub fn channel_yield(&self, channel: Channel, group: Group) -> f64 {
         self.world.market.yields[channel][group]
     }
 
-    /// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are none.
+    /// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are no active
+    /// subscribers.
     pub fn mean_satisfaction(&self, group: Group) -> Option<(f64, f64)> {
         mean_satisfaction(self.world, group)
     }
@@ -105,13 +106,13 @@ impl<'a> HiddenState<'a> {
             .sum()
     }
 
-    /// Returns the blocks of a group's customers.
+    /// Returns the storage blocks of a group's customers.
     pub fn blocks(&self, group: Group) -> impl Iterator<Item = &'a Block> + Clone + use<'a> {
         self.world.customers.groups[group].blocks.iter()
     }
 
-    /// Returns the judgements of a post of the player, one per group known at the time; empty if it is not judged
-    /// yet. `selected_own_post` counts from 1.
+    /// Returns the judgements of a post of the player, one per group that was known at that time. The result is empty
+    /// if the post is not judged yet. Posts are numbered from 1.
     pub fn judgements(&self, own_post: u32) -> &'a [Judgement] {
         let at = (own_post as usize).checked_sub(1);
         at.and_then(|at| self.judgements.get(at)).map_or(&[], Vec::as_slice)

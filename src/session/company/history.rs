@@ -1,4 +1,4 @@
-//! The history of a run for screens, dashboard and reports: figures of weeks, decisions, journal.
+//! The history of a run for screens, dashboard and reports: figures of weeks, decisions and journal.
 
 use super::idempotency::IdempotentResponses;
 use super::irrevocable::IrrevocableAction;
@@ -14,27 +14,27 @@ use novamind_world::identifiers::ByGroup;
 use novamind_world::state::World;
 
 pub(crate) struct History {
-    /// Cash at the end of each day, day 0 first.
+    /// Cash at the end of each day, starting with day 0.
     pub(crate) cash_by_day: Vec<f64>,
-    /// Figures of every completed week, including a shortened last one.
+    /// Figures of every completed week, including a shortened last week.
     pub(crate) weeks: Vec<WeekFigures>,
-    /// Figures of the incomplete current week, whose days were simulated one by one.
+    /// Figures of an incomplete current week, whose days are simulated one by one.
     pub(crate) current_week: WeekFigures,
     /// Group figures of every completed week.
     pub(crate) group_weeks: Vec<ByGroup<GroupWeek>>,
-    /// Group figures of a week that was started with single days.
+    /// Group figures of an incomplete current week, whose days are simulated one by one.
     pub(crate) current_groups: ByGroup<GroupWeek>,
     pub(crate) decisions: Vec<Decisions>,
-    /// Notices of the last simulated days: day and text.
+    /// Notices of the last simulated days, each with its day and text.
     pub(crate) notices: Vec<(u32, String)>,
     pub(crate) week_actions: WeekActions,
     pub(crate) journal: Vec<JournalEntry>,
     /// Distinct SQL statements of this run, newest last.
     pub(crate) query_history: Vec<String>,
     pub(crate) calculation_outputs: Vec<CalculationOutput>,
-    /// The dashboard after the last simulated days; `None` before the first.
+    /// Dashboard after the last simulated days; `None` before the first day.
     pub(crate) last_dashboard: Option<String>,
-    /// Ledger entries of calls since the last day.
+    /// Ledger entries of calls since the last simulated day.
     pub(crate) call_ledger: Vec<LedgerEntry>,
     pub(crate) ended: Option<RunEndReason>,
     pub(crate) idempotent_responses: IdempotentResponses,
@@ -67,7 +67,7 @@ impl History {
         }
     }
 
-    /// Returns the settings changed since the last week, with old and new values.
+    /// Returns the settings that differ from the end of the last week, with old and new values.
     pub(crate) fn setting_changes(&self, world: &World) -> Vec<SettingChange> {
         setting_changes(&self.week_actions.settings, &world.settings)
     }
@@ -82,7 +82,7 @@ impl History {
         self.current_week.add_simulated_day(figures, facts, &self.call_ledger, params);
     }
 
-    /// Completes the figures of the simulated days, and of the week if it has ended.
+    /// Completes the figures of the simulated days, and of the week if the week has ended.
     pub(crate) fn finish_days(
         &mut self,
         simulation: &Simulation,
@@ -117,7 +117,7 @@ impl History {
         figures
     }
 
-    /// Returns the figures of the current week, or of the last one if no day of the current week has run.
+    /// Returns the figures of the current week, or of the last week if no day of the current week has been simulated.
     pub(crate) fn latest_week(&self) -> WeekFigures {
         match self.current_week.days_run {
             0 => self.weeks.last().copied().unwrap_or_default(),

@@ -1,7 +1,7 @@
-//! Responses to requests with an id, returned again if the request is retried.
+//! Stored responses to requests with an id. If a client retries a request, the session returns the stored response.
 //!
-//! Lines of calls and weeks contain the ids, so retries are recognized after the run is reopened. Responses to calls
-//! are read from their lines. Responses to weeks contain the dashboard of their day, so snapshots store them.
+//! Lines of calls and weeks contain the request ids, so retries are recognized after the run is reopened. Responses to
+//! calls are read from the lines. Responses to weeks contain the dashboard of their day, so snapshots store these responses.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::reports::WeekResult;
 use novamind_record::trajectory::record::{Call, Outcome, RequestId, RunEndReason};
 use novamind_tools::Rejection;
 
-/// The first response to a request.
+/// The stored response to a request.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum IdempotentResponse {
     Call(Outcome),
@@ -18,9 +18,9 @@ pub(crate) enum IdempotentResponse {
 
 #[derive(Debug, Default)]
 pub(crate) struct IdempotentResponses {
-    /// The digest of the request and its response, by id.
+    /// Digest and response of each request, by request id.
     by_id: BTreeMap<String, (String, IdempotentResponse)>,
-    /// The request whose week is being simulated.
+    /// Request for the week that is being simulated.
     pending_request: Option<RequestId>,
 }
 
@@ -42,7 +42,7 @@ impl IdempotentResponses {
         self.by_id.iter().filter_map(week).collect()
     }
 
-    /// Records the outcome of a call if its request has an id.
+    /// Stores the outcome of a call if its request has an id.
     pub(crate) fn record_call(&mut self, call: &Call) {
         if let Some(RequestId { id, digest }) = &call.request {
             self.by_id.insert(id.clone(), (digest.clone(), IdempotentResponse::Call(call.outcome.clone())));
@@ -53,14 +53,14 @@ impl IdempotentResponses {
         self.pending_request = request;
     }
 
-    /// Records the response to the week that was simulated, if its request has an id.
+    /// Stores the response to the request for the simulated week, if the request has an id.
     pub(crate) fn record_week(&mut self, week: impl FnOnce() -> WeekResult) {
         if let Some(RequestId { id, digest }) = self.pending_request.take() {
             self.by_id.insert(id, (digest, IdempotentResponse::Week(Box::new(week()))));
         }
     }
 
-    /// Adds the end of the run to the response to its last week.
+    /// Adds the reason for the end of the run to the response for its last week.
     pub(crate) fn record_end(&mut self, day: u32, ended: RunEndReason) {
         for (_, answer) in self.by_id.values_mut() {
             if let IdempotentResponse::Week(week) = answer
@@ -71,10 +71,10 @@ impl IdempotentResponses {
         }
     }
 
-    /// Returns the first response to a request, or `None` if the request is new.
+    /// Returns the stored response to a request, or `None` if the request is new.
     ///
     /// # Errors
-    /// `request_id_payload_mismatch`: the id belongs to a request with other contents.
+    /// `request_id_payload_mismatch`: the id belongs to a request with different contents.
     pub(crate) fn find(&self, request: &RequestId) -> Result<Option<&IdempotentResponse>, Rejection> {
         match self.by_id.get(&request.id) {
             None => Ok(None),
@@ -85,7 +85,7 @@ impl IdempotentResponses {
 }
 
 pub(crate) fn payload_mismatch() -> Rejection {
-    let message = "this request_id belongs to an earlier request of this run with other contents; nothing was \
-                   changed. Use a new id for a new request";
+    let message = "this request_id belongs to an earlier request of this run with different contents; nothing was \
+         changed. Use a new id for a new request";
     Rejection::for_field("request_id", "request_id_payload_mismatch", message)
 }

@@ -1,5 +1,4 @@
-//! Irrevocable actions: purchases, posts, offers, ended threads. Similar actions are merged, within a call and within
-//! a week.
+//! Irrevocable actions: purchases, posts, offers and ended threads. Similar actions of a call or a week are merged.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
@@ -13,7 +12,7 @@ use novamind_world::enterprise::messages::OfferMessage;
 use novamind_world::events::Offering;
 use novamind_world::identifiers::{Group, Plan};
 
-/// Offers or threads of one call that are listed one by one.
+/// Maximum number of offers or threads of one call that are listed one by one.
 const MAX_NAMED_ENTRIES: usize = 5;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,7 +21,7 @@ pub(crate) enum IrrevocableAction {
     /// Offers of the same plans to enterprises of a group.
     Offered {
         group: Option<Group>,
-        /// Plan, lowest and highest price.
+        /// Each offered plan, with its lowest and highest price.
         offerings: Vec<(Plan, f64, f64)>,
         companies: u32,
     },
@@ -42,7 +41,7 @@ impl IrrevocableAction {
         }
     }
 
-    /// Merges another action into this one. Returns false if they are of different kinds.
+    /// Merges another action into this action. Returns false if the two actions cannot be merged.
     fn try_merge(&mut self, other: &IrrevocableAction) -> bool {
         use IrrevocableAction::{Ended, Offered};
         match (self, other) {
@@ -97,7 +96,7 @@ impl Simulation {
             ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
             ResolvedCommand::Post(_) => single("post published".to_owned()),
             ResolvedCommand::StartResearch(project, _) => {
-                single(format!("R&D project {} started, done on day {}", project.id(), project.due_day))
+                single(format!("R&D project {} started, due on day {}", project.id(), project.due_day))
             }
             ResolvedCommand::ResearchMarket(attempt) => single(match attempt.found {
                 Some(group) => format!("market research found group {group}"),
@@ -105,7 +104,7 @@ impl Simulation {
             }),
             ResolvedCommand::ResearchGroup(study, _) => {
                 let (group, level, day) = (study.group, study.target, study.due_day);
-                single(format!("study of {group} to level {level} ordered, done on day {day}"))
+                single(format!("study of {group} to level {level} ordered, due on day {day}"))
             }
             ResolvedCommand::SendDeals(messages) => self.offer_actions(messages),
             ResolvedCommand::RejectDeals(threads) => self.rejection_actions(threads),
@@ -171,7 +170,7 @@ fn describe_companies(count: u32, group: Option<Group>) -> String {
     format!("{} {noun}{of}", grouped_number(f64::from(count), 0))
 }
 
-/// Returns the plan and the lowest and highest price of the offering at position `at` of all letters.
+/// Returns the plan at position `at` of all messages, with its lowest and highest price.
 fn price_range_of_offering(messages: &[&OfferMessage], at: usize) -> (Plan, f64, f64) {
     let prices = messages.iter().map(|message| message.offerings[at].price);
     let (least, most) =

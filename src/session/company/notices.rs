@@ -1,4 +1,4 @@
-//! Texts of notices. A notice names its enterprise if the day's facts identify it.
+//! Texts of notices. A notice names its enterprise if the facts of the day identify the enterprise.
 
 use super::feed::build_entry;
 use super::simulation::Simulation;
@@ -12,7 +12,7 @@ impl Simulation {
     }
 
     /// Returns the texts of the notices of the last day or call. Texts of repeated lead losses are empty, because the
-    /// database stores them as one fact.
+    /// database stores repeated losses as one fact.
     pub(crate) fn notice_texts(&self) -> Vec<String> {
         let mut parties = NoticeParties::from_simulation(self);
         self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next_party(notice))).collect()
@@ -28,7 +28,7 @@ impl Simulation {
     }
 }
 
-/// The enterprises of a day's notices, by kind, in the order of the notices.
+/// The enterprises in the notices of a day, by kind of notice, in the order of the notices.
 struct NoticeParties {
     new_leads: std::vec::IntoIter<NoticeCustomer>,
     silent_leads: std::vec::IntoIter<NoticeCustomer>,
@@ -41,7 +41,7 @@ impl NoticeParties {
         let Simulation { facts, world, .. } = simulation;
         let notices =
             |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|notice| fits(notice)).count();
-        // Without a one-to-one match, no enterprise is named.
+        // Name enterprises only if each notice has exactly one enterprise.
         let only = |parties: Vec<NoticeCustomer>, count: usize| {
             if parties.len() == count { parties.into_iter() } else { Vec::new().into_iter() }
         };

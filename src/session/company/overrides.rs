@@ -15,21 +15,21 @@ use novamind_record::trajectory::{Line, Record};
 use novamind_tools::{ParameterNumbers, Rejection};
 use novamind_world::params::{ParameterError, Params};
 
-/// A parameter change.
+/// An immediate or scheduled change of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterChange {
-    /// Line that records the change.
+    /// Number of the line that records the change.
     pub seq: u64,
     /// Full key of the parameter.
     pub key: String,
-    /// New value.
+    /// Value after the change.
     pub value: Value,
     /// First simulated day with the new value; `None` if the change takes effect immediately.
     pub from_day: Option<u32>,
 }
 
 impl ParameterChange {
-    /// Reads the change from a recorded line. Returns `None` if the value is not a valid type for a parameter.
+    /// Reads the change from a recorded line. Returns `None` if no parameter can have a value of this type.
     pub fn from_record(seq: u64, line: &Override) -> Option<ParameterChange> {
         let value = json_to_value(&line.new)?;
         Some(ParameterChange { seq, key: line.key.clone(), value, from_day: line.from_day })
@@ -43,28 +43,28 @@ struct ScheduledChange {
     params: Arc<Params>,
 }
 
-/// The parameter changes of a run.
+/// The parameter changes of a run that are scheduled for later days.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
     has_changes: bool,
-    /// Scheduled changes by day; changes of one day in the order of their lines.
+    /// Scheduled changes in the order of their days. Changes of the same day are in the order of their lines.
     scheduled: Vec<ScheduledChange>,
 }
 
-/// Parameters after a change was added.
+/// The parameters of a run after a change was added.
 pub struct UpdatedParams {
-    /// Parameters in force now.
+    /// Parameters in force on the current day.
     pub current: Arc<Params>,
-    /// Parameters in force once the change takes effect.
+    /// Parameters in force after the change takes effect.
     pub after_change: Arc<Params>,
 }
 
-/// The reason why a change is not allowed.
+/// The reason why a parameter change is not allowed.
 #[derive(Debug)]
 pub struct ParameterConflict {
     /// The later day on which values would contradict each other; `None` if the change itself is invalid.
     pub day: Option<u32>,
-    /// The error.
+    /// Error of the invalid value.
     pub error: ParameterError,
 }
 
@@ -74,15 +74,16 @@ impl Overrides {
         self.has_changes
     }
 
-    /// Returns the scheduled changes.
+    /// Returns the scheduled changes in the order of their days.
     pub fn scheduled_changes(&self) -> impl Iterator<Item = &ParameterChange> {
         self.scheduled.iter().map(|scheduled_change| &scheduled_change.change)
     }
 
-    /// Adds a change. Checks that all scheduled changes remain valid, so that none can fail on its day.
+    /// Adds an immediate or scheduled change. Checks that all scheduled changes remain valid, so that no change can
+    /// fail on its day.
     ///
     /// # Errors
-    /// The value is not allowed, or contradicts another value now or on a later day. Nothing has changed then.
+    /// The value is not allowed, or contradicts another value now or on a later day. After an error, nothing has changed.
     pub fn add_change(
         &mut self,
         now: &Arc<Params>,
@@ -118,14 +119,14 @@ impl Overrides {
         self.scheduled[..count].last().map(|change| &change.params)
     }
 
-    /// Returns the parameters for a day, if they change on it, and removes the changes from the schedule.
+    /// Returns the parameters for a day, if parameters change on that day, and removes the changes from the schedule.
     pub(crate) fn take_due_params(&mut self, day: u32) -> Option<Arc<Params>> {
         let count = self.scheduled.partition_point(|scheduled_change| scheduled_change.day <= day);
         self.scheduled.drain(..count).next_back().map(|change| change.params)
     }
 
-    /// Returns the scheduled changes applied to other parameters, without those of the lines in `dropped`. Omits
-    /// changes that are not valid for these parameters.
+    /// Applies the scheduled changes to other parameters and returns the result. Omits changes on the lines in
+    /// `dropped`, and changes that are not valid for these parameters.
     pub fn rebased_on(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
         let mut overrides = Overrides { has_changes: self.has_changes, scheduled: Vec::new() };
         for change in self.scheduled_changes().filter(|change| !dropped.contains(&change.seq)) {
@@ -134,8 +135,8 @@ impl Overrides {
         overrides
     }
 
-    /// Replays the parameter changes in `lines` up to the end of a day, starting with the parameters `opening`.
-    /// Returns `None` if a change is not valid.
+    /// Applies the parameter changes in `lines` up to the end of a day to the parameters `opening`. Returns `None` if
+    /// a change is not valid.
     pub(crate) fn replay(
         opening: &Arc<Params>,
         lines: &[Line],
@@ -156,7 +157,7 @@ fn params_with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>,
     params.with(&change.key, change.value.clone()).map(Arc::new)
 }
 
-/// Converts a JSON value to a parameter value. Returns `None` if there is no equivalent.
+/// Converts a JSON value to a parameter value. Returns `None` if the value has no equivalent.
 pub fn json_to_value(value: &Json) -> Option<Value> {
     Some(match value {
         Json::Null => return None,
@@ -201,17 +202,17 @@ impl DerivedValues {
         self.numbers.get_or_init(|| ParameterNumbers::for_params(&simulation.params).into()).clone()
     }
 
-    /// Returns whether the parameters differ, or differed at some time, from those of the bundled scenario.
+    /// Returns whether the parameters differ from the bundled scenario, or differed earlier in the run.
     pub(crate) fn has_custom_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
         let is_other = || simulation.overrides.has_changes() || manifest.has_changed_parameters();
         *self.has_custom_parameters.get_or_init(is_other)
     }
 }
 
-/// Rejects reading or setting parameters unless the run is a debug run.
+/// Checks that parameters may be read or set, which is allowed only in debug runs.
 ///
 /// # Errors
-/// `not_in_this_mode`.
+/// The rejection `not_in_this_mode`.
 pub fn require_debug_mode(mode: Mode) -> Result<(), Rejection> {
     match mode {
         Mode::Debug => Ok(()),

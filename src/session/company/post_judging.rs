@@ -1,4 +1,4 @@
-//! Judgements of the player's posts, by the built-in judge or from recorded scores of a language model.
+//! Judgements of the player's posts by the built-in judge, or from recorded scores of a language model.
 
 use super::simulation::Simulation;
 use crate::database::EntryWriter;
@@ -42,7 +42,7 @@ impl Simulation {
     }
 }
 
-/// Recorded scores by post. A post is identified by its day, its text and the post it replies to, because post
+/// Recorded scores of posts. A post is identified by its day, its text and the post to which it replies, because post
 /// numbers differ in branches.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RecordedScores(Vec<JudgedPost>);
@@ -62,7 +62,7 @@ impl RecordedScores {
         })
     }
 
-    /// Returns the judgements of a post, with recorded scores in place of those of the built-in judge.
+    /// Replaces scores of the built-in judge with recorded scores and returns the judgements of a post.
     pub(crate) fn apply_to(&self, post: &OwnPost, judgements: Vec<Judgement>) -> Vec<Judgement> {
         let Some(judged) = self.latest(post) else { return judgements };
         let scored =

@@ -9,34 +9,34 @@ use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_world::events::DayFigures;
 
-/// A simulated day.
+/// A report on a simulated day.
 pub struct DayReport<'a> {
-    /// Its figures.
+    /// Figures of the day.
     pub figures: &'a DayFigures,
-    /// Decision day at the end of the week, unless the company goes bankrupt before.
+    /// Next decision day, unless the company goes bankrupt before that day.
     pub week_end: u32,
-    /// The hidden state; debug runs only.
+    /// Hidden state after the day; debug runs only.
     pub xray: Option<HiddenState<'a>>,
 }
 
-/// A simulated week, or part of one.
+/// A report on a simulated week, or on single days of a week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WeekResult {
-    /// Its figures.
+    /// Figures of the week.
     pub figures: WeekFigures,
-    /// The dashboard.
+    /// Dashboard after the last simulated day.
     pub dashboard: String,
-    /// Notices: day and text.
+    /// Notices of the simulated days, each with its day and text.
     pub notices: Vec<(u32, String)>,
-    /// How the run ended with this week.
+    /// Reason for the end of the run, if the run ended with this week.
     pub ended: Option<RunEndReason>,
-    /// Problems that the player should know: the closing line is not saved, the next day would exceed the limit of
-    /// leads, the database is not written, or the language model did not answer.
+    /// Message about a problem: the closing line is not saved, the next day would exceed the limit of leads, the
+    /// database is not written, or the language model did not respond.
     pub remark: Option<String>,
 }
 
 impl WeekResult {
-    /// Returns the week as JSON, for programs.
+    /// Returns the report as JSON, for programs.
     pub fn to_json(&self) -> Value {
         let notices: Vec<Value> =
             self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();

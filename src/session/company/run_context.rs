@@ -1,4 +1,4 @@
-//! The context that tools read: texts, table documentation and the notebook.
+//! The context that tools read: texts, table documentation and notebook of a run.
 
 use novamind_tools::{ColumnDocument, Notebook, SessionContext, TableDocument};
 use novamind_world::events::Reading;
@@ -7,7 +7,7 @@ use novamind_world::events::Reading;
 pub(crate) struct RunContext {
     /// Calculations and scripts of the run.
     pub notebook: Notebook,
-    /// Python must not be started, because the calls were decided elsewhere.
+    /// Whether Python code is not executed, because the calls repeat recorded decisions.
     pub is_python_disabled: bool,
 }
 

@@ -1,7 +1,7 @@
-//! The simulated company and its texts, with parameters and seed. A snapshot stores it with the
-//! [`StatementHistory`](super::history::History).
+//! The simulated company and its texts, with parameters and seed. A snapshot stores the simulation and its
+//! [`History`](super::history::History).
 //!
-//! Texts, the hash of the facts and database rows of a day do not affect the company. They are produced while the
+//! The texts, the facts hash and the database rows of a day do not affect the company. They are computed while the
 //! next day is simulated.
 
 use std::sync::Arc;
@@ -33,19 +33,19 @@ use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-/// The company, its texts and its progress.
+/// The simulated company with its texts, parameters and random number streams.
 pub struct Simulation {
-    /// Parameters in force.
+    /// Parameters in force on the current day.
     pub params: Arc<Params>,
     /// Parameter changes since the start of the run.
     pub overrides: Overrides,
-    /// Streams of random numbers.
+    /// Random number streams of the run.
     pub streams: Streams,
-    /// The company and its market.
+    /// State of the company and its market.
     pub world: World,
     /// Facts of the last day or call.
     pub facts: Arc<Facts>,
-    /// Facts of the day before; reused once nothing refers to them.
+    /// Facts of the previous day; the memory is reused after the database writer has released it.
     previous_facts: Arc<Facts>,
     /// Details of the leads of the last day.
     pub(crate) trace: DayTrace,
@@ -55,7 +55,7 @@ pub struct Simulation {
     pub feed: Feed,
     pub(crate) recorded_scores: RecordedScores,
     pub(crate) facts_chain: FactsChain,
-    /// Observer of the simulated days; does nothing except for inspections.
+    /// Observer of the simulated days; has an effect only in inspections.
     pub(crate) watch: Arc<dyn DayObserver>,
 }
 
@@ -67,7 +67,7 @@ impl Simulation {
         Simulation::from_state(manifest, params, (world, facts))
     }
 
-    /// Creates the company of a run from a world and the facts of its last day or call.
+    /// Creates the company of a run from a world state and the facts of the last day or call.
     pub(crate) fn from_state(
         manifest: &Manifest,
         params: Arc<Params>,
@@ -89,7 +89,7 @@ impl Simulation {
         }
     }
 
-    /// Creates a company from a state of a run and the posts so far.
+    /// Creates a company from the parameters, the world state and the earlier posts of a run.
     pub fn from_parts(
         (params, overrides): (Arc<Params>, Overrides),
         (streams, names): (Streams, EnterpriseNames),
@@ -112,7 +112,7 @@ impl Simulation {
         }
     }
 
-    /// Adds recorded scores of the player's posts.
+    /// Adds recorded scores for the player's posts.
     pub fn add_scores(&mut self, judged: &[JudgedPost]) {
         judged.iter().for_each(|judged_post| self.recorded_scores.add(judged_post.clone()));
     }
@@ -137,8 +137,7 @@ impl Simulation {
         self.world.resolve(command, &self.params, &self.streams)
     }
 
-    /// Returns the range of a group's mean required quality according to the estimate; `None` while the group is
-    /// unknown.
+    /// Returns the estimated range of a group's mean required quality, or `None` if the group is unknown.
     pub(crate) fn estimated_required_quality(&self, group: Group) -> Option<(f64, f64)> {
         match self.resolve(Command::ReadInsights(group)) {
             ResolvedCommand::ReadInsights(Some(insights)) => {
@@ -148,13 +147,13 @@ impl Simulation {
         }
     }
 
-    /// Applies a command.
+    /// Applies a resolved command to the world.
     pub fn apply_command(&mut self, resolved: ResolvedCommand, entries: EntryWriter<'_>) {
         self.world.apply(resolved, &self.params, reusable_facts(&mut self.facts, entries));
         self.watch.on_call_applied(&self.facts);
     }
 
-    /// Returns the world and facts to fill, for changes between two days.
+    /// Returns the parts of the simulation that a change between two days needs, with facts to write to.
     pub(crate) fn parts_between_days(
         &mut self,
         entries: EntryWriter<'_>,
@@ -162,7 +161,7 @@ impl Simulation {
         (&mut self.world, reusable_facts(&mut self.facts, entries), &self.params, &self.streams)
     }
 
-    /// Replaces the parameters.
+    /// Replaces the parameters in force.
     pub fn set_params(&mut self, params: Arc<Params>, entries: EntryWriter<'_>) {
         if !Arc::ptr_eq(&self.params, &params) {
             entries.send(|| ProjectionEntry { params: Some(params.clone()), ..ProjectionEntry::default() });
@@ -173,7 +172,7 @@ impl Simulation {
     /// Checks that the leads and customers of the next day are within the program's limits.
     ///
     /// # Errors
-    /// `too_many_leads`.
+    /// The rejection `too_many_leads`.
     pub fn check_lead_capacity(&self) -> Result<(), Rejection> {
         let (world, day) = (&self.world, self.world.day + 1);
         let due = self.overrides.params_due_on(day).unwrap_or(&self.params);
@@ -196,8 +195,8 @@ impl Simulation {
         Err(Rejection::new("too_many_leads", message))
     }
 
-    /// Simulates a day with the given held inputs. At the same time, processes the facts of the day before, if its
-    /// notices are given in `day_before`.
+    /// Simulates a day with fixed inputs. In parallel, processes the facts of the previous day if `day_before`
+    /// contains its notices.
     pub fn simulate_day(
         &mut self,
         fixed_inputs: &FixedInputs,
@@ -205,7 +204,7 @@ impl Simulation {
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
         std::mem::swap(&mut self.facts, &mut self.previous_facts);
-        // The facts of the day before are processed with the parameters of that day.
+        // The facts of the previous day are processed with the parameters of that day.
         let due = self.overrides.take_due_params(self.world.day + 1).unwrap_or_else(|| self.params.clone());
         let Simulation {
             world,
@@ -229,19 +228,20 @@ impl Simulation {
         figures
     }
 
-    /// Processes the facts of a call: its notices, and the settings family if the call changed settings.
+    /// Processes the facts of a call with its notices. `settings` contains the settings after the call, if the call
+    /// changed a setting.
     pub fn process_call(&mut self, entries: EntryWriter<'_>, notices: Vec<String>, settings: Option<Value>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.process(facts, Some(notices), settings);
     }
 
-    /// Processes the facts of the last day, if its notices are given.
+    /// Processes the facts of the last day, if `last_day` contains its notices.
     pub fn process_last_day(&mut self, entries: EntryWriter<'_>, last_day: Option<Vec<String>>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
         FollowUp { feed, facts_chain, entries, params, streams }.process(facts, last_day, None);
     }
 
-    /// Like [`Simulation::process_last_day`], and hashes the state at the same time.
+    /// Processes the facts of the last day like [`Simulation::process_last_day`], and hashes the state in parallel.
     pub fn finish_days(&mut self, entries: EntryWriter<'_>, last_day: Option<Vec<String>>) -> StateHash {
         let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
@@ -250,8 +250,8 @@ impl Simulation {
     }
 }
 
-/// Returns facts to fill: the given ones if nothing else refers to them, otherwise spare ones of the database writer
-/// or new ones. Facts that the writer still uses are kept.
+/// Returns facts to write to. Reuses `facts` if nothing else refers to them. Otherwise, replaces them with spare facts
+/// of the database writer, or with new facts.
 fn reusable_facts<'a>(facts: &'a mut Arc<Facts>, entries: EntryWriter<'_>) -> &'a mut Facts {
     if Arc::strong_count(facts) > 1 {
         *facts = entries.spare_facts().unwrap_or_default();
@@ -268,8 +268,8 @@ struct FollowUp<'a> {
 }
 
 impl FollowUp<'_> {
-    /// Adds the facts to feed, hash chain and database. The facts are shared with the database writer, not copied.
-    /// Does nothing without `notices`.
+    /// Adds the facts to the feed, the hash chain and the database. The database writer shares the facts without
+    /// copying them. Does nothing without `notices`.
     fn process(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
         let Some(notices) = notices else { return };
         self.feed.add_posts(facts, self.params, self.streams);

@@ -1,4 +1,4 @@
-//! Actions since the last week, for undo and redo.
+//! The player's actions since the last week, for undo and redo.
 
 use super::irrevocable::IrrevocableAction;
 use novamind_record::trajectory::record::Reversal;
@@ -15,7 +15,7 @@ pub(crate) struct WeekActions {
     pub(crate) irrevocable_actions: Vec<IrrevocableAction>,
 }
 
-/// A call that changed settings, and the settings that reverting it restores.
+/// A call that changed settings, and the settings that are restored if the call is reverted.
 #[derive(Debug, Clone)]
 pub(crate) struct UndoStep {
     pub(crate) seq: u64,
@@ -24,7 +24,7 @@ pub(crate) struct UndoStep {
 }
 
 impl WeekActions {
-    /// Starts a new week with these settings.
+    /// Clears all actions and starts a new week with these settings.
     pub(crate) fn reset(&mut self, settings: Settings) {
         *self = WeekActions { settings, undo: Vec::new(), redo: Vec::new(), irrevocable_actions: Vec::new() };
     }

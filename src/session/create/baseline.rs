@@ -1,4 +1,5 @@
-//! Conditions of a baseline run outside of studies: a participant label, and terms that make results comparable.
+//! Conditions for baseline runs outside of studies: a participant label, and the default scenario, days and cash for
+//! comparable results.
 
 use super::{NewRun, Storage};
 use novamind_base::formatting::{dollars, grouped_number};
@@ -8,8 +9,8 @@ use novamind_record::folder::runs::participant_of_folder;
 use novamind_record::mode::Mode;
 
 impl NewRun {
-    /// Checks that a baseline run has a label, and scenario, days and cash of the defaults. Runs of studies and other
-    /// modes are not restricted.
+    /// Checks that a baseline run has a participant label and the default scenario, days and cash. Runs of studies and
+    /// other modes are not restricted.
     ///
     /// # Errors
     /// [`RunError::InvalidRequest`] with the next step, or the scenario cannot be read.
@@ -24,8 +25,8 @@ impl NewRun {
         let label = self.participant.clone().or(of_folder);
         if label.is_none_or(|label| label.trim().is_empty()) {
             return Err(RunError::InvalidRequest(
-                "a baseline run needs a participant: name a label with --as or --participant, in the form under \
-                 Participant. Nothing was recorded"
+                "a baseline run needs a participant: enter a label with --as or --participant, or in the Participant \
+                 field of the form. Nothing was recorded"
                     .to_owned(),
             ));
         }
@@ -34,14 +35,14 @@ impl NewRun {
             return Ok(());
         }
         Err(RunError::InvalidRequest(format!(
-            "a baseline run is played with {}, so that results can be compared; {} needs a study, or another mode. \
-             Nothing was recorded",
+            "a baseline run needs {}, so that results can be compared; {} needs a study, or another mode. Nothing was \
+             recorded",
             baseline_terms(configuration)?,
             other.join(", ")
         )))
     }
 
-    /// Returns the scenario, days and cash of the run that differ from those of baseline runs outside of studies.
+    /// Returns descriptions of the scenario, days and cash of the run, as far as they differ from the terms of baseline runs.
     ///
     /// # Errors
     /// The scenario cannot be read.
@@ -57,7 +58,7 @@ impl NewRun {
     }
 }
 
-/// Describes scenario, days and cash of baseline runs outside of studies.
+/// Describes the scenario, days and cash of baseline runs outside of studies.
 ///
 /// # Errors
 /// The scenario cannot be read.

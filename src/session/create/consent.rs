@@ -9,17 +9,18 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::manifest_check::ManifestCheck;
 use novamind_record::folder::runs::all_run_folders;
 
-/// Returns the consent that a new baseline run records: given now, or by the same participant for an earlier run.
+/// Returns the consent for a new baseline run. The participant gives consent now, or gave it for an earlier run.
 ///
 /// # Errors
-/// [`RunError::ConsentNeeded`] with the text if there is no consent. Other errors if the file cannot be read.
+/// [`RunError::ConsentNeeded`] with the consent text if the participant has not agreed to it. Other errors if the file
+/// cannot be read.
 pub fn resolve_consent(
     new: &NewRun,
     participant: Option<&str>,
     configuration: &Configuration,
 ) -> Result<Option<Consent>, RunError> {
     let text = match &new.study {
-        // A study defines its own text, or none.
+        // A study defines its consent text, or requires no consent.
         Some(study) => study.consent.clone(),
         None => configuration.load_consent_text()?,
     };

@@ -1,4 +1,4 @@
-//! The lesson of a new run.
+//! The lesson options of a new run.
 
 use std::sync::Arc;
 
@@ -6,12 +6,12 @@ use super::NewRun;
 use novamind_record::lesson::Lesson;
 use novamind_record::stamp::LessonStamp;
 
-/// The lesson of a new run.
+/// The lesson and part that a new run plays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonEntry {
-    /// The lesson.
+    /// Lesson that the run plays.
     pub lesson: Arc<Lesson>,
-    /// Index of the part, from 0.
+    /// Part that the run plays, from 0.
     pub part: usize,
     /// Whether goals and pitfalls are checked; false for reference plays.
     pub is_judged: bool,

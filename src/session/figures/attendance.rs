@@ -1,7 +1,7 @@
-//! Time of a run by kind: active, idle, away. Tables and time limits use this definition.
+//! Time of a run by kind: active, idle, away. Tables and time limits use these definitions.
 //!
-//! Time passes between two lines. `session` and `clock` lines define its kind. Before the first of them, and in runs
-//! without them, a gap of more than ten minutes is a break. Time in which the program simulates days or waits for a
+//! Time is measured between two lines. `session` and `clock` lines determine the kind of the time. Before the first
+//! `session` line, a gap of more than ten minutes is a break. Time in which the program simulates days or waits for a
 //! language model does not count. All times are whole nanoseconds, so that sums are exact.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -9,26 +9,27 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitScope, Presence, PresenceEvent};
 use novamind_record::trajectory::{Line, Record};
 
-/// Without `session` lines, a gap of more than this many seconds is a break: ten minutes.
+/// Minimum gap between lines that counts as a break if there are no `session` lines: ten minutes, in seconds.
 pub const MIN_BREAK_SECONDS: f64 = 600.0;
 
 const MIN_BREAK_NS: i64 = MIN_BREAK_SECONDS as i64 * NS_PER_SECOND;
 const NS_PER_SECOND: i64 = 1_000_000_000;
 const NS_PER_MS: i64 = 1_000_000;
 
-/// The interface that watches every key and records idle times.
+/// The interface that monitors key presses and records idle times.
 pub(super) const KEY_WATCHING_INTERFACE: &str = "console";
 
-/// How a participant spent a time.
+/// How a participant spent a period of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attention {
-    /// Playing.
+    /// The participant played.
     Active,
-    /// Answering questions of the study.
+    /// The participant answered questions of the study.
     Answering,
-    /// Idle: no key was pressed, or, if keys are not watched, no line was written for more than ten minutes.
+    /// The participant was idle: no key was pressed. If the interface does not monitor keys, no line was written for
+    /// more than ten minutes.
     Idle,
-    /// Away: the run was not open or was suspended, or another window had the focus.
+    /// The participant was away: the program was closed or suspended, or another window had the focus.
     Away,
     /// The clock was stopped.
     Paused,
@@ -36,49 +37,49 @@ pub enum Attention {
     Simulating,
 }
 
-/// Time by kind.
+/// Time of a participant by kind, in nanoseconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TimeSpent {
     active: i64,
     answering: i64,
     idle: i64,
-    /// Nanoseconds away, including those with a stopped clock.
+    /// Time away, including the time with a stopped clock.
     away: i64,
     paused: i64,
 }
 
 impl TimeSpent {
-    /// Returns the seconds of playing, to the millisecond.
+    /// Returns the active time in seconds, rounded to milliseconds.
     pub fn active_seconds(&self) -> f64 {
         to_seconds(self.active)
     }
 
-    /// Returns the seconds of answering questions, to the millisecond.
+    /// Returns the time spent on study questions in seconds, rounded to milliseconds.
     pub fn answering_seconds(&self) -> f64 {
         to_seconds(self.answering)
     }
 
-    /// Returns the idle seconds, to the millisecond.
+    /// Returns the idle time in seconds, rounded to milliseconds.
     pub fn idle_seconds(&self) -> f64 {
         to_seconds(self.idle)
     }
 
-    /// Returns the seconds away, including those with a stopped clock, to the millisecond.
+    /// Returns the time away in seconds, rounded to milliseconds. Includes the time with a stopped clock.
     pub fn away_seconds(&self) -> f64 {
         to_seconds(self.away)
     }
 
-    /// Returns the seconds with a stopped clock, to the millisecond.
+    /// Returns the time with a stopped clock in seconds, rounded to milliseconds.
     pub fn paused_seconds(&self) -> f64 {
         to_seconds(self.paused)
     }
 
-    /// Returns the seconds of all kinds, to the millisecond.
+    /// Returns the time of all kinds in seconds, rounded to milliseconds.
     pub fn elapsed_seconds(&self) -> f64 {
         to_seconds(self.active + self.answering + self.idle + self.away)
     }
 
-    /// Returns the milliseconds of playing, as time limits count them.
+    /// Returns the active time in milliseconds, as counted by time limits.
     pub fn active_ms(&self) -> u64 {
         (self.active / NS_PER_MS).max(0) as u64
     }
@@ -126,12 +127,12 @@ fn to_seconds(nanoseconds: i64) -> f64 {
     ((nanoseconds + NS_PER_MS / 2) / NS_PER_MS) as f64 / 1e3
 }
 
-/// A span of time of one kind. Times are nanoseconds since the first line.
+/// A period of time of one kind. Its ends are in nanoseconds since the first line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimeSpan {
-    /// Start, nanoseconds.
+    /// Start of the period, nanoseconds since the first line.
     pub from: i64,
-    /// End, nanoseconds.
+    /// End of the period, nanoseconds since the first line.
     pub to: i64,
     /// How the time was spent.
     pub attention: Attention,
@@ -139,25 +140,26 @@ pub struct TimeSpan {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum ConnectionState {
-    /// No `session` line so far: gaps determine breaks.
+    /// No `session` line has been read yet, so long gaps count as breaks.
     #[default]
     Unknown,
     /// The program has closed the run.
     Closed,
     /// The program has opened the run.
     Open {
-        /// The program records idle times.
+        /// Whether the program monitors keys and records idle times.
         watches_keys: bool,
     },
 }
 
-/// The times of a run, line by line.
+/// How the participant spent the time of a run, computed line by line.
 ///
-/// Times are nanoseconds since the first line. If the wall clock was set back, no time passes.
+/// Times are nanoseconds since the first line. If the wall clock was set back between two lines, the time between them
+/// counts as zero.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Attendance {
     spans: Vec<TimeSpan>,
-    /// Time of the last line.
+    /// Time of the last line, nanoseconds since the first line.
     end_ns: i64,
     /// Wall-clock time of the last line, nanoseconds since 1970.
     last_time_ns: Option<i64>,
@@ -166,7 +168,7 @@ pub struct Attendance {
     is_idle: bool,
     is_suspended: bool,
     has_lost_focus: bool,
-    /// Questions of this session without an answer.
+    /// Number of questions in this session that are shown and not answered.
     open_questions: u32,
     clock_set_back_count: u32,
     weeks: Vec<AttendedWeek>,
@@ -175,14 +177,14 @@ pub struct Attendance {
 }
 
 impl Attendance {
-    /// Computes the times of lines.
+    /// Computes the attendance from the lines of a run.
     pub fn from_lines(lines: &[Line]) -> Attendance {
         let mut attendance = Attendance::default();
         lines.iter().for_each(|line| attendance.add_line(line.at_nanoseconds(), &line.record));
         attendance
     }
 
-    /// Adds the next line, written at `moment` in nanoseconds since 1970.
+    /// Adds the next line. `moment` is the time at which it was written, in nanoseconds since 1970.
     pub fn add_line(&mut self, moment: i64, record: &Record) {
         let passed = moment - self.last_time_ns.unwrap_or(moment);
         if passed < 0 {
@@ -195,7 +197,7 @@ impl Attendance {
             Record::Activity(Activity::Session(presence)) => self.apply_presence(presence),
             Record::Activity(Activity::Question(_)) => self.open_questions += 1,
             Record::Activity(Activity::Clock(clock)) => self.is_paused = clock.event == ClockEvent::Stopped,
-            // The inherited lines of a branch were played in another run, at another time.
+            // The copied lines of a branch were played in the parent run, at another time.
             Record::Branch(_) => {
                 self.spans.clear();
                 self.weeks.iter_mut().for_each(|week| week.is_inherited = true);
@@ -217,7 +219,7 @@ impl Attendance {
         }
     }
 
-    /// Returns the time of the last line.
+    /// Returns the time of the last line, in nanoseconds since the first line.
     pub fn end_ns(&self) -> i64 {
         self.end_ns
     }
@@ -227,22 +229,22 @@ impl Attendance {
         self.clock_set_back_count
     }
 
-    /// Returns the weeks, or single days, in order.
+    /// Returns the periods of all simulated weeks and single days, in order.
     pub fn weeks(&self) -> &[AttendedWeek] {
         &self.weeks
     }
 
-    /// Returns the time at which the current week starts.
+    /// Returns the start of the current week, in nanoseconds since the first line.
     pub fn week_start_ns(&self) -> i64 {
         self.week_start_ns
     }
 
-    /// Returns the spans in order. They have no gaps, except for lines inherited from another run.
+    /// Returns the periods in order. The periods have no gaps, except for lines that were copied from another run.
     pub fn spans(&self) -> &[TimeSpan] {
         &self.spans
     }
 
-    /// Returns the time between two points, by kind.
+    /// Returns the time between two moments, by kind.
     pub fn spent_between(&self, from: i64, to: i64) -> TimeSpent {
         let mut spent = TimeSpent::default();
         let first = self.spans.partition_point(|time| time.to <= from);
@@ -252,8 +254,8 @@ impl Attendance {
         spent
     }
 
-    /// Returns the time so far in the scope of a limit, at `moment` in nanoseconds since 1970. Time without a key
-    /// counts as active until the program records the idle time.
+    /// Returns the time spent in the scope of a limit up to `moment`, in nanoseconds since 1970. Time without key
+    /// presses counts as active until the program records the idle time.
     pub fn spent_so_far(&self, scope: LimitScope, moment: i64) -> TimeSpent {
         let from = match scope {
             LimitScope::Week => self.week_start_ns,
@@ -266,7 +268,7 @@ impl Attendance {
         spent
     }
 
-    /// Returns the kind of the time since the last line. `record` is the line that ends it.
+    /// Returns how the time since the last line was spent. `record` is the event of the next line, if there is one.
     fn classify_gap(&self, passed: i64, record: Option<&Record>) -> Attention {
         let long = passed > MIN_BREAK_NS;
         let simulates = |record: &Record| record.closing().is_some() || matches!(record, Record::Voice(_));
@@ -281,7 +283,7 @@ impl Attendance {
             ConnectionState::Unknown if long => Attention::Away,
             ConnectionState::Unknown => Attention::Active,
             ConnectionState::Closed => Attention::Away,
-            // The run was not closed: it is unknown when the program stopped.
+            // The program did not close the run, so the time at which the program stopped is unknown.
             ConnectionState::Open { .. } if is_opened_again => Attention::Away,
             ConnectionState::Open { .. } if self.is_suspended || self.has_lost_focus => Attention::Away,
             ConnectionState::Open { .. } if self.is_idle => Attention::Idle,
@@ -307,7 +309,7 @@ impl Attendance {
                 let watches_keys = presence.interface.as_deref() == Some(KEY_WATCHING_INTERFACE);
                 self.connection = ConnectionState::Open { watches_keys };
                 self.session_start_ns = self.end_ns;
-                // Questions without an answer are asked again.
+                // The program asks unanswered questions again.
                 self.open_questions = 0;
                 (self.is_idle, self.is_suspended, self.has_lost_focus) = (false, false, false);
             }
@@ -326,7 +328,7 @@ impl Attendance {
         }
     }
 
-    /// Changes active time since `since` to idle.
+    /// Reclassifies active time since `since` as idle.
     fn mark_idle_since(&mut self, since: i64) {
         let first = self.spans.partition_point(|time| time.to <= since);
         let found = self.spans.split_off(first);
@@ -361,7 +363,7 @@ fn presence_event(record: &Record) -> Option<PresenceEvent> {
     }
 }
 
-/// Returns whether only a present user can cause this line. Weeks do not count, because a time limit can submit them.
+/// Returns whether only a present user can cause this event. Weeks do not count, because a time limit can submit a week.
 fn is_user_action(record: &Record) -> bool {
     match record {
         Record::Call(_) | Record::Query(_) | Record::Note(_) | Record::Memo(_) => true,
@@ -377,22 +379,22 @@ fn is_user_action(record: &Record) -> bool {
     }
 }
 
-/// A week with fewer active seconds was decided implausibly fast.
+/// Active time in seconds below which a week was decided implausibly fast.
 pub const FAST_WEEK_SECONDS: f64 = 10.0;
 
-/// The span of a week, or of single days.
+/// The period in which a week, or single days, were decided and simulated.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct AttendedWeek {
-    /// End of the week before, nanoseconds.
+    /// End of the previous week, nanoseconds since the first line.
     pub from: i64,
-    /// End of the week, nanoseconds.
+    /// End of the week, nanoseconds since the first line.
     pub to: i64,
-    /// The week was inherited from the parent run.
+    /// Whether the week was copied from the parent run.
     pub is_inherited: bool,
 }
 
 impl AttendedWeek {
-    /// Returns whether it was decided in this run, in less than [`FAST_WEEK_SECONDS`] active seconds.
+    /// Returns whether the week was decided in this run in less than [`FAST_WEEK_SECONDS`] of active time.
     pub fn is_implausibly_fast(&self, time: &TimeSpent) -> bool {
         !self.is_inherited && time.active_seconds() < FAST_WEEK_SECONDS
     }
@@ -451,7 +453,7 @@ mod tests {
         Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
     }
 
-    /// Active, idle, away and paused seconds.
+    /// Returns active, idle, away and paused seconds.
     fn seconds_by_kind(attendance: &Attendance) -> [f64; 4] {
         let spent = attendance.spent_between(0, attendance.end_ns());
         [spent.active_seconds(), spent.idle_seconds(), spent.away_seconds(), spent.paused_seconds()]
@@ -497,7 +499,7 @@ mod tests {
             (335, presence_record(PresenceEvent::Closed)),
             (1335, opened_record("console")),
             (1340, view_record()),
-            // The program was killed.
+            // The program was killed here, so there is no `closed` line.
             (1400, opened_record("console")),
             (1401, presence_record(PresenceEvent::FocusLost)),
             (1403, help_record()),

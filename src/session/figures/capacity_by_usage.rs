@@ -1,23 +1,24 @@
-//! Rules that set the capacity from usage at the start of a week.
+//! Rules that set the capacity tier according to usage at the start of a week.
 
 use novamind_record::figures::WeekFigures;
 use novamind_world::params::{CapacityTier, Params};
 
 const TARGET_UTILIZATION: f64 = 0.8;
 
-/// A rule that sets the capacity from usage.
+/// A rule that sets the capacity tier according to usage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UsageCapacityRule {
-    /// The smallest tier that serves the busiest day of the week before without overload, or the largest tier. No
-    /// change before the first week.
+    /// Select the smallest tier that serves the busiest day of the last week without overload, or the largest tier.
+    /// Before the first week, the tier does not change.
     BusiestDay,
-    /// One tier a week toward the smallest that serves the mean usage of the week before at 80 % utilization, as in
-    /// the routine of the paper and in lessons.
+    /// Move by one tier per week toward the smallest tier that serves the mean usage of the last week at 80 %
+    /// utilization. Lessons and the routine in the paper use this rule.
     StepByStep,
 }
 
 impl UsageCapacityRule {
-    /// Returns the tier for the next week, given the current one and the figures of the last week.
+    /// Returns the capacity tier for the next week. `now` is the current tier, and `before` contains the figures of
+    /// the last week.
     pub fn next_tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
         match self {
             UsageCapacityRule::BusiestDay => {
@@ -32,7 +33,7 @@ impl UsageCapacityRule {
     }
 }
 
-/// Returns the smallest tier that serves `units` a day, or the largest tier.
+/// Returns the smallest tier that serves `units` per day, or the largest tier.
 fn smallest_covering_tier(units: f64, now: u8, params: &Params) -> u8 {
     let tiers = &params.capacity_tier;
     let holds = |tier: &&CapacityTier| f64::from(tier.capacity_units) >= units;

@@ -1,5 +1,5 @@
-//! The rate at which cash changes: commitments of the settings, and income and variable costs of recent weeks. Naive
-//! forecasts and the runway follow from it.
+//! The rate at which cash changes: costs that the settings commit to, and income and variable costs of recent weeks.
+//! Naive forecasts and the runway are computed from this rate.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use novamind_world::events::Category;
 
 const RECENT_WEEKS: usize = 4;
 
-/// Rates, dollars a day.
+/// Components of the cash rate, in dollars per day.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct CashRate {
     /// Costs that the settings commit to: capacity, operations, development, advertising.
@@ -20,7 +20,7 @@ pub struct CashRate {
 }
 
 impl CashRate {
-    /// Computes the rate from daily commitments and the figures of past weeks.
+    /// Computes the rate from the committed costs per day and the figures of past weeks.
     pub fn from_weeks(committed: f64, weeks: &[WeekFigures]) -> CashRate {
         let recent = &weeks[weeks.len().saturating_sub(RECENT_WEEKS)..];
         let days: u32 = recent.iter().map(|week| week.days_run).sum();
@@ -35,18 +35,18 @@ impl CashRate {
         }
     }
 
-    /// Returns the change of cash per day.
+    /// Returns the cash change per day, in dollars.
     pub fn net_per_day(&self) -> f64 {
         self.income - self.committed - self.variable
     }
 
-    /// Returns the weeks until cash is 0; `None` if it does not shrink.
+    /// Returns the number of weeks until cash is 0, or `None` if cash does not decrease.
     pub fn runway_weeks(&self, cash: f64) -> Option<f64> {
         (self.net_per_day() < 0.0).then(|| cash.max(0.0) / -self.net_per_day() / 7.0)
     }
 }
 
-/// Returns income and variable costs of a week, both positive.
+/// Returns the income and the variable costs of a week as positive amounts.
 fn weekly_flows(week: &WeekFigures) -> (f64, f64) {
     let of = |category| week.booked.total_of(category);
     (

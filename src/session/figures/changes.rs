@@ -9,15 +9,15 @@ use novamind_world::settings::Settings;
 /// A setting that differs between two states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SettingChange {
-    /// Setting.
+    /// Setting that changed.
     pub setting: SettingId,
-    /// Value before.
+    /// Value before the change.
     pub old: f64,
-    /// Value after.
+    /// Value after the change.
     pub new: f64,
 }
 
-/// Serializes the change for programs, with tool and unit.
+/// Serializes the change for programs, with the tool and unit of the setting.
 impl Serialize for SettingChange {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Change", 5)?;
@@ -30,21 +30,21 @@ impl Serialize for SettingChange {
     }
 }
 
-/// Decisions between two weeks.
+/// The player's decisions between two weeks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Decisions {
-    /// Decision day.
+    /// Day on which the decisions were made.
     pub day: u32,
-    /// Last of the days simulated after it.
+    /// Last day that was simulated after the decisions.
     pub until: u32,
     /// Changed settings.
     #[serde(with = "kept")]
     pub changes: Vec<SettingChange>,
-    /// Purchases, posts and offers, as text.
+    /// Descriptions of purchases, posts and offers.
     pub purchases: Vec<String>,
 }
 
-/// The format of changes in snapshots.
+/// Serialization of changes in snapshots.
 mod kept {
     use serde::{Deserialize, Deserializer, Serializer};
 
@@ -60,8 +60,8 @@ mod kept {
     }
 }
 
-/// Returns the changed settings, in the order of the tools. A setting that is in one state only has value 0 in the
-/// other.
+/// Returns the changed settings, in the order of the tools. A setting that is missing in one of the states has value 0
+/// in that state.
 pub fn setting_changes(old: &Settings, new: &Settings) -> Vec<SettingChange> {
     let (before, after) = (setting_values(old), setting_values(new));
     let value_in = |list: &[(SettingId, f64)], wanted: SettingId| {
@@ -79,7 +79,7 @@ pub fn setting_changes(old: &Settings, new: &Settings) -> Vec<SettingChange> {
     found
 }
 
-/// Returns the running costs that follow from settings alone, dollars a day.
+/// Returns the running costs that depend only on settings, in dollars per day.
 pub fn daily_cost(settings: &Settings, capacity_cost: f64) -> f64 {
     capacity_cost
         + settings.core.operations

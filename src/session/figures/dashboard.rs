@@ -1,4 +1,4 @@
-//! The weekly dashboard as text, as agents read it.
+//! The text of the weekly dashboard that agents receive.
 
 use std::fmt::Write;
 
@@ -11,14 +11,14 @@ use novamind_world::market::social::own_posts::OwnPost;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
-/// Delivered quality for a known group.
+/// Delivered quality of each plan for a known group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeliveredQuality {
-    /// Group.
+    /// Group for which the quality is delivered.
     pub group: Group,
-    /// Quality by plan, with its current model tier.
+    /// Delivered quality by plan, with the plan's current model tier.
     pub by_plan: ByPlan<f64>,
-    /// Bonus from targeted development.
+    /// Quality bonus from development for the group.
     pub group_bonus: f64,
 }
 
@@ -39,16 +39,16 @@ pub fn delivered_quality(world: &World, params: &Params) -> Vec<DeliveredQuality
         .collect()
 }
 
-/// Leads that wait for a response.
+/// Summary of the threads that wait for a response of the player.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WaitingLeads {
-    /// Number of threads.
+    /// Number of threads that wait for a response.
     pub threads: u32,
-    /// Days until the first of them ends without a response.
+    /// Days until the first thread ends without a response.
     pub days_left: u32,
 }
 
-/// Builds the dashboard. `week` has the figures of the last week; `None` before the first.
+/// Builds the text of the dashboard. `week` contains the figures of the last week, or is `None` before the first week.
 pub fn dashboard_text(
     world: &World,
     params: &Params,

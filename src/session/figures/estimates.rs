@@ -1,22 +1,22 @@
-//! Estimates of a group from studies, as numbers: the values of get_group_insights without its texts.
+//! Numeric estimates of a group from market studies: the values of `get_group_insights` without its texts.
 
 use novamind_world::identifiers::Group;
 
-/// Estimates of a group. The true value at the time of the study is within a relative error of each.
+/// Estimates of a group. Each true value at the time of the study is within `max_relative_error` of its estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimates {
-    /// Group.
+    /// Estimated group.
     pub group: Group,
-    /// Study level, 1..=5.
+    /// Study level of the estimates, 1 to 5.
     pub level: u8,
-    /// Day of the estimates of budget, required quality and market size: that of the last study, or of the group's
-    /// discovery.
+    /// Day to which the estimates of budget, required quality and market size refer: the day of the last study, or of
+    /// the group's discovery.
     pub as_of: u32,
-    /// Largest relative error, 0..1.
+    /// Largest relative error of an estimate, 0 to 1.
     pub max_relative_error: f64,
-    /// Mean budget, dollars a month; for enterprises per seat.
+    /// Mean budget, dollars per month; per seat for enterprises.
     pub budget: f64,
-    /// Mean usage, units a day; for enterprises per seat.
+    /// Mean usage, units per day; per seat for enterprises.
     pub usage: f64,
     /// Mean required quality.
     pub required_quality: f64,
@@ -25,7 +25,7 @@ pub struct Estimates {
 }
 
 impl Estimates {
-    /// Returns the usage of the smallest account, units a day. All seats of an enterprise share one quota.
+    /// Returns the usage of the smallest account, in units per day. All seats of an enterprise share one quota.
     pub fn account_usage(&self) -> f64 {
         self.usage * self.seats.0
     }
@@ -35,7 +35,7 @@ impl Estimates {
         true_value_range(value, self.max_relative_error)
     }
 
-    /// Returns the range of the true usage of the smallest account, units a day.
+    /// Returns the range of the true usage of the smallest account, in units per day.
     pub fn account_usage_range(&self) -> (f64, f64) {
         let ((least, most), (fewest, seats)) = (self.true_range(self.usage), self.true_range(self.seats.0));
         // Individuals have exactly one seat.
@@ -43,7 +43,7 @@ impl Estimates {
     }
 }
 
-/// Returns the range of the true value behind an estimate, which is the true value times 1 ± at most `share`.
+/// Returns the range of the true value behind an estimate. The relative error of the estimate is at most `share`.
 pub fn true_value_range(estimate: f64, share: f64) -> (f64, f64) {
     let from = estimate / (1.0 + share);
     let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };

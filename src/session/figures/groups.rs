@@ -14,45 +14,45 @@ use novamind_world::state::World;
 /// Results of advertising to a group through a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PaidLeads {
-    /// Leads.
+    /// Leads of the group that arrived through the channel.
     pub leads: u32,
-    /// Dollars spent.
+    /// Advertising spending, dollars.
     pub spend: f64,
-    /// Individuals among the leads who signed up, and so were billed, on the same day.
+    /// Individuals among the leads who signed up and were billed on the same day.
     pub billed: u32,
 }
 
 canonical! { PaidLeads { leads, spend, billed } }
 
-/// Figures of a group in a week.
+/// Visible and estimated figures of a group in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GroupWeek {
-    /// Leads.
+    /// Leads of the group.
     pub leads: u32,
-    /// Leads by word of mouth; the others came through channels.
+    /// Leads by word of mouth; all other leads arrived through channels.
     pub word_of_mouth: u32,
-    /// Results of advertising, by channel.
+    /// Results of advertising to the group, by channel.
     pub paid: ByChannel<PaidLeads>,
-    /// Enterprises among the leads that opened a thread; the others found no plan good enough at any price.
+    /// Enterprises among the leads that opened a thread. The other enterprises found no plan of sufficient quality at
+    /// any price.
     pub asked: u32,
-    /// Individuals who signed up, or enterprises with a first accepted deal.
+    /// Number of individuals who signed up, or of enterprises that accepted a first deal.
     pub signed: u32,
-    /// Individuals who signed up, by plan.
+    /// Number of individuals who signed up, by plan.
     pub chosen: ByPlan<u32>,
-    /// Cancellations.
+    /// Cancellations in the week.
     pub left: u32,
-    /// Units used, by plan.
+    /// Usage in units, by plan.
     pub usage: ByPlan<u64>,
-    /// Units used on the last day of the week, by plan.
+    /// Usage on the last day of the week in units, by plan.
     pub last_usage: ByPlan<u64>,
-    /// Individual subscribers at the end of the week.
+    /// Individual subscribers at the end of the week, by plan.
     pub subscribers: ByPlan<u32>,
-    /// Revenue from individual subscribers at the end of the week, dollars a month.
+    /// Monthly revenue from individual subscribers at the end of the week, dollars, by plan.
     pub revenue: ByPlan<f64>,
-    /// Delivered quality at the end of the week; `None` while the group is unknown.
+    /// Delivered quality at the end of the week, by plan; `None` while the group is unknown.
     pub quality: Option<ByPlan<f64>>,
-    /// Range of the group's mean required quality according to the estimate at the end of the week; `None` while the
-    /// group is unknown.
+    /// Estimated range of the group's mean required quality at the end of the week; `None` while the group is unknown.
     pub floor: Option<(f64, f64)>,
 }
 
@@ -64,18 +64,18 @@ canonical! {
 }
 
 impl GroupWeek {
-    /// Returns the leads through channels.
+    /// Returns the number of leads that arrived through channels.
     pub fn paid_leads(&self) -> u32 {
         self.leads - self.word_of_mouth
     }
 
-    /// Returns the share of leads that signed up; `None` without leads.
+    /// Returns the share of leads that signed up, or `None` if there were no leads.
     pub fn conversion(&self) -> Option<f64> {
         (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))
     }
 }
 
-/// Adds a day to the figures of its week.
+/// Adds the figures and facts of a day to the figures of its week.
 pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
     let arrivals: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
@@ -123,8 +123,8 @@ pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Fa
     }
 }
 
-/// Completes the figures at the end of a week. `floor` returns the range of a group's mean required quality, if the
-/// group is known.
+/// Completes the figures of all groups at the end of a week. `floor` returns the estimated range of a group's mean
+/// required quality, if the group is known.
 pub(crate) fn finish_week(
     week: &mut ByGroup<GroupWeek>,
     world: &World,
@@ -143,7 +143,8 @@ pub(crate) fn finish_week(
     }
 }
 
-/// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are none.
+/// Returns mean satisfaction and mean relationship of a group's active subscribers, or `None` if the group has no
+/// active subscribers.
 pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();
     let count: usize = blocks().map(Block::len).sum();
@@ -152,7 +153,7 @@ pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     (count > 0).then(|| (satisfaction / count as f64, relationship / count as f64))
 }
 
-/// Returns the figures of a group at the end of the days that `counted` covers.
+/// Returns the figures of a group, including hidden ones. `counted` contains the sums over the days before.
 pub fn measure_group(group: Group, counted: &GroupWeek, world: &World) -> GroupFigures {
     let (satisfaction, relationship) = mean_satisfaction(world, group).unzip();
     let group_customers = &world.customers.groups[group];

@@ -7,53 +7,53 @@ use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Reversal;
 use novamind_tools::{Forecast, ToolId};
 
-/// A confirmed action or week.
+/// An entry of the journal: a confirmed action or a simulated week.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum JournalEntry {
-    /// A tool call.
+    /// An accepted tool call.
     Call {
-        /// Line in the trajectory.
+        /// Number of the line in the trajectory.
         seq: u64,
         /// Decision day.
         day: u32,
-        /// Tool.
+        /// Called tool.
         tool: ToolId,
-        /// Arguments.
+        /// Arguments of the call.
         args: Value,
-        /// The earlier call that it undid or redid.
+        /// Earlier call that this call undid or redid, if any.
         #[serde(flatten)]
         reversal: Option<Reversal>,
     },
     /// A parameter change in a debug run.
     Parameter {
-        /// Line in the trajectory.
+        /// Number of the line in the trajectory.
         seq: u64,
         /// Decision day.
         day: u32,
-        /// Full key.
+        /// Full key of the parameter.
         key: String,
-        /// Value before.
+        /// Value before the change.
         old: Value,
-        /// New value.
+        /// Value after the change.
         new: Value,
         /// First simulated day with the new value; `None` if the change took effect immediately.
         from_day: Option<u32>,
     },
-    /// A submitted week.
+    /// The submission before a week.
     Advance {
         /// Decision day.
         day: u32,
-        /// Rationale.
+        /// Rationale of the week.
         rationale: String,
-        /// Forecasts of cash.
+        /// Forecasts of cash, one per horizon.
         forecasts: Vec<Forecast>,
-        /// Whether the naive projection filled in each forecast.
+        /// Whether each forecast is a naive forecast, completely or partly.
         filled_naively: [bool; 4],
     },
-    /// A simulated week, or single days.
+    /// A simulated week, or single simulated days.
     Week {
-        /// Its figures.
+        /// Figures of the simulated days.
         figures: WeekFigures,
     },
 }

@@ -1,5 +1,5 @@
 //! Figures of a company as plain data, and the functions that compute them: weeks, groups, decisions, forecasts,
-//! estimates, presence. Nothing in this module reads a run or a file.
+//! estimates and presence. This module does not read runs or files.
 
 pub(crate) mod attendance;
 pub(crate) mod capacity_by_usage;

@@ -1,6 +1,6 @@
-//! Naive forecasts: the cash flow of recent weeks continues. Intervals contain the errors measured for companies in
-//! the same stage, with the bundled policies (`novamind lab forecasts`). They are wider for a company with large past
-//! errors.
+//! Naive forecasts, which assume that the cash flow of recent weeks continues. Intervals are derived from the errors
+//! that `novamind lab forecasts` measured for companies in the same stage, with the bundled policies. Large past
+//! errors of a company widen its intervals.
 
 use std::sync::LazyLock;
 
@@ -12,46 +12,48 @@ use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
 use novamind_world::events::Category;
 
-/// A company is young up to this many weeks.
+/// Number of weeks up to which a company is young.
 const YOUNG_WEEKS: usize = 4;
-/// Income grows if it exceeds that of four weeks before by this factor, and shrinks if it is below the inverse.
+/// Income is growing if it exceeds the income of four weeks before by this factor. Income is shrinking if it is below
+/// the inverse.
 const GROWTH_FACTOR: f64 = 1.3;
-/// Number of past errors per horizon that affect the width.
+/// Number of past errors per horizon that affect the width of an interval.
 const MAX_REMEMBERED_ERRORS: usize = 8;
-/// The interval is multiplied by this factor times the root mean square of past errors in intervals, if the product
-/// is above 1.
+/// Factor by which past errors widen an interval. The width is multiplied by this factor times the root mean square of
+/// past errors (in intervals), if the product is above 1.
 const ERROR_WIDENING_FACTOR: f64 = 1.5;
-/// Maximum error, in intervals.
+/// Maximum past error that is considered, in intervals.
 const MAX_ERROR_INTERVALS: f64 = 10.0;
-/// Minimum cash flow, dollars a day.
+/// Minimum expected cash flow, dollars per day.
 const MIN_FLOW_PER_DAY: f64 = 1.0;
-/// Minimum half-width of an interval, as a share of the expected flow: users vary more than policies.
+/// Minimum half-width of an interval, as a share of the expected flow, because users vary more than policies.
 const MIN_INTERVAL_SHARE: f64 = 0.05;
-/// Errors up to this share of the expected flow count as 0.
+/// Largest error that counts as 0, as a share of the expected flow.
 const ROUNDING_TOLERANCE: f64 = 1e-4;
-/// Quantiles of the errors that bound an interval: wider than 95 %, because a company differs from those measured.
+/// Quantiles of the errors that bound an interval. The range is wider than 95 %, because a company differs from the
+/// measured companies.
 const INTERVAL_QUANTILES: [f64; 2] = [0.02, 0.98];
 
-/// Stage of a company, by its weekly income.
+/// Stage of a company, determined by its age and its weekly income.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GrowthStage {
-    /// Before the first week.
+    /// The company has not completed a week.
     Start,
-    /// In its first weeks.
+    /// The company is in its first four weeks.
     Young,
-    /// Income is growing.
+    /// The income of the company is growing.
     Growing,
-    /// Income is steady.
+    /// The income of the company is steady.
     Steady,
-    /// Income is shrinking.
+    /// The income of the company is shrinking.
     Shrinking,
-    /// No income, now or four weeks before.
+    /// The company has no income now and had no income four weeks before.
     Idle,
 }
 
 impl GrowthStage {
-    /// All stages.
+    /// All stages of a company.
     pub const ALL: [GrowthStage; 6] = [
         GrowthStage::Start,
         GrowthStage::Young,
@@ -61,8 +63,8 @@ impl GrowthStage {
         GrowthStage::Idle,
     ];
 
-    /// Returns the stage after these weeks: compares income of the last two weeks with that of two weeks four weeks
-    /// before.
+    /// Returns the stage of a company after these weeks. Compares the income of the last two weeks with the income
+    /// four weeks before.
     pub fn from_weeks(weeks: &[WeekFigures]) -> GrowthStage {
         let end = weeks.len();
         if end <= YOUNG_WEEKS {
@@ -80,42 +82,42 @@ impl GrowthStage {
     }
 }
 
-/// An interval around the point, in shares of the expected flow.
+/// An interval around the predicted value, in shares of the expected flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ErrorBand {
-    /// Stage of the companies.
+    /// Stage of the companies to which the interval applies.
     pub stage: GrowthStage,
-    /// Days ahead.
+    /// Horizon of the forecasts, in days.
     pub horizon: u32,
-    /// Lower end, negative.
+    /// Lower end of the interval, a negative share.
     pub below: f64,
-    /// Upper end, positive.
+    /// Upper end of the interval, a positive share.
     pub above: f64,
-    /// Number of measured forecasts.
+    /// Number of forecasts from which the interval was computed.
     pub forecasts: usize,
 }
 
-/// Measured coverage of intervals.
+/// Measured coverage of the intervals for one horizon.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// Days ahead.
+    /// Horizon of the forecasts, in days.
     pub horizon: u32,
     /// Number of forecasts that came due.
     pub forecasts: usize,
-    /// Share of the outcomes within the interval.
+    /// Share of the outcomes that were within the interval.
     pub held: f64,
 }
 
-/// Results of a back-test.
+/// Intervals and coverage from a back-test of naive forecasts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ErrorBands {
-    /// Number of policies.
+    /// Number of policies in the back-test.
     pub policies: usize,
-    /// Seeds per policy.
+    /// Number of seeds per policy.
     pub seeds: u64,
-    /// Coverage by horizon.
+    /// Measured coverage by horizon.
     pub coverage: Vec<Coverage>,
-    /// The intervals.
+    /// Intervals by horizon and stage.
     pub bands: Vec<ErrorBand>,
 }
 
@@ -124,12 +126,13 @@ static BUNDLED: LazyLock<ErrorBands> = LazyLock::new(|| {
 });
 
 impl ErrorBands {
-    /// Returns the bundled bands.
+    /// Returns the bundled intervals.
     pub fn bundled() -> &'static ErrorBands {
         &BUNDLED
     }
 
-    /// Computes the intervals from measured errors: stage, days ahead, share of the expected flow.
+    /// Computes the intervals from measured errors. Each error consists of stage, horizon in days, and share of the
+    /// expected flow.
     pub fn from_errors(errors: &[(GrowthStage, u32, f64)], policies: usize, seeds: u64) -> ErrorBands {
         let mut horizons: Vec<u32> = errors.iter().map(|(_, horizon, _)| *horizon).collect();
         horizons.sort_unstable();
@@ -139,7 +142,7 @@ impl ErrorBands {
             let mut values: Vec<f64> = matching.map(|(_, _, error)| *error).collect();
             values.sort_unstable_by(f64::total_cmp);
             let [below, above] = INTERVAL_QUANTILES.map(|share| quantile(&values, share));
-            // Four decimals exceed the precision of the measurement; the interval contains the point.
+            // Four decimals are sufficient: they exceed the precision of the measurement.
             let rounded = |value: f64| (value * 1e4).round() / 1e4;
             ErrorBand {
                 stage,
@@ -153,7 +156,8 @@ impl ErrorBands {
         ErrorBands { policies, seeds, coverage: Vec::new(), bands: cells.map(band).collect() }
     }
 
-    /// Returns the interval of a stage for a horizon, or that of the next shorter measured horizon.
+    /// Returns the interval of a stage for a horizon. If the horizon was not measured, returns the interval of the
+    /// next shorter horizon.
     fn interval(&self, stage: GrowthStage, horizon: u32) -> (f64, f64) {
         let of_stage = self.bands.iter().filter(|band| band.stage == stage);
         let shorter = of_stage.clone().filter(|band| band.horizon <= horizon).max_by_key(|band| band.horizon);
@@ -179,29 +183,29 @@ impl ErrorBands {
     }
 }
 
-/// Returns a quantile of sorted values by linear interpolation; 0 if there are none.
+/// Returns a quantile of sorted values by linear interpolation, or 0 if there are no values.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * sorted.len().saturating_sub(1) as f64;
     let value = |at: f64| sorted.get(at as usize).copied().unwrap_or(0.0);
     value(at.floor()) + (value(at.ceil()) - value(at.floor())) * at.fract()
 }
 
-/// A naive forecast as it was, or would have been, made before a week, and its outcome.
+/// A naive forecast for a past week, computed from earlier weeks only, with its outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hindcast {
-    /// Stage at that time.
+    /// Stage of the company at the time of the forecast.
     pub stage: GrowthStage,
-    /// Outcome without later purchases, less the point, as a share of the expected flow. A naive forecast does not
-    /// predict purchases.
+    /// Outcome without later purchases minus predicted value, as a share of the expected flow. Purchases are excluded
+    /// because a naive forecast does not predict them.
     pub error: f64,
-    /// Whether the interval contains the outcome, purchases included.
+    /// Whether the interval contains the outcome including purchases.
     pub is_covered: bool,
     due_week: usize,
-    /// The error, in intervals.
+    /// Error of the forecast, in intervals.
     error_intervals: f64,
 }
 
-/// Returns the naive forecasts before each past week for a horizon, as far as outcomes are known.
+/// Returns a naive forecast with the given horizon for each past week whose outcome is known.
 pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &ErrorBands) -> Vec<Hindcast> {
     let mut made: Vec<Hindcast> = Vec::new();
     for before in 0..weeks.len() {
@@ -224,38 +228,38 @@ pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &ErrorBands) -> Vec
     made
 }
 
-/// Returns the index of the week that ends `horizon` days after the start of another. A bankrupt company keeps its
-/// last cash: without it, only successful companies would be measured.
+/// Returns the index of the week that ends `horizon` days after the start of the week `before`. After a bankruptcy,
+/// the last week counts: otherwise, only successful companies would be measured.
 fn due_week(weeks: &[WeekFigures], before: usize, horizon: u32) -> Option<usize> {
     let day = weeks[before].day - weeks[before].days_run + horizon;
     let last = weeks.last().filter(|last| last.cash < 0.0 && last.day < day);
     weeks.binary_search_by_key(&day, |week| week.day).ok().or(last.map(|_| weeks.len() - 1))
 }
 
-/// Returns the cash on the decision day of a week, before its purchases.
+/// Returns the cash on the decision day of a week, after the purchases on that day.
 fn cash_before(week: &WeekFigures) -> f64 {
     week.cash - week.cash_change + purchases(week)
 }
 
-/// Returns the amount booked for R&D and studies in a week, negative.
+/// Returns the amount booked for R&D, market research and studies in a week, as a negative number.
 fn purchases(week: &WeekFigures) -> f64 {
     let kinds = [Category::ResearchProject, Category::MarketResearch, Category::GroupResearch];
     kinds.iter().map(|category| week.booked.total_of(*category)).sum()
 }
 
-/// Returns the costs that the settings of a week committed to, dollars a day.
+/// Returns the costs to which the settings of a week committed the company, in dollars per day.
 fn committed_costs_per_day(week: &WeekFigures) -> f64 {
     let kinds = [Category::Capacity, Category::Operations, Category::Development, Category::Advertising];
     -kinds.iter().map(|category| week.booked.total_of(*category)).sum::<f64>()
         / f64::from(week.days_run.max(1))
 }
 
-/// Returns the total income and costs until a horizon at a rate, dollars.
+/// Returns the sum of income and costs up to a horizon at a cash rate, in dollars.
 fn expected_flow(pace: &CashRate, horizon: u32) -> f64 {
     (pace.income + pace.committed + pace.variable).max(MIN_FLOW_PER_DAY) * f64::from(horizon)
 }
 
-/// Returns the factor that widens an interval, from the forecasts that came due before a week.
+/// Returns the factor that widens an interval, computed from the errors of forecasts that came due before a week.
 fn widening_factor(made: &[Hindcast], before: usize) -> f64 {
     let known = made.iter().rev().filter(|hindcast| hindcast.due_week < before).take(MAX_REMEMBERED_ERRORS);
     let squares: Vec<f64> =
@@ -299,7 +303,7 @@ mod tests {
 
     const HORIZONS: [u32; 4] = [7, 28, 84, 182];
 
-    /// Returns weeks with these payments and 1,000 dollars of advertising each.
+    /// Returns weeks with these payments and 1,000 dollars of advertising per week.
     fn weeks_with_payments(payments: &[f64]) -> Vec<WeekFigures> {
         let mut cash = 1e6;
         let week = |(at, paid): (usize, &f64)| {
@@ -351,7 +355,7 @@ mod tests {
         let calm = weeks_with_payments(&[1_000.0; 20]);
         let bands = ErrorBands::bundled();
         let errors = hindcasts(&calm, 28, bands);
-        // The first forecast is made before there is any income.
+        // The first forecast is made before the company has income.
         assert_eq!(errors.len(), 17);
         assert!(errors[1..].iter().all(|hindcast| hindcast.error.abs() < 1e-9 && hindcast.is_covered));
         assert_eq!(widening_factor(&errors[1..], 20), 1.0);

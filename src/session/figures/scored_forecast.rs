@@ -6,32 +6,32 @@ use super::journal::JournalEntry;
 use novamind_base::formatting::percent;
 use novamind_tools::Forecast;
 
-/// A submitted forecast of cash, with its outcome once it is due.
+/// A submitted forecast of cash, with the outcome if the forecast is due.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ScoredForecast {
-    /// The forecast.
+    /// Forecast as submitted.
     #[serde(flatten)]
     pub forecast: Forecast,
-    /// Day of submission.
+    /// Day on which the forecast was submitted.
     #[serde(skip)]
     pub day: u32,
-    /// Outcome, dollars; `None` before the due day.
+    /// Actual cash on the due day, dollars; `None` before the due day.
     pub outcome: Option<f64>,
 }
 
 /// Position of an outcome relative to an interval. The interval includes its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IntervalPosition {
-    /// Below the lower end.
+    /// The outcome is below the lower end of the interval.
     Below,
-    /// Within the interval.
+    /// The outcome is within the interval.
     Inside,
-    /// Above the upper end.
+    /// The outcome is above the upper end of the interval.
     Above,
 }
 
 impl IntervalPosition {
-    /// Returns the position as a word.
+    /// Returns the position as a word, for output.
     pub fn as_str(self) -> &'static str {
         match self {
             IntervalPosition::Below => "below",
@@ -42,18 +42,19 @@ impl IntervalPosition {
 }
 
 impl ScoredForecast {
-    /// Creates a forecast submitted on `day`. `cash_by_day` is cash at the end of each day, day 0 first.
+    /// Creates a scored forecast that was submitted on `day`. `cash_by_day` is the cash at the end of each day,
+    /// starting with day 0.
     pub fn new(day: u32, forecast: &Forecast, cash_by_day: &[f64]) -> ScoredForecast {
         let scored = ScoredForecast { forecast: *forecast, day, outcome: None };
         ScoredForecast { outcome: cash_by_day.get(scored.due_day() as usize).copied(), ..scored }
     }
 
-    /// Returns the due day.
+    /// Returns the day on which the forecast is due.
     pub fn due_day(&self) -> u32 {
         self.day.saturating_add(self.forecast.horizon_days)
     }
 
-    /// Returns the position of the outcome; `None` before the due day.
+    /// Returns the position of the outcome relative to the interval, or `None` before the due day.
     pub fn interval_position(&self) -> Option<IntervalPosition> {
         let outcome = self.outcome?;
         Some(if outcome < self.forecast.lower {
@@ -65,19 +66,19 @@ impl ScoredForecast {
         })
     }
 
-    /// Returns whether the interval contains the outcome; false before the due day.
+    /// Returns whether the interval contains the outcome. Returns false before the due day.
     pub fn is_covered(&self) -> bool {
         self.interval_position() == Some(IntervalPosition::Inside)
     }
 
-    /// Returns the error of the point as a share of the outcome, or of 1 dollar if the outcome is smaller. Positive
-    /// if the point was too high.
+    /// Returns the forecast error as a share of the outcome, or of 1 dollar if the outcome is smaller. The error is
+    /// positive if the predicted value was too high.
     pub fn relative_error(&self) -> Option<f64> {
         self.outcome.map(|outcome| (self.forecast.point - outcome) / error_scale(outcome))
     }
 
-    /// Describes the error of the point: `0.2% low`, or `exact` if no digit shows a difference; `None` before the
-    /// due day. Errors of 1,000 % or more (outcomes near 0) are shown as `>999%`.
+    /// Describes the forecast error, for example `0.2% low`, or `exact` if the rounded error is 0. Returns `None`
+    /// before the due day. Errors of 1,000 % or more are shown as `>999%`.
     pub fn describe_error(&self) -> Option<String> {
         let error = self.relative_error()?;
         let shown = match error.abs() {
@@ -91,7 +92,7 @@ impl ScoredForecast {
         })
     }
 
-    /// Returns the width of the interval as a share of the outcome.
+    /// Returns the width of the interval as a share of the outcome, or `None` before the due day.
     pub fn sharpness(&self) -> Option<f64> {
         self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / error_scale(outcome))
     }
@@ -101,7 +102,8 @@ fn error_scale(outcome: f64) -> f64 {
     outcome.abs().max(1.0)
 }
 
-/// Returns all submitted forecasts in order. `cash_by_day` is cash at the end of each day, day 0 first.
+/// Returns all submitted forecasts in order, with their outcomes. `cash_by_day` is the cash at the end of each day,
+/// starting with day 0.
 pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ScoredForecast> {
     let mut all = Vec::new();
     for entry in journal {
@@ -111,16 +113,16 @@ pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<Sco
     all
 }
 
-/// Score of the forecasts of a horizon.
+/// The score of all forecasts with the same horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ForecastScore {
-    /// Days ahead.
+    /// Horizon of the forecasts, in days.
     pub horizon_days: u32,
-    /// Forecasts that came due.
+    /// Number of forecasts that came due.
     pub scored: u32,
-    /// Forecasts whose interval contains the outcome.
+    /// Number of forecasts whose interval contains the outcome.
     pub covered: u32,
-    /// Mean error of the point, as a share of the outcome.
+    /// Mean absolute forecast error, as a share of the outcome.
     pub mean_error: f64,
     /// Mean width of the interval, as a share of the outcome.
     pub mean_sharpness: f64,

@@ -13,13 +13,13 @@ use novamind_record::trajectory::{Line, Record, find_end};
 pub struct SessionCount {
     /// Number of sessions; 0 if no `session` line exists.
     pub opened: u32,
-    /// Sessions in the console, which records screens, dialogs and idle times.
+    /// Number of sessions in the console, which records screens, dialogs and idle times.
     pub in_console: u32,
-    /// Sessions without a closing line: the program was killed, or is still open.
+    /// Number of sessions without a closing line, because the program was killed or is still running.
     pub not_closed: u32,
     /// Number of times that the clock was stopped.
     pub clock_stopped: u32,
-    /// Number of machines.
+    /// Number of machines on which the run was opened.
     pub machines: u32,
 }
 
@@ -49,7 +49,7 @@ impl SessionCount {
                 _ => {}
             }
         }
-        // The closing line of the session in which a run ends comes after its end.
+        // The last session of an ended run counts as closed: its closing line is recorded after the end of the run.
         count.not_closed += u32::from(is_open && find_end(lines).is_none());
         count.machines = machines.len() as u32;
         count

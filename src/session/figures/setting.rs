@@ -8,56 +8,56 @@ use novamind_tools::ToolId;
 use novamind_world::identifiers::{Channel, Group, Plan};
 use novamind_world::settings::Settings;
 
-/// A number that a player can set.
+/// A setting of the company, with the plan, group or customers to which it applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum SettingId {
-    /// List price, dollars a month.
+    /// List price of a plan, dollars per month.
     Price(Plan),
-    /// Model tier.
+    /// Model tier of a plan.
     ModelTier(Plan),
-    /// Quota, units a day.
+    /// Quota of a plan, units per day.
     Quota(Plan),
-    /// Operations, dollars a day.
+    /// Operations spending, dollars per day.
     Operations,
-    /// Development, dollars a day.
+    /// Development spending, dollars per day.
     Development,
-    /// Capacity tier.
+    /// Capacity tier of the company.
     CapacityTier,
-    /// Advertising, dollars a day.
+    /// Advertising budget of a channel for a group, dollars per day.
     Advertising(Channel, Group),
-    /// Development for a group, dollars a day.
+    /// Development spending for a group, dollars per day.
     TargetedDevelopment(Group),
-    /// Operations for some of the open issues, dollars a day.
+    /// Operations spending for the open issues of an audience, dollars per day.
     TargetedOperations(Audience),
-    /// Ongoing discount, dollars a month.
+    /// Ongoing discount for an audience, dollars per month.
     Discount(Audience),
-    /// Discount for new leads, dollars a month.
+    /// Discount for new leads of an audience, dollars per month.
     LeadDiscount(Audience),
-    /// In-app advertising, 0 to 1.
+    /// Strength of in-app advertising for an audience, 0 to 1.
     AdsStrength(Audience),
 }
 
-/// The customers that a setting applies to.
+/// The customers to which a setting applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Audience {
     /// All customers.
     Everybody,
-    /// A group.
+    /// All customers of a group.
     Group(Group),
-    /// Subscribers of a plan.
+    /// All subscribers of a plan.
     Plan(Plan),
-    /// Subscribers of a group on a plan.
+    /// Subscribers to a plan who belong to a group.
     GroupPlan(Group, Plan),
     /// A single customer.
     Customer(i64),
-    /// Leads of a channel.
+    /// Leads that arrive through a channel.
     Channel(Channel),
-    /// Leads of a channel in a group.
+    /// Leads of a group that arrive through a channel.
     ChannelGroup(Channel, Group),
 }
 
 impl SettingId {
-    /// Returns the tool that sets it.
+    /// Returns the tool that changes the setting.
     pub fn tool(self) -> ToolId {
         match self {
             SettingId::Price(_) => ToolId::SetPrices,
@@ -74,7 +74,7 @@ impl SettingId {
         }
     }
 
-    /// Returns the unit; `None` if the name of the setting implies it.
+    /// Returns the unit of the setting, or `None` if the name of the setting implies the unit.
     pub fn unit(self) -> Option<&'static str> {
         match self {
             SettingId::ModelTier(_) | SettingId::CapacityTier => None,
@@ -89,7 +89,8 @@ impl SettingId {
         }
     }
 
-    /// Returns the family and the member, for example `ads linkedin` and `E1`. The member is empty for all customers.
+    /// Returns the two parts of the setting's name: family and member, for example `ads linkedin` and `E1`. The member
+    /// is empty if the setting applies to all customers.
     pub fn name_parts(self) -> (String, String) {
         let of = |family: &str, member: String| (family.to_owned(), member.trim_start().to_owned());
         match self {
@@ -108,7 +109,7 @@ impl SettingId {
         }
     }
 
-    /// Returns the plan of a setting that every plan has.
+    /// Returns the plan of a price, model tier or quota, or `None` for other settings.
     pub fn plan(self) -> Option<Plan> {
         match self {
             SettingId::Price(plan) | SettingId::ModelTier(plan) | SettingId::Quota(plan) => Some(plan),
@@ -117,7 +118,7 @@ impl SettingId {
     }
 }
 
-/// Formats the name, for example `price A` or `ads linkedin E1`.
+/// Formats the name of the setting, for example `price A` or `ads linkedin E1`.
 impl Display for SettingId {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         let (family, member) = self.name_parts();
@@ -126,7 +127,7 @@ impl Display for SettingId {
     }
 }
 
-/// Formats the part after the name of a setting; empty for all customers.
+/// Formats the suffix of a setting's name that identifies the audience. The suffix is empty for all customers.
 impl Display for Audience {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         match self {
@@ -141,7 +142,7 @@ impl Display for Audience {
     }
 }
 
-/// Returns every setting with its value, in the order of the tools.
+/// Returns all settings with their values, in the order of the tools.
 pub fn setting_values(settings: &Settings) -> Vec<(SettingId, f64)> {
     let core = &settings.core;
     let mut all: Vec<(SettingId, f64)> = Vec::new();

@@ -6,31 +6,32 @@ use novamind_base::formatting::json_number;
 use novamind_record::trajectory::record::FiledForecast;
 use novamind_tools::{FORECAST_KEYS, Forecast};
 
-/// Returns the week of a day: 0 -> 0, 1 to 7 -> 1, 8 -> 2.
+/// Returns the number of the week that contains a day: 0 for day 0, 1 for days 1 to 7, 2 from day 8.
 pub fn week_of(day: u32) -> u32 {
     day.div_ceil(7)
 }
 
-/// SQL expression for the week of a ledger row. Purchases on a decision day belong to the week that starts with it.
+/// SQL expression for the week of a ledger row. Purchases on a decision day belong to the week that follows.
 pub const WEEK_OF_ENTRY_SQL: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
                                  THEN day / 7 + 1 ELSE (day + 6) / 7 END";
 
-/// Returns the SQL condition for ledger rows of some weeks.
+/// Returns the SQL condition that selects ledger rows of the weeks from `first` to `last`.
 pub fn entries_of_weeks_sql(first: u32, last: u32) -> String {
     let (from, to) = (7 * first.saturating_sub(1), 7 * last);
     format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY_SQL} BETWEEN {first} AND {last}")
 }
 
-/// Four forecasts of cash, and whether the naive projection filled in each.
+/// Four forecasts of cash, and whether each of them is a naive forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forecasts {
-    /// One per horizon: 7, 28, 84, 182 days.
+    /// One forecast for each horizon: 7, 28, 84 and 182 days.
     pub all: [Forecast; 4],
-    /// Whether the naive projection filled in the forecast, completely or in part.
+    /// Whether each forecast is a naive forecast, completely or partly.
     pub filled_naively: [bool; 4],
 }
 
-/// Describes how many forecasts the naive projection filled in: `by projection`, `3 of 4 by projection`, or `None`.
+/// Describes how many forecasts are naive forecasts: `by projection`, `3 of 4 by projection`, or `None` if no forecast
+/// is naive.
 pub fn describe_naive_share(filled: &[bool]) -> Option<String> {
     match filled.iter().filter(|filled| **filled).count() {
         0 => None,
@@ -40,7 +41,7 @@ pub fn describe_naive_share(filled: &[bool]) -> Option<String> {
 }
 
 impl Forecasts {
-    /// Reads the forecasts of a line; `None` unless there is one for each horizon.
+    /// Converts the forecasts of a line. Returns `None` unless the line has four forecasts.
     pub(crate) fn from_filed(filed: &[FiledForecast]) -> Option<Forecasts> {
         let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
         Some(Forecasts {
@@ -49,7 +50,7 @@ impl Forecasts {
         })
     }
 
-    /// Converts the forecasts to their form in a line.
+    /// Converts the forecasts to the form in which a line records them.
     pub(crate) fn to_filed(self) -> Vec<FiledForecast> {
         let one = |(forecast, filled_naively): (Forecast, bool)| {
             let Forecast { horizon_days, point, lower, upper } = forecast;
@@ -58,7 +59,7 @@ impl Forecasts {
         self.all.into_iter().zip(self.filled_naively).map(one).collect()
     }
 
-    /// Converts the forecasts to the `predictions` of next_week.
+    /// Converts the forecasts to the `predictions` argument of `next_week`.
     pub fn to_predictions(&self) -> Value {
         let entry = |(key, forecast): (&str, &Forecast)| {
             let fields = json!({

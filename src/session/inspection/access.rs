@@ -25,10 +25,10 @@ pub struct InspectionPermit {
 }
 
 impl InspectionPermit {
-    /// Starts an inspection of a day, by default the last one. It is recorded before anything is shown.
+    /// Starts an inspection of a day, by default the last day. The inspection is recorded before hidden state is shown.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
     pub fn start(
         run: &mut Session,
         what: &str,
@@ -40,10 +40,10 @@ impl InspectionPermit {
         InspectionPermit::record(run, what, which, day)
     }
 
-    /// Starts an inspection of the current state of the run. `shown_day` is the day in the record.
+    /// Starts an inspection of the current state of the run. `shown_day` is recorded as the inspected day.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `read_only`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `read_only`, `not_saved`.
     pub fn start_at_current_state(
         run: &mut Session,
         what: &str,
@@ -54,8 +54,8 @@ impl InspectionPermit {
         InspectionPermit::record(run, what, which, shown_day)
     }
 
-    /// Starts an inspection of a customer on a day, by default the last one. Also returns the customer's group, its
-    /// number in the group and its arrival day.
+    /// Starts an inspection of a customer on a day, by default the last day. Also returns the customer's group, number
+    /// in the group and arrival day.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown` (also if the customer arrived later), `customer_not_found`, `read_only`,
@@ -86,30 +86,30 @@ impl InspectionPermit {
         Ok((InspectionPermit::record(run, "customer", &customer.to_string(), day)?, found, arrival))
     }
 
-    /// Returns the day to show, by default the last one.
+    /// Checks the day of an inspection and returns it. Defaults to the last day.
     ///
     /// # Errors
-    /// `day_unknown`: it has not been simulated.
+    /// `day_unknown`: the day has not been simulated.
     pub fn resolve_day(run: &Session, day: Option<u32>) -> Result<u32, Rejection> {
         let last = run.day();
         let refused = |message: String| Err(Rejection::for_field("day", "day_unknown", message));
         match day.unwrap_or(last) {
-            _ if last == 0 => refused("no day has run yet".to_owned()),
+            _ if last == 0 => refused("no day has been simulated yet".to_owned()),
             day if (1..=last).contains(&day) => Ok(day),
             day => refused(format!("there is no day {day}; choose a day from 1 to {last}")),
         }
     }
 
-    /// Opens a connection to the database on which the hidden tables exist and are empty.
+    /// Opens a database connection that has empty hidden tables.
     ///
     /// # Errors
-    /// `not_in_this_mode`; the run has no database.
+    /// The rejection `not_in_this_mode`, or the run has no database.
     pub fn open_hidden_tables(run: &mut Session) -> Result<QueryConnection, Rejection> {
         run.check_inspection()?;
         run.up_to_date_database()?.open_scoped_connection(Scope::Hidden)
     }
 
-    /// Records an inspection before anything is shown.
+    /// Records an inspection before hidden state is shown.
     ///
     /// # Errors
     /// `read_only` if the run is open read-only, `not_saved`.
@@ -121,7 +121,7 @@ impl InspectionPermit {
     ) -> Result<InspectionPermit, Rejection> {
         if !run.log().is_written() {
             let message =
-                "an inspection must be recorded, but this run is open read-only; open it to play it";
+                "an inspection must be recorded, but this run is open read-only; open the run for play";
             return Err(Rejection::new("read_only", message));
         }
         let look = Inspection { what: what.to_owned(), which: which.to_owned(), shown_day };
@@ -131,7 +131,7 @@ impl InspectionPermit {
         Ok(InspectionPermit { run: run.manifest().id.clone(), day: shown_day })
     }
 
-    /// Returns the day that it shows.
+    /// Returns the day of the inspection.
     pub fn day(&self) -> u32 {
         self.day
     }
@@ -142,10 +142,10 @@ impl InspectionPermit {
         run.hidden_state()
     }
 
-    /// Returns a copy of the run before its first line. It passes its days to `watch`.
+    /// Returns a replay of the run that starts before the first line and passes its days to `watch`.
     ///
     /// # Errors
-    /// `not_possible`: the run has no folder; `not_readable`.
+    /// `not_possible` if the run has no folder; `not_readable` if its record cannot be read.
     pub fn replay(&self, run: &Session, watch: Arc<dyn DayObserver>) -> Result<RunReplay, Rejection> {
         self.assert_belongs_to(run);
         RunReplay::new(run, watch)
@@ -159,10 +159,10 @@ impl InspectionPermit {
         );
     }
 
-    /// Simulates the days of the run again up to `day`, at most to the end of its week, and passes them to `watch`.
+    /// Simulates the days of the run again up to the end of the week of `day`, and passes the days to `watch`.
     ///
     /// # Errors
-    /// `not_possible`, `not_readable`.
+    /// One of the rejections `not_possible`, `not_readable`.
     pub fn replay_until(
         &self,
         run: &Session,
@@ -173,15 +173,15 @@ impl InspectionPermit {
         replay_until(run, day, watch)
     }
 
-    /// Returns the world at the end of a past day.
+    /// Returns the world state at the end of a past day.
     ///
     /// # Errors
-    /// `not_possible`, `not_readable`.
+    /// One of the rejections `not_possible`, `not_readable`.
     pub fn world_at_end_of(&self, run: &Session, day: u32) -> Result<World, Rejection> {
         let evening = Arc::new(WorldCapture { day, world: Mutex::default() });
         self.replay_until(run, day, evening.clone())?;
         let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
-        world.ok_or_else(|| Rejection::new("not_readable", format!("the record does not lead to day {day}")))
+        world.ok_or_else(|| Rejection::new("not_readable", format!("the record does not contain day {day}")))
     }
 }
 
@@ -189,27 +189,27 @@ fn replay_until(run: &Session, day: u32, watch: Arc<dyn DayObserver>) -> Result<
     RunReplay::new(run, watch)?.advance(run, |reached| reached < day, &mut |_| {})
 }
 
-/// Days to simulate, with the watch that receives them.
+/// Days to simulate, and the observer that receives these days.
 pub struct WatchedDays<'a> {
-    /// Number of days.
+    /// Number of days to simulate.
     pub days: u32,
-    /// Receives the days.
+    /// Observer that receives the simulated days.
     pub watch: Arc<dyn DayObserver>,
-    /// Whether the watch receives the past days first.
+    /// Whether the observer receives the past days first.
     pub shows_past: bool,
-    /// Returns whether to continue after a day.
+    /// Function that returns whether to continue after a day.
     pub should_continue: &'a dyn Fn(u32) -> bool,
-    /// Inspections to record afterward: their kind, and the subject of each.
+    /// Inspections to record afterward: their kind, and the subject of each inspection.
     pub inspections: (&'a str, Vec<String>),
 }
 
 impl WatchedDays<'_> {
-    /// Simulates at least one day of a debug run and passes the days to the watch. Both continuing and stopping
-    /// reveal hidden state, so each inspection is recorded on the last day. Without inspections, the watch receives
-    /// nothing.
+    /// Simulates at least one day of a debug run and passes the days to the observer. Continuing and stopping both
+    /// reveal hidden state, so each inspection is recorded on the last day. Without inspections, the observer does not
+    /// receive any days.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
+    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have been simulated.
     pub fn simulate(
         self,
         run: &mut Session,
@@ -237,7 +237,7 @@ impl WatchedDays<'_> {
     }
 }
 
-/// Simulates days across weeks up to `until`, as long as `should_continue` returns true.
+/// Simulates days across weeks up to `until`, as long as `goes_on` returns true.
 fn step_until(
     run: &mut Session,
     until: u32,

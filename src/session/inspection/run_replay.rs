@@ -1,4 +1,4 @@
-//! Replays of a run that pass its days to a watch.
+//! Replays of a run that pass its days to an observer.
 
 use std::sync::Arc;
 
@@ -9,14 +9,14 @@ use novamind_record::trajectory::Trajectory;
 use novamind_tools::Rejection;
 use novamind_world::day::observer::DayObserver;
 
-/// A copy of a run that replays its recorded days and passes them to a watch.
+/// A copy of a run that replays the recorded days and passes these days to an observer.
 pub struct RunReplay(Box<Session>);
 
 impl RunReplay {
-    /// Creates a copy of a run before its first line.
+    /// Creates a replay that starts before the first line of the run.
     ///
     /// # Errors
-    /// `not_possible`: the run has no folder; `not_readable`.
+    /// `not_possible` if the run has no folder; `not_readable` if its record cannot be read.
     pub(super) fn new(run: &Session, watch: Arc<dyn DayObserver>) -> Result<RunReplay, Rejection> {
         if run.folder().is_none() {
             let message = "a run in memory has no record, so its past days cannot be simulated again";
@@ -26,11 +26,11 @@ impl RunReplay {
         Ok(RunReplay(Box::new(shadow)))
     }
 
-    /// Applies the lines after the last applied one, up to the current line of the run, while `should_continue` returns true
-    /// for the day reached. Each line must lead to the state that it records. Calls `tell` for each day.
+    /// Applies lines up to the current line of the run, while `goes_on` returns true for the current day. Each line
+    /// must result in the state that it records. Calls `tell` for each simulated day.
     ///
     /// # Errors
-    /// `not_readable`.
+    /// The rejection `not_readable`.
     pub fn advance(
         &mut self,
         run: &Session,

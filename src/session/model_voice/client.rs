@@ -9,13 +9,13 @@ use novamind_record::trajectory::record::JudgedPost;
 use novamind_voice::model::ModelPrompt;
 use novamind_voice::model::settings::ModelSettings;
 
-/// No request is sent with less time left.
+/// Minimum remaining time for which a request is sent.
 const MIN_REQUEST_TIME: Duration = Duration::from_millis(50);
 
 #[derive(Default)]
 pub(crate) struct ModelVoice {
     pub(crate) client: Option<ModelClient>,
-    /// Recorded scores of another run whose decisions this run repeats.
+    /// Recorded scores of the run whose decisions this run repeats.
     pub(crate) inherited_scores: Vec<JudgedPost>,
 }
 
@@ -26,7 +26,7 @@ impl ModelVoice {
         }
     }
 
-    /// Returns the notice that the player has not seen yet, if any.
+    /// Returns the notice about a failure that the player has not seen yet, if any.
     pub(crate) fn take_notice(&mut self) -> Option<String> {
         self.client.as_mut()?.notice.take()
     }
@@ -41,18 +41,18 @@ pub(crate) struct ModelClient {
     notice: Option<String>,
 }
 
-/// The response to a request.
+/// The result of a request to the model, and its duration.
 pub(crate) struct ModelReply<T> {
-    /// The answer, or the reason why there is none.
+    /// The parsed response, or the reason for the failure.
     pub(crate) answer: Result<T, String>,
     pub(crate) took_ms: f64,
 }
 
 impl ModelClient {
-    /// Creates the client; sends nothing.
+    /// Creates the client without sending a request.
     ///
     /// # Errors
-    /// The key is missing, or this build cannot send requests.
+    /// The API key is missing, or this build cannot send requests.
     pub(crate) fn new(settings: &ModelSettings) -> Result<ModelClient, String> {
         let endpoint = Endpoint::new(settings)?;
         let left = Duration::from_secs(u64::from(settings.seconds_a_week));
@@ -65,7 +65,7 @@ impl ModelClient {
         })
     }
 
-    /// Sends a request within the time left in this week. The player is notified of the first of consecutive
+    /// Sends a request within the remaining time of this week. The player is notified only of the first of consecutive
     /// failures.
     pub(crate) fn request<T>(
         &mut self,
@@ -83,8 +83,8 @@ impl ModelClient {
         self.time_left = self.time_left.saturating_sub(took);
         if let (Err(problem), false) = (&answer, self.is_failing) {
             self.notice = Some(format!(
-                "the language model {} at {} failed ({problem}). The built-in voice replaces it; you see this notice \
-                 once, until the model works again",
+                "the language model {} at {} failed ({problem}). The built-in voice is used instead. This notice is \
+                 shown again only after the model has worked",
                 self.settings.model,
                 self.settings.host()
             ));
@@ -94,7 +94,7 @@ impl ModelClient {
     }
 }
 
-/// Returns the language model of a new run: that of its study, or the named one.
+/// Returns the language model of a new run: the model of its study, or the model that the user named.
 ///
 /// # Errors
 /// A run of this mode cannot use the named model.
@@ -110,7 +110,7 @@ pub(crate) fn select_model(
              omit --voice, or choose another mode. Nothing was recorded"
                 .to_owned(),
         )),
-        // Lessons do not depend on the configuration of the machine.
+        // Lessons must not depend on the configuration of the machine.
         (Mode::Lesson, ..) => Ok(None),
         (Mode::Baseline | Mode::Sandbox | Mode::Debug, _, named) => Ok(named.cloned()),
     }

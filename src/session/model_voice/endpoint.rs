@@ -29,15 +29,15 @@ mod over_http {
     }
 
     impl Endpoint {
-        /// Creates the endpoint from settings; sends nothing.
+        /// Creates the endpoint from settings without sending a request.
         ///
         /// # Errors
-        /// The environment variable of the key is not set.
+        /// The environment variable with the API key is not set.
         pub(crate) fn new(settings: &ModelSettings) -> Result<Endpoint, String> {
             let key = settings.key_variable.as_deref().map(read_key).transpose()?;
             let configuration = Agent::config_builder()
                 .http_status_as_error(false)
-                // Prompts go only to the configured host.
+                // Prompts must be sent only to the configured host.
                 .max_redirects(0)
                 .max_redirects_will_error(false)
                 .proxy(None)
@@ -51,7 +51,7 @@ mod over_http {
         /// Sends a prompt and waits at most `within` for the response.
         ///
         /// # Errors
-        /// A description of the failure.
+        /// The request failed; returns a description of the failure.
         pub(crate) fn request(&self, prompt: &ModelPrompt, within: Duration) -> Result<String, String> {
             let body = json!({
                 "model": self.model,
@@ -70,7 +70,7 @@ mod over_http {
             let mut response = request.send(body.to_string()).map_err(describe_error)?;
             let status = response.status().as_u16();
             if status != 200 {
-                return Err(format!("it responded with status {status}"));
+                return Err(format!("its response has status {status}"));
             }
             let read = response.body_mut().with_config().limit(MAX_RESPONSE_BYTES).read_to_string();
             let value: Value = serde_json::from_str(&read.map_err(describe_error)?)
@@ -83,7 +83,9 @@ mod over_http {
     fn read_key(variable: &str) -> Result<String, String> {
         let key = std::env::var(variable).unwrap_or_default();
         match key.trim() {
-            "" => Err(format!("the environment variable {variable}, which must contain its key, is not set")),
+            "" => Err(format!(
+                "the environment variable {variable}, which must contain the API key, is not set"
+            )),
             key => Ok(key.to_owned()),
         }
     }
@@ -101,23 +103,23 @@ mod over_http {
 mod without {
     use super::{Duration, ModelPrompt, ModelSettings};
 
-    /// Stand-in for builds without HTTP.
+    /// Placeholder for builds without HTTP.
     pub(crate) struct Endpoint;
 
     impl Endpoint {
-        /// Fails: this build cannot send requests.
+        /// Returns an error, because this build cannot send requests.
         ///
         /// # Errors
-        /// Always.
+        /// Always fails.
         pub(crate) fn new(_: &ModelSettings) -> Result<Endpoint, String> {
             Err("this program was built without the feature server and cannot use a language model"
                 .to_owned())
         }
 
-        /// Never called.
+        /// Returns an error. Never called, because the endpoint cannot be created.
         ///
         /// # Errors
-        /// Always.
+        /// Always fails.
         pub(crate) fn request(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
             Err("this program cannot send requests".to_owned())
         }

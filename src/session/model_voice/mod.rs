@@ -1,7 +1,7 @@
 //! A language model as voice: requests, recording and fallback (docs/interfaces/voice.md).
 //!
-//! The model's scores of the player's posts are inputs of the world, so they are in the trajectory before they take
-//! effect. Its texts do not affect the simulation.
+//! The model's scores for the player's posts are inputs of the world, so they are recorded in the trajectory before
+//! they take effect. The model's texts do not affect the simulation.
 
 pub(crate) mod client;
 mod endpoint;

@@ -12,18 +12,18 @@ use serde_json::{Value, json};
 use novamind_record::folder::configuration::Configuration;
 use novamind_voice::model::settings::ModelSettings;
 
-/// The behavior of a stub.
+/// The behavior of a stub model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StubBehavior {
-    /// Correct answers.
+    /// Return correct responses.
     Correct,
-    /// Correct answers after three seconds.
+    /// Return correct responses after three seconds.
     Late,
-    /// Too few texts and scores.
+    /// Return too few texts and scores.
     TooFew,
-    /// An answer that is not an array.
+    /// Return a response that is not an array.
     NotJson,
-    /// Status 500.
+    /// Return HTTP status 500.
     ServerError,
 }
 
@@ -36,7 +36,7 @@ pub struct StubModel {
 }
 
 impl StubModel {
-    /// Starts a stub on its own port.
+    /// Starts a stub on a free port.
     pub fn start(manner: StubBehavior) -> StubModel {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
@@ -54,7 +54,7 @@ impl StubModel {
         StubModel { port, requests: asked, is_stopped: stopped, thread: Some(thread) }
     }
 
-    /// Returns a configuration that names the stub.
+    /// Returns a configuration whose language model is the stub.
     pub fn configuration(&self, judge: bool, words: bool, seconds: u32) -> Configuration {
         let settings = ModelSettings {
             endpoint: format!("http://127.0.0.1:{}/v1", self.port),
@@ -67,7 +67,7 @@ impl StubModel {
         Configuration { voice: Some(settings), ..Configuration::bundled() }
     }
 
-    /// Returns the requests so far.
+    /// Returns the requests that the stub has received.
     pub fn requests(&self) -> Vec<Value> {
         self.requests.lock().expect("not poisoned").clone()
     }
@@ -118,7 +118,7 @@ fn serve_request(stream: TcpStream, manner: StubBehavior, values: &Mutex<Vec<Val
     reader.get_mut().write_all(format!("{head}{body}").as_bytes())
 }
 
-/// Scores of 0.8 for groups, a prefix for the texts of posts.
+/// Returns scores of 0.8 for groups, or post texts with a prefix.
 fn correct_answer(material: &Value) -> Vec<Value> {
     let score =
         |group: &Value| json!({ "group": group["group"], "score": 0.8, "reason": "It speaks to me." });

@@ -21,25 +21,24 @@ use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Rejection, ToolId, ToolKind};
 use novamind_world::fixed_inputs::FixedInputs;
 
-/// Recorded rationale of a week in lessons that ask for none.
+/// Recorded rationale of a week in lessons that do not ask for a rationale.
 const NO_RATIONALE_TEXT: &str = "(not asked for in this lesson)";
 
 pub(crate) struct WeekSubmission<'a> {
     pub(crate) rationale: &'a Value,
     pub(crate) predictions: &'a Value,
-    /// Whether the naive projection filled in each forecast.
+    /// Whether each forecast is a naive forecast, completely or partly.
     pub(crate) filled_naively: [bool; 4],
-    /// The day on which the run must be; null for any.
+    /// The day on which the run must be; null to skip this check.
     pub(crate) expected_day: &'a Value,
     pub(crate) request: Option<RequestId>,
 }
 
 impl Session {
-    /// Submits rationale and forecasts and simulates the days until the next decision day, the last day or
-    /// bankruptcy.
+    /// Submits a rationale and forecasts, then simulates the days until the next decision day, the last day or bankruptcy.
     ///
     /// # Errors
-    /// `run_over`, `too_many_leads`, the rejections of next_week, `not_saved`. Nothing has happened then.
+    /// `run_over`, `too_many_leads`, the rejections of next_week, `not_saved`. After an error, nothing has changed.
     pub fn advance(
         &mut self,
         rationale: &str,
@@ -51,10 +50,10 @@ impl Session {
         self.advance_with_json(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
     }
 
-    /// Like [`Session::advance`], with rationale and predictions as JSON.
+    /// Simulates a week like [`Session::advance`], with rationale and predictions as JSON.
     ///
     /// # Errors
-    /// As [`Session::advance`].
+    /// The same errors as [`Session::advance`].
     pub fn advance_with_json(
         &mut self,
         rationale: &Value,
@@ -130,16 +129,16 @@ impl Session {
                 format!("the run is on day {day}, not on day {expected}; no day has passed"),
             ),
             false => {
-                ("wrong_type", "expected_day must be a whole number: the day on which the run is".to_owned())
+                ("wrong_type", "expected_day must be a whole number: the current day of the run".to_owned())
             }
         };
         Err(Rejection::for_field("expected_day", code, message))
     }
 
-    /// Simulates single days of a debug run, at most to the end of the week.
+    /// Simulates single days of a debug run, up to the end of the week.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`, `too_many_leads`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `run_over`, `too_many_leads`, `not_saved`.
     pub fn step(
         &mut self,
         days: u32,
@@ -148,10 +147,10 @@ impl Session {
         self.step_while(&|_| true, days, progress)
     }
 
-    /// Like [`Session::simulate`]; stops after a day for which `should_continue` returns false.
+    /// Simulates single days like [`Session::step`], but stops after a day for which `goes_on` returns false.
     ///
     /// # Errors
-    /// As [`Session::simulate`].
+    /// The same errors as [`Session::step`].
     pub(crate) fn step_while(
         &mut self,
         goes_on: &dyn Fn(u32) -> bool,
@@ -168,13 +167,16 @@ impl Session {
         Ok(self.close_days(Record::Step, from, last_day))
     }
 
-    /// Checks that single days can be simulated.
+    /// Checks that single days of the run can be simulated.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`.
+    /// One of the rejections `not_in_this_mode`, `run_over`.
     pub(crate) fn check_can_step(&self) -> Result<(), Rejection> {
         if self.manifest.mode != novamind_record::mode::Mode::Debug {
-            return Err(Rejection::new("not_in_this_mode", "single days can be stepped in debug runs only"));
+            return Err(Rejection::new(
+                "not_in_this_mode",
+                "single days can be simulated in debug runs only",
+            ));
         }
         self.check_can_act(ToolKind::Time)
     }
@@ -182,7 +184,7 @@ impl Session {
     /// Abandons an unfinished run permanently.
     ///
     /// # Errors
-    /// `run_over`, `not_saved`. Nothing has happened then.
+    /// `run_over`, `not_saved`. After an error, nothing has changed.
     pub fn abandon(&mut self) -> Result<(), Rejection> {
         self.check_can_act(ToolKind::Time)?;
         let end =
@@ -193,7 +195,7 @@ impl Session {
         Ok(())
     }
 
-    /// Simulates the week of an `advance` line and closes it. The week ends early before a day that would exceed the
+    /// Simulates and closes the week of an `advance` line. The simulation stops before a day that would exceed the
     /// limit of leads.
     pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> WeekResult {
         let (from, until) = (self.simulation.world.day, self.company().next_decision_day());
@@ -203,14 +205,14 @@ impl Session {
         self.close_days(if is_whole { Record::Week } else { Record::Step }, from, last_day)
     }
 
-    /// Simulates days until `until` or bankruptcy. Returns the hash of the state reached.
+    /// Simulates days until `until` or bankruptcy. Returns the state hash after the last day.
     pub(crate) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> StateHash {
         let last_day = self.run_days_while(&|_| true, until, progress);
         self.simulation.finish_days(self.database.entry_writer(), last_day)
     }
 
-    /// Simulates days while `should_continue` returns true. Returns the notices of the last simulated day, whose facts are
-    /// not processed yet.
+    /// Simulates days while `goes_on` returns true. Returns the notices of the last simulated day, whose facts are not
+    /// processed yet.
     fn run_days_while(
         &mut self,
         goes_on: &dyn Fn(&Simulation) -> bool,
@@ -244,8 +246,8 @@ impl Session {
         day_before
     }
 
-    /// Processes the facts of the last day and hashes the state. For runs in memory the hash is empty, because no
-    /// line contains it.
+    /// Processes the facts of the last day and hashes the state. For runs in memory, the hash is empty, because it is
+    /// not recorded.
     fn finish_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
         let entries = self.database.entry_writer();
         if self.log.is_on_disk() {
@@ -262,8 +264,8 @@ impl Session {
         figures
     }
 
-    /// Writes the line that closes simulated days. Returns the report, with a remark if the line could not be
-    /// written.
+    /// Writes the line that closes simulated days. Returns the report on the days, with a remark if the line could not
+    /// be written.
     fn close_days(
         &mut self,
         kind: fn(Closing) -> Record,
@@ -281,7 +283,7 @@ impl Session {
         if unclosed.is_none() {
             self.reword_posts_after(from);
         }
-        // The run ends even if the line of its last week is not saved: both lines wait for the disk.
+        // The run ends even if the line of its last week is not saved: both lines stay in memory until the disk is writable.
         let problem = match self.due_end() {
             Some(ended) => self.close_run(ended),
             None => unclosed,
@@ -289,7 +291,7 @@ impl Session {
         let due = self.history.weeks.len().is_multiple_of(SNAPSHOT_INTERVAL_WEEKS)
             && self.history.current_week.days_run == 0;
         let snapshot = due && problem.is_none() && self.log.call_durability() == Durability::Synced;
-        // A week has an `advance` line before it, single days do not.
+        // An `advance` line precedes a week, but not single days.
         let next = match is_week {
             true => "the days are simulated again when the run is opened, with the same result",
             false => {
@@ -303,7 +305,7 @@ impl Session {
         let remarks: Vec<String> = remarks.collect();
         let week = self.week_result((!remarks.is_empty()).then(|| remarks.join(". ")));
         self.history.idempotent_responses.record_week(|| week.clone());
-        // The database is written after progress was reported, because it competes for processors.
+        // The database is written after progress was reported, because writing competes for processors.
         if snapshot {
             self.save_snapshot(|| state.0, false);
         } else {
@@ -312,12 +314,12 @@ impl Session {
         week
     }
 
-    /// Closes a run that has reached its last day or bankruptcy. The caller commits the database.
+    /// Closes a run that has reached its last day or is bankrupt. The caller must commit the database.
     pub(crate) fn close_if_over(&mut self) -> Option<String> {
         self.due_end().and_then(|ended| self.close_run(ended))
     }
 
-    /// Returns how the run ends, if it has ended and is not closed.
+    /// Returns the reason for the end of the run, if the run is over and not closed yet.
     fn due_end(&self) -> Option<RunEndReason> {
         let Simulation { world, params, .. } = &self.simulation;
         let due = if world.finance.is_bankrupt(params) {
@@ -329,7 +331,7 @@ impl Session {
     }
 
     /// Describes a failure to write world.db. Rows are written after the week was reported, so a failure is reported
-    /// with the next week. After the last week, waits for its rows.
+    /// with the next week. After the last week, waits until all rows are written.
     fn database_remark(&self) -> Option<String> {
         if self.history.ended.is_some() {
             self.commit_projection();
@@ -338,12 +340,14 @@ impl Session {
         let ProjectionError(problem) = self.database.failure()?;
         let recovery = match self.folder {
             Some(_) => {
-                "The run is safe: world.db is rebuilt from its record, trajectory.jsonl. Free some disk space; the \
-                 next query or the next opening of the run rebuilds it"
+                "The run is safe: its record, trajectory.jsonl, is complete. Free some disk space; the next query or \
+                 the next opening of the run rebuilds world.db"
             }
-            None => "Queries do not return them",
+            None => "Queries do not return these rows",
         };
-        Some(format!("The database could not be written ({problem}): it lacks the newest rows. {recovery}"))
+        Some(format!(
+            "The database could not be written ({problem}), so the newest rows are missing. {recovery}"
+        ))
     }
 
     pub(crate) fn close_run(&mut self, ended: RunEndReason) -> Option<String> {
@@ -359,14 +363,14 @@ impl Session {
         self.history.idempotent_responses = answers;
     }
 
-    /// Adds the end of the run to the response to its last week, unless the run was abandoned.
+    /// Adds the reason for the end of the run to the response for its last week, unless the run was abandoned.
     pub(crate) fn record_end(&mut self, ended: RunEndReason) {
         if ended != RunEndReason::Abandoned {
             self.history.idempotent_responses.record_end(self.simulation.world.day, ended);
         }
     }
 
-    /// Returns the record that closes days, which a replay must reproduce.
+    /// Returns the content of the line that closes days. A replay must reproduce this content.
     pub(crate) fn closing_record(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
         let (state_hash, parts) = state.clone();
         Closing {
@@ -427,7 +431,7 @@ fn has_lead_capacity(simulation: &Simulation) -> bool {
     simulation.check_lead_capacity().is_ok()
 }
 
-/// Returns the arguments of a week as its rejection records them.
+/// Returns the arguments of a week as recorded for a rejected week.
 pub(crate) fn week_arguments(rationale: &Value, predictions: &Value, expected_day: &Value) -> Value {
     let mut args = json!({ "rationale": rationale, "predictions": predictions });
     if !expected_day.is_null() {

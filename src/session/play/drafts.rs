@@ -1,6 +1,6 @@
 //! Drafts: texts that were typed but not submitted, saved in `drafts.json` in case the program stops.
 //!
-//! The file is replaced atomically. It is not part of the record and is not exported.
+//! The file is replaced atomically. The drafts are not part of the record and are not exported.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,22 +20,22 @@ pub struct DraftTexts {
     /// Rationale of the next week.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub rationale: String,
-    /// Low, point and high of each horizon, as typed.
+    /// Lower end, predicted value and upper end for each horizon, as typed.
     #[serde(skip_serializing_if = "are_all_empty")]
     pub forecasts: [[String; 3]; 4],
     /// Notes, if they differ from the saved notes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub notes: Option<String>,
-    /// SQL statement.
+    /// SQL statement in the query editor.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub sql: String,
-    /// Text of a post.
+    /// Text of a new post.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub post: String,
-    /// The post that it replies to.
+    /// Number of the post to which the new post replies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<u32>,
-    /// Values in forms of tools, by path.
+    /// Values in tool forms, by tool and field path.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub forms: BTreeMap<ToolId, BTreeMap<String, String>>,
 }
@@ -45,12 +45,12 @@ fn are_all_empty(forecasts: &[[String; 3]; 4]) -> bool {
 }
 
 impl DraftTexts {
-    /// Returns whether there are no texts.
+    /// Returns whether there are no drafts.
     pub fn is_empty(&self) -> bool {
         *self == DraftTexts::default()
     }
 
-    /// Returns each text with its location, as named in the record.
+    /// Returns each draft text with the name of its field in the record.
     pub fn texts_by_place(&self) -> Vec<(String, String)> {
         let mut all = vec![("rationale".to_owned(), self.rationale.clone())];
         let forecasts = self.forecasts.as_flattened().iter().filter(|text| !text.is_empty()).cloned();
@@ -67,12 +67,12 @@ impl DraftTexts {
     }
 }
 
-/// The drafts file of a run. A run in memory or open read-only has none.
+/// The drafts file of a run. A run in memory or a run that is open read-only has no drafts file.
 pub struct DraftFile(Option<PathBuf>);
 
 impl DraftFile {
-    /// Saves the drafts, or removes the file if there are none. Ignores disk errors, because the texts are still on
-    /// the screen.
+    /// Saves the drafts, or removes the file if there are no drafts. Ignores disk errors, because the texts are still
+    /// on the screen.
     pub fn save(&self, drafts: &DraftTexts) {
         let Some(file) = &self.0 else { return };
         if drafts.is_empty() {
@@ -83,7 +83,7 @@ impl DraftFile {
         let _ = write_atomically(file, &text);
     }
 
-    /// Loads the drafts; empty if they cannot be read.
+    /// Loads the drafts. Returns empty drafts if the file cannot be read.
     pub fn load(&self) -> DraftTexts {
         let text = self.0.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
         serde_json::from_slice(&text).unwrap_or_default()

@@ -12,23 +12,23 @@ use novamind_tools::{Rejection, ToolId, find};
 
 const MAX_ID_CHARACTERS: usize = 128;
 
-/// A request to simulate a week, from a program.
+/// A request from a program to simulate a week.
 #[derive(Debug, Clone, Copy)]
 pub struct WeekRequest<'a> {
-    /// Rationale.
+    /// Rationale of the week.
     pub rationale: &'a Value,
-    /// Forecasts for four horizons.
+    /// Forecasts of cash for four horizons.
     pub predictions: &'a Value,
-    /// The day on which the run must be; null for any.
+    /// The day on which the run must be; null to skip this check.
     pub expected_day: &'a Value,
-    /// The id of the request; null without one.
+    /// Id of the request; null if the request has no id.
     pub id: &'a Value,
 }
 
 enum RequestState {
-    /// A new request, with the id to record.
+    /// A new request, with the request id to record.
     New(Option<RequestId>),
-    /// A retry, with the first response.
+    /// A retry, with the response to the first request.
     Repeated(IdempotentResponse),
 }
 
@@ -44,8 +44,8 @@ fn parse_request_id(id: &Value) -> Result<Option<&str>, Rejection> {
 }
 
 impl Session {
-    /// Calls a tool as [`Session::call`] does, but only once per id: a retry returns the first response. Tools that
-    /// only read or run code ignore the id.
+    /// Calls a tool like [`Session::call`], but only once per request id: a retry returns the first response. Tools
+    /// that only read or execute code ignore the id.
     ///
     /// # Errors
     /// The rejections of the call; `request_id_invalid`, `request_id_payload_mismatch`.
@@ -75,7 +75,7 @@ impl Session {
         }
     }
 
-    /// Simulates a week as [`Session::advance_with_json`] does, but only once per id and only on the expected day.
+    /// Simulates a week like [`Session::advance_with_json`], but only once per request id and only on the expected day.
     ///
     /// # Errors
     /// The rejections of the week; `unexpected_day`, `request_id_invalid`, `request_id_payload_mismatch`.
@@ -113,7 +113,7 @@ impl Session {
     /// Returns whether a request is new or a retry.
     ///
     /// # Errors
-    /// `request_id_invalid`, `request_id_payload_mismatch`.
+    /// One of the rejections `request_id_invalid`, `request_id_payload_mismatch`.
     fn request_state(&self, tool: &str, args: &Value, id: &Value) -> Result<RequestState, Rejection> {
         let Some(id) = parse_request_id(id)? else { return Ok(RequestState::New(None)) };
         let request = RequestId::new(id, tool, args);

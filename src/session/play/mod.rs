@@ -54,13 +54,14 @@ use novamind_world::day::observer::DayObserver;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-/// Returns the calls with which rules answer waiting enterprises. The session does not evaluate rules itself.
+/// A function that evaluates rules and returns the calls that answer waiting enterprises. The session itself does not
+/// evaluate rules.
 pub type RuleEvaluator = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Rejection>;
 
-/// An open run.
+/// An open run, with its state and its record.
 pub struct Session {
     manifest: Manifest,
-    /// Folder of the run; `None` in memory.
+    /// Folder of the run; `None` for a run in memory.
     folder: Option<PathBuf>,
     simulation: Simulation,
     history: History,
@@ -68,7 +69,7 @@ pub struct Session {
     derived_values: DerivedValues,
     database: RunDatabase,
     seal_key: SealKey,
-    /// The session replays an inspected run and reports its days with hidden state.
+    /// Whether the session replays an inspected run and reports its days with hidden state.
     is_replay: bool,
     extension: Extension,
     /// The lesson and its progress; `None` outside lessons.
@@ -79,12 +80,12 @@ pub struct Session {
     notes_in_memory: String,
     /// Problems found when the run was opened.
     remarks: Vec<String>,
-    /// The record of the run. Dropped last: it holds the lock until the database is closed.
+    /// The record of the run. This field is dropped last, because it keeps the run locked until the database is closed.
     log: RunLog,
 }
 
 impl Session {
-    /// Creates a session on day 0 without a recorder.
+    /// Creates a session from a simulation and a database, without a recorder.
     fn assemble(
         manifest: Manifest,
         folder: Option<PathBuf>,
@@ -122,8 +123,8 @@ impl Session {
         Session::assemble(manifest, folder, simulation, RunDatabase::new(projector))
     }
 
-    /// Creates a copy of a run before its first line. It passes its days to `watch` and reports them with their
-    /// hidden state.
+    /// Creates a copy of a run that starts before the first line. The copy passes its days to `watch` and reports the
+    /// days with their hidden state.
     pub(crate) fn replay_of(run: &Session, watch: Arc<dyn DayObserver>) -> Result<Session, RunError> {
         let params = Arc::new(run.manifest.load_params()?);
         let mut shadow = Session::read_only(run.manifest.clone(), run.folder.clone(), params, None);
@@ -132,7 +133,7 @@ impl Session {
         Ok(shadow)
     }
 
-    /// Creates a new run on day 0 with a recorder.
+    /// Creates the session of a new run on day 0, with a recorder.
     pub(crate) fn with_recorder(
         (manifest, params): (Manifest, Arc<Params>),
         folder: Option<PathBuf>,
@@ -151,30 +152,30 @@ impl Session {
         self.voice = ModelVoice { client: speaker, ..ModelVoice::default() };
     }
 
-    /// Returns the company as the player may see it.
+    /// Returns a view of the company that contains only visible information.
     pub fn company(&self) -> CompanyView<'_> {
         let Session { manifest, simulation, history, context: surroundings, derived_values: derived, .. } =
             self;
         CompanyView { manifest, simulation, history, surroundings, derived }
     }
 
-    /// Returns the record of the run: clock, time limits, answers, durability.
+    /// Returns the record of the run, with clock, time limits, answers and durability.
     pub fn log(&self) -> &RunLog {
         &self.log
     }
 
-    /// Returns the log for activities of the user.
+    /// Returns the log that records activities of the user.
     pub fn activity(&mut self) -> ActivityLog<'_> {
         let (day, is_over) = self.day_and_is_over();
         ActivityLog::new(&mut self.log, day, is_over)
     }
 
-    /// Returns the storage for a value of a higher crate.
+    /// Returns the storage for a value of a dependent crate.
     pub fn extension(&mut self) -> &mut Extension {
         &mut self.extension
     }
 
-    /// Returns the manifest.
+    /// Returns the manifest of the run.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
@@ -184,7 +185,7 @@ impl Session {
         self.manifest.session_rules()
     }
 
-    /// Returns the folder of the run; `None` in memory.
+    /// Returns the folder of the run, or `None` for a run in memory.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
@@ -194,12 +195,12 @@ impl Session {
         self.simulation.world.day
     }
 
-    /// Returns how the run ended.
+    /// Returns the reason for the end of the run, or `None` if the run is unfinished.
     pub fn ended(&self) -> Option<RunEndReason> {
         self.history.ended
     }
 
-    /// Returns the cash at the end of each day, day 0 first.
+    /// Returns the cash at the end of each day, starting with day 0.
     pub fn cash_by_day(&self) -> &[f64] {
         &self.history.cash_by_day
     }
@@ -224,7 +225,7 @@ impl Session {
         &self.simulation.world.settings
     }
 
-    /// Returns the numbers that the documentation of the tools quotes, for this run.
+    /// Returns the parameter values of this run that the tool documentation quotes.
     pub fn numbers(&self) -> Arc<ParameterNumbers> {
         self.derived_values.numbers(&self.simulation)
     }
@@ -234,19 +235,18 @@ impl Session {
         &self.context.notebook
     }
 
-    /// Returns the parameters in force.
+    /// Returns the parameters in force on the current day.
     pub fn params(&self) -> &Params {
         &self.simulation.params
     }
 
-    /// Returns the score: cash after the last day, 0 after a bankruptcy. `None` before the end and for abandoned
-    /// runs.
+    /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for abandoned runs.
     pub fn score(&self) -> Option<f64> {
         self.company().score()
     }
 
-    /// Returns the hash of the complete state, and the hash of each part by name. Right after a week it equals the
-    /// recorded one.
+    /// Returns the hash of the complete state, and the hash of each part by name. Directly after a week, the hash
+    /// equals the recorded hash.
     pub fn state_hash(&self) -> (String, BTreeMap<String, String>) {
         self.simulation.state_hash()
     }
@@ -257,10 +257,10 @@ impl Session {
     }
 
     /// Rejects an inspection if hidden state must not be shown. The result depends only on the mode, the study, the
-    /// lesson and whether they have ended.
+    /// lesson, and whether run and lesson have ended.
     ///
     /// # Errors
-    /// `not_in_this_mode`.
+    /// The rejection `not_in_this_mode`.
     pub fn check_inspection(&self) -> Result<(), Rejection> {
         permission::check_inspection(&self.manifest, self.history.ended, self.folder())
     }
@@ -268,7 +268,7 @@ impl Session {
     /// Returns the hidden state of a debug run.
     ///
     /// # Errors
-    /// `not_in_this_mode`.
+    /// The rejection `not_in_this_mode`.
     pub fn debug_hidden_state(&self) -> Result<HiddenState<'_>, Rejection> {
         if self.manifest.mode != Mode::Debug {
             return Err(Rejection::new("not_in_this_mode", "hidden state is shown in debug runs only"));
@@ -310,23 +310,23 @@ impl Session {
         self.log.append(self.day_and_is_over(), record, durability)
     }
 
-    /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
+    /// Appends a line about an irrevocable action, even if it cannot be saved yet. Returns a description of the
+    /// problem if the line is not saved yet.
     fn append_irrevocable(&mut self, record: &Record) -> Option<String> {
         self.log.append_irrevocable(self.simulation.world.day, record)
     }
 
-    /// Records an event without effect; ignores disk errors.
+    /// Records an event that does not change the world. Ignores disk errors.
     fn record_event(&mut self, record: Record) {
         let _ = self.append(&record, Durability::Written);
     }
 
-    /// Returns the last day, and whether the run has ended.
+    /// Returns the last simulated day, and whether the run has ended.
     fn day_and_is_over(&self) -> (u32, bool) {
         (self.simulation.world.day, self.history.ended.is_some())
     }
 }
 
-/// Functions for tests.
 #[cfg(test)]
 impl Session {
     pub(crate) fn set_medium(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {

@@ -1,7 +1,7 @@
 //! The player's notes: a file next to the trajectory, and a line for every change.
 //!
-//! New notes are written to a draft before their line, and replace the old file after it. Whenever the program stops,
-//! one of the two files matches the last line.
+//! New notes are written to a draft file before their line is appended. Then the draft replaces the notes file. If the
+//! program stops at any time, one of the two files matches the last line.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -20,10 +20,10 @@ const NOTES_FILE: &str = "memo.md";
 const DRAFT_FILE: &str = "memo.draft";
 
 impl Session {
-    /// Returns the notes.
+    /// Returns the player's notes.
     ///
     /// # Errors
-    /// The file exists and cannot be read.
+    /// The notes file exists but cannot be read.
     pub fn notes(&self) -> Result<String, RunError> {
         let Some(folder) = &self.folder else { return Ok(self.notes_in_memory.clone()) };
         let path = folder.join(NOTES_FILE);
@@ -37,7 +37,7 @@ impl Session {
     /// Saves the notes and records the change.
     ///
     /// # Errors
-    /// `not_saved`, `read_only`.
+    /// One of the rejections `not_saved`, `read_only`.
     pub fn set_notes(&mut self, text: &str) -> Result<(), Rejection> {
         if !self.log.is_written() {
             return Err(Rejection::new("read_only", "this run is open read-only"));
@@ -66,32 +66,32 @@ impl Session {
         Ok(())
     }
 
-    /// Finishes an interrupted change. Adds a remark if the notes do not match the last line, but does not change
-    /// them.
+    /// Finishes an interrupted change of the notes. If the notes do not match the last recorded change, adds a remark
+    /// and does not modify the notes.
     pub(crate) fn check_notes(&mut self, trajectory: &Trajectory, access: Access) {
         let Some(folder) = &self.folder else { return };
         let unfinished = current_notes_file(folder, trajectory) == folder.join(DRAFT_FILE);
         match (access, unfinished) {
             (Access::Write, true) => drop(replace_notes_file(folder)),
-            // The draft was never confirmed.
+            // The draft was not recorded, so the change was never confirmed.
             (Access::Write, false) => drop(std::fs::remove_file(folder.join(DRAFT_FILE))),
             (Access::Read, true) => return,
             (Access::Read, false) => {}
         }
-        // Notes changed after the end of the run have no line in the trajectory.
+        // Changes after the end of the run are not recorded in the trajectory.
         let Some(kept) = last_notes_digest(trajectory).filter(|_| self.history.ended.is_none()) else {
             return;
         };
         if file_digest(&folder.join(NOTES_FILE)) != Some(kept) {
             self.remarks.push(
-                "memo.md differs from the notes saved last: another program changed it, or it is damaged."
+                "memo.md differs from the last saved notes: another program changed the file, or it is damaged."
                     .to_owned(),
             );
         }
     }
 }
 
-/// Returns the file with the notes of the last line: the draft, if the program stopped between the line and the file.
+/// Returns the file with the last recorded notes. This is the draft if the program stopped before replacing the notes file.
 pub(crate) fn current_notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
     let (file, draft) = (folder.join(NOTES_FILE), folder.join(DRAFT_FILE));
     let kept = last_notes_digest(trajectory);
@@ -103,7 +103,7 @@ fn last_notes_digest(trajectory: &Trajectory) -> Option<String> {
     trajectory.lines.iter().rev().find_map(|line| line.record.notes_digest().map(str::to_owned))
 }
 
-/// Returns the digest of the notes in a file. A missing file counts as empty notes.
+/// Returns the digest of the notes in a file. A missing file has the digest of empty notes.
 fn file_digest(path: &Path) -> Option<String> {
     match std::fs::read(path) {
         Ok(bytes) => Some(notes_digest(&bytes)),
@@ -152,13 +152,13 @@ mod tests {
         let runs = tempfile::tempdir().expect("a folder");
         let (folder, mut session) = new_run(runs.path());
         session.set_notes("first").expect("kept");
-        // The program stopped before the line.
+        // The program stopped before appending the line.
         write_draft(&folder.join(DRAFT_FILE), "second").expect("a draft");
         drop(session);
         assert_eq!(open_and_read_notes(&folder, Access::Read), ("first".to_owned(), Vec::new()));
         assert_eq!(open_and_read_notes(&folder, Access::Write), ("first".to_owned(), Vec::new()));
         assert!(!folder.join(DRAFT_FILE).exists(), "an unconfirmed draft is removed");
-        // The program stopped between the line and the file.
+        // The program stopped after appending the line and before replacing the file.
         let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
         write_draft(&folder.join(DRAFT_FILE), "second").expect("a draft");
         session.record_notes("second").expect("a line");
@@ -170,7 +170,10 @@ mod tests {
         std::fs::write(folder.join(NOTES_FILE), "third").expect("written");
         let (notes, remarks) = open_and_read_notes(&folder, Access::Write);
         assert_eq!(notes, "third");
-        assert!(remarks.iter().any(|remark| remark.contains("another program changed it")), "{remarks:?}");
+        assert!(
+            remarks.iter().any(|remark| remark.contains("another program changed the file")),
+            "{remarks:?}"
+        );
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Opening a run: reading its trajectory and simulating it again.
+//! Opening of runs: reading the trajectory and simulating the run again.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -21,18 +21,18 @@ use novamind_world::params::Params;
 /// Access to an opened run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// Continue the run. One program at a time.
+    /// Play the run. Only one program at a time has this access.
     Write,
-    /// Read the run without changing it.
+    /// Read the run without changing its files.
     Read,
 }
 
-/// Functions with which a reading command stores what it had to simulate.
+/// Functions that store the results of a simulation, so that the next read-only command need not repeat it.
 #[derive(Clone, Copy)]
 pub(crate) struct CacheFunctions {
-    /// Returns whether the end of the run may be stored.
+    /// Returns whether the state at the end of the run may be stored.
     pub(crate) may_store: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
-    /// Stores snapshot and database. Returns whether it succeeded.
+    /// Stores the snapshot and the database. Returns whether both were stored.
     pub(crate) store_database: fn(&Path, &SealKey) -> bool,
     pub(crate) store_snapshot: fn(&Session, &Path),
 }
@@ -41,15 +41,16 @@ impl Session {
     /// Opens the run in a folder and simulates it up to its last line.
     ///
     /// # Errors
-    /// The run is missing, damaged, of another version, or in use. The error names the file and what is safe.
+    /// The run is missing, damaged, recorded with another version, or in use. The error names the file and the data
+    /// that is safe.
     pub fn open(folder: &Path, access: Access, projection: bool) -> Result<Session, RunError> {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// Like [`Session::open`], for a run whose snapshots are sealed with `key`.
+    /// Opens a run like [`Session::open`], with snapshots that are sealed with `key`.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The same errors as [`Session::open`].
     pub fn open_sealed(
         folder: &Path,
         access: Access,
@@ -59,10 +60,11 @@ impl Session {
         Session::open_with_cache(folder, access, projection, key, None)
     }
 
-    /// Like [`Session::open_sealed`]. With `keeping`, stores what a reading command had to simulate.
+    /// Opens a run like [`Session::open_sealed`]. With `keeping`, stores the simulated state and database for later
+    /// read-only commands.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The same errors as [`Session::open`].
     pub(crate) fn open_with_cache(
         folder: &Path,
         access: Access,
@@ -107,7 +109,7 @@ impl Session {
                 Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
             }
         };
-        // The database has rows up to this line. Missing rows need the facts before them.
+        // The database has rows up to this line. To add missing rows, the replay must start at or before this line.
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
         let snapshot = integrity.usable_snapshot(&manifest, &trajectory, rows);
         let lines = &trajectory.lines;
@@ -131,7 +133,7 @@ impl Session {
                 true => {
                     ". world.db contains the complete line: a power cut or an edit removed the end of the line."
                 }
-                false => ": it was never confirmed.",
+                false => ": this line was never confirmed.",
             };
             session.remarks.push(format!(
                 "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped{reason}"
@@ -148,7 +150,7 @@ impl Session {
     }
 }
 
-/// Starts the database. Existing contents are used only if `sound` is true.
+/// Starts the database. Uses the existing contents only if `sound` is true.
 pub(crate) fn open_projector(
     folder: &Path,
     access: Access,
@@ -158,7 +160,7 @@ pub(crate) fn open_projector(
 ) -> Result<(Projector, Option<ProjectionPosition>), RunError> {
     let location = match access {
         Access::Write => DatabaseLocation::File(folder.join("world.db")),
-        // Another program may write the file, so a reader creates its own database.
+        // Another program may be writing the file, so a read-only session creates a database in memory.
         Access::Read => DatabaseLocation::new_in_memory(),
     };
     let known = |position: &ProjectionPosition| {

@@ -1,4 +1,4 @@
-//! Parameter changes of a running debug run (docs/debugging.md#parameters).
+//! Parameter changes during a debug run (docs/debugging.md#parameters).
 
 use serde_json::Value;
 
@@ -21,12 +21,12 @@ fn has_no_parameter(value: &toml::Value) -> bool {
 }
 
 impl Session {
-    /// Sets a parameter, or a list or table of parameters, immediately or from a later day. The change is recorded
+    /// Sets a parameter, or a list or table of parameters, immediately or on a later day. The change is recorded
     /// before it takes effect.
     ///
     /// # Errors
     /// `not_in_this_mode` if the run is not a debug run; `run_over`, `read_only`, `day_unknown`, `parameter_unknown`,
-    /// `parameter_not_allowed`, `not_saved`. Nothing has changed then.
+    /// `parameter_not_allowed`, `not_saved`. After an error, nothing has changed.
     pub fn set_parameter(
         &mut self,
         key: &str,
@@ -37,10 +37,10 @@ impl Session {
         self.set_parameter_in_any_mode(key, value, from_day)
     }
 
-    /// Sets a parameter immediately, on behalf of the lesson.
+    /// Sets a parameter that a lesson changes, with immediate effect.
     ///
     /// # Errors
-    /// As [`Session::set_parameter`].
+    /// The same errors as [`Session::set_parameter`].
     pub(crate) fn set_lesson_parameter(&mut self, key: &str, value: &Value) -> Result<(), Rejection> {
         self.set_parameter_in_any_mode(key, value, None).map(|_| ())
     }
@@ -80,25 +80,27 @@ impl Session {
         Ok(ChangedParameter { key: key.to_owned(), old, new, from_day })
     }
 
-    /// Applies a recorded parameter change again.
+    /// Applies a recorded parameter change during a replay.
     ///
     /// # Errors
-    /// The line contradicts the state before it.
+    /// The line contradicts the state before the change.
     pub(crate) fn replay_override(&mut self, seq: u64, line: &Override) -> Result<(), String> {
         if self.manifest.mode != Mode::Debug && self.manifest.lesson.is_none() {
-            return Err("it sets a parameter, which only debug runs and lessons can".to_owned());
+            return Err(
+                "the line sets a parameter, which is allowed only in debug runs and lessons".to_owned()
+            );
         }
         let today = self.simulation.world.day;
         if line.from_day.is_some_and(|day| day <= today) {
-            return Err(format!("it sets a parameter from a day that is not after day {today}"));
+            return Err(format!("the line sets a parameter from a day that is not after day {today}"));
         }
         let held = self.simulation.params.value(&line.key).map_err(|error| describe_error(&error))?;
         if value_to_json(&held) != line.old {
-            return Err(format!("{} was not {} before it", line.key, line.old));
+            return Err(format!("{} was not {} before this change", line.key, line.old));
         }
         self.add_to_journal(seq, line);
-        let change =
-            ParameterChange::from_record(seq, line).ok_or("its value is not valid for a parameter")?;
+        let change = ParameterChange::from_record(seq, line)
+            .ok_or("the value in the line is not valid for a parameter")?;
         let taken = self.simulation.overrides.add_change(&self.simulation.params, change);
         let UpdatedParams { current: now, .. } = taken.map_err(|unfit| describe_error(&unfit.error))?;
         self.simulation.set_params(now, self.database.entry_writer());

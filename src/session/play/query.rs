@@ -1,4 +1,4 @@
-//! Database queries.
+//! Execution and recording of database queries.
 
 use std::time::{Duration, Instant};
 
@@ -11,19 +11,19 @@ use novamind_record::trajectory::record::{Query, QuerySource};
 use novamind_tools::Rejection;
 
 impl Session {
-    /// Runs a guarded statement and records it.
+    /// Runs an SQL statement that the user entered, and records the query.
     ///
     /// # Errors
-    /// The `sql_` codes.
+    /// A rejection whose code begins with `sql_`.
     pub fn query(&mut self, sql: &str) -> Result<QueryResult, Rejection> {
         self.query_as(None, sql, QuerySource::Typed)
     }
 
-    /// Like [`Session::query`], for a statement from another source. `ticket` is the ticket of
-    /// [`RunDatabase::interrupt_handle`] that was drawn when the statement was requested.
+    /// Runs and records an SQL statement from another source. `ticket` is the ticket that
+    /// [`RunDatabase::interrupt_handle`] returned when the query was requested.
     ///
     /// # Errors
-    /// The `sql_` codes.
+    /// A rejection whose code begins with `sql_`.
     pub fn query_as(
         &mut self,
         ticket: Option<QueryTicket>,
@@ -42,10 +42,10 @@ impl Session {
         Ok(self.up_to_date_database()?.interrupt_handle()?.ticket())
     }
 
-    /// Runs a statement under these limits without recording it.
+    /// Runs an SQL statement with these limits without recording the query.
     ///
     /// # Errors
-    /// The `sql_` codes.
+    /// A rejection whose code begins with `sql_`.
     pub(crate) fn query_with_limits(
         &mut self,
         ticket: QueryTicket,
@@ -56,22 +56,22 @@ impl Session {
         answer.map_err(|refusal| if self.can_inspect() { with_hidden_table_hint(refusal) } else { refusal })
     }
 
-    /// Runs a statement of the program, which is not recorded because the user did not enter it.
+    /// Runs an SQL statement of the program. The query is not recorded, because the user did not enter the statement.
     ///
     /// # Errors
-    /// The `sql_` codes.
+    /// A rejection whose code begins with `sql_`.
     pub fn query_unrecorded(&mut self, sql: &str) -> Result<QueryResult, Rejection> {
         let limits = self.company().query_limits();
         let ticket = self.new_ticket()?;
         self.up_to_date_database()?.query(ticket, sql, limits)
     }
 
-    /// Returns the database, which may lack the newest rows.
+    /// Returns the database of the run, in which the newest rows may be missing.
     pub fn database(&self) -> &RunDatabase {
         &self.database
     }
 
-    /// Waits until the database contains everything up to the last decision day and this week's calls.
+    /// Waits until the database contains all days up to the last decision day and the calls of the current week.
     ///
     /// # Errors
     /// The database cannot be written.
@@ -83,7 +83,7 @@ impl Session {
         self.database.wait_until_written().map_err(|error| refused(error.to_string()))
     }
 
-    /// Records a query that was run elsewhere.
+    /// Records a query that another thread executed.
     pub fn record_query(
         &mut self,
         sql: &str,
@@ -107,7 +107,7 @@ impl Session {
         self.record_event(Record::Query(query));
     }
 
-    /// Adds a statement to the query history, unless it came from a script.
+    /// Adds an SQL statement to the query history, unless a script sent it.
     pub(super) fn add_to_query_history(&mut self, Query { sql, via, .. }: &Query) {
         const MAX_KEPT_QUERIES: usize = 100;
         if *via == Some(QuerySource::Script) {
@@ -119,13 +119,13 @@ impl Session {
         self.history.query_history.drain(..surplus);
     }
 
-    /// Returns the database with all rows. Repairs it if it could not be written before.
+    /// Returns the database after all rows are written. Repairs the database if it could not be written before.
     ///
     /// # Errors
     /// The database cannot be written.
     pub fn up_to_date_database(&mut self) -> Result<&mut RunDatabase, Rejection> {
         if let Err(problem) = self.wait_for_database() {
-            // Disk space may be available again.
+            // Retry the repair, because disk space may be available again.
             self.repair_database().map_err(|_| problem)?;
         }
         Ok(&mut self.database)

@@ -1,4 +1,4 @@
-//! Repair of the database of an open run, if it could not be written, for example because the disk was full.
+//! Repair of the database of an open run after a failed write, for example because the disk was full.
 
 use std::sync::Arc;
 
@@ -10,11 +10,10 @@ use novamind_record::error::RunError;
 use novamind_record::trajectory::Trajectory;
 
 impl Session {
-    /// Repairs the database from the trajectory if it could not be written. Connections opened before are stale
-    /// afterward.
+    /// Repairs the database from the trajectory if it could not be written. Afterward, earlier connections are stale.
     ///
     /// # Errors
-    /// The database still cannot be written. Nothing else has changed.
+    /// The database still cannot be written. In this case, nothing has changed.
     pub fn repair_database(&mut self) -> Result<(), RunError> {
         let Some(problem) = self.database.failure() else { return Ok(()) };
         let Some(folder) = self.folder.clone().filter(|_| self.log.is_written()) else {
@@ -25,7 +24,7 @@ impl Session {
         let path = folder.join("trajectory.jsonl");
         let read = Trajectory::read(&path)?;
         let sound = is_consistent(&DatabaseLocation::File(folder.join("world.db")));
-        // The replay starts with the parameters of day 0.
+        // The replay starts with the parameters that were in force on day 0.
         let params = Arc::new(self.manifest.load_params()?);
         let database = open_projector(&folder, Access::Write, (&self.manifest, &params), &read, sound)?;
         let integrity = Integrity::read(&folder, &self.manifest, &self.seal_key);
@@ -109,7 +108,7 @@ mod tests {
             Some(problem.clone())
         );
         assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
-        // With free disk space, a query repairs the database and the run continues.
+        // After disk space is available, a query repairs the database and the run continues.
         let remark = advance_week(&mut session).remark.expect("the week says so");
         assert!(remark.contains("could not be written") && remark.contains("next query"), "{remark}");
         assert_eq!(database_progress(&mut session), database_progress(&mut straight));

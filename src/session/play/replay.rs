@@ -18,7 +18,7 @@ use novamind_record::trajectory::{Line, Record, Trajectory, damaged_line_error};
 use novamind_world::params::Params;
 
 impl Session {
-    /// Creates a session on day 0, or from a snapshot. Also returns the number of lines that it includes.
+    /// Creates a session on day 0, or from a snapshot. Also returns the number of lines that the session includes.
     pub(crate) fn prepare_replay(
         manifest: Manifest,
         folder: &Path,
@@ -40,8 +40,8 @@ impl Session {
         (Session { history, context: surroundings, ..session }, seen)
     }
 
-    /// Applies all lines after the first `seen`. The database receives only missing rows. `reached` is called with
-    /// the day after each line.
+    /// Applies all lines after the first `seen` lines. Writes only missing rows to the database. Calls `reached` after
+    /// each line with the current day.
     pub(crate) fn replay(
         &mut self,
         path: &Path,
@@ -66,7 +66,7 @@ impl Session {
         Ok(())
     }
 
-    /// Writes rows to this database from now on, with the parameters in force.
+    /// Attaches a database, to which the replay writes the rows of all following lines.
     fn attach_projector(&mut self, projector: Option<Projector>) {
         self.database = RunDatabase::new(projector);
         if self.simulation.overrides.has_changes() {
@@ -81,7 +81,7 @@ impl Session {
         self.apply_line_with_progress(path, line, &mut |_| {})
     }
 
-    /// Like [`Session::apply_line`]; calls `tell` for each simulated day.
+    /// Applies a line like [`Session::apply_line`], and calls `tell` for each simulated day.
     pub(crate) fn apply_line_with_progress(
         &mut self,
         path: &Path,
@@ -130,7 +130,7 @@ impl Session {
         Ok(())
     }
 
-    /// Completes the figures of replayed days and compares the state with the recorded one.
+    /// Completes the figures of replayed days and compares the state with the recorded state.
     fn verify_closing(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
         let figures = self.finish_figures();
         let reached = self.closing_record(from, &figures, state);
@@ -142,8 +142,8 @@ impl Session {
         let differing = reached.parts.iter().filter(differs).map(|(name, _)| name.as_str());
         let differing: Vec<&str> = differing.collect();
         Err(format!(
-            "the state on day {} is not the recorded one (different: {}); an earlier line was changed, or another \
-             version recorded it",
+            "the state on day {} differs from the recorded state (different: {}); an earlier line was changed, or \
+             another version recorded the run",
             self.simulation.world.day,
             differing.join(", ")
         ))
@@ -160,14 +160,14 @@ impl Session {
             let week = self.run_week(&mut |_| {});
             self.remarks.push(format!("The week up to day {} was simulated again.", week.figures.day));
         } else if self.history.ended.is_none() && self.simulation.world.is_over(&self.simulation.params) {
-            // The program ended between the last week and the line that ends the run.
+            // The program stopped after the last week and before appending the `end` line.
             let remark = self.close_if_over();
             self.commit_projection();
             self.remarks.extend(remark);
         }
     }
 
-    /// Applies the lines recorded after the end of the run. Adds a remark if their file is damaged.
+    /// Applies the lines that were recorded after the end of the run. Adds a remark if their file is damaged.
     pub(crate) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
         let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
         match read_afterwards(&folder, trajectory) {
@@ -181,7 +181,7 @@ impl Session {
         }
     }
 
-    /// Applies a line recorded after the end of the run. It does not affect the company.
+    /// Applies a line that was recorded after the end of the run. The line does not affect the company.
     fn replay_afterwards_line(&mut self, line: &Line) {
         match &line.record {
             Record::Query(query) => self.add_to_query_history(query),
@@ -196,7 +196,7 @@ impl Session {
     }
 }
 
-/// Compares the figures of the closing record, which are derived from the state.
+/// Compares the recorded figures with the reached figures, which are derived from the state.
 fn compare_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
     let name = if reached.days_run != recorded.days_run {
         "days_run"
@@ -207,5 +207,5 @@ fn compare_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> 
     } else {
         return Ok(());
     };
-    Err(format!("the recorded {name} does not match the recorded state: it was changed"))
+    Err(format!("the recorded {name} does not match the recorded state: the line was changed"))
 }

@@ -5,29 +5,29 @@ use crate::snapshot::file::{SnapshotSource, SnapshotTarget};
 use novamind_record::error::RunError;
 
 impl Session {
-    /// Saves everything.
+    /// Saves all lines, a snapshot and the database.
     ///
     /// # Errors
-    /// The disk fails.
+    /// The trajectory or the database cannot be written.
     pub fn save(&mut self) -> Result<(), RunError> {
         self.log.sync()?;
         self.save_snapshot(|| self.state_hash().0, true);
         Ok(self.database.wait_until_written()?)
     }
 
-    /// Stores the current state as a snapshot and commits the database. A run without a folder has no snapshot. With
-    /// `closing`, the snapshot also contains the digest of the database file. Disk errors are ignored: without a
-    /// snapshot, opening only takes longer.
+    /// Stores the current state as a snapshot and commits the database. A run in memory has no snapshot. With
+    /// `closing`, the snapshot also contains the digest of the database file. Ignores disk errors: without a snapshot,
+    /// opening the run only takes longer.
     pub(super) fn save_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.log.is_written()) else {
             return self.commit_projection();
         };
-        // Commit lines without rows too: a snapshot ahead of the database could not be used.
+        // Also commit lines without rows, because a snapshot that is ahead of the database cannot be used.
         self.commit_projection();
         self.write_snapshot_with_hash(state_hash(), SnapshotTarget::new(folder, &self.seal_key), closing);
     }
 
-    /// Writes a snapshot of the current state. With `closing`, it contains the digest of the database file.
+    /// Writes a snapshot of the current state. With `closing`, the snapshot contains the digest of the database file.
     pub(crate) fn write_snapshot(&self, place: SnapshotTarget, closing: bool) {
         self.write_snapshot_with_hash(self.state_hash().0, place, closing);
     }

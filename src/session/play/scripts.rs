@@ -1,8 +1,8 @@
 //! Calculations and scripts of a run.
 //!
-//! Both are read-only SQL under the guard and the limits of a query, or Python that sends such queries. Calls in the
-//! trajectory define them. The output of calculations before a week is in its `advance` line, so a resumed run shows
-//! the same dashboard without running them.
+//! Calculations and scripts are read-only SQL with the guard and the limits of a query, or Python code that sends
+//! queries. Calls in the trajectory define calculations and scripts. The `advance` line of a week contains the output
+//! of its calculations, so a resumed run shows the same dashboard without running them again.
 
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,7 @@ const MAX_REMARK_CHARACTERS: usize = 2000;
 
 const OUTPUT_TRUNCATED: &str = "stdout is cut after 5,000 characters\n";
 
-/// Appends a result as a table, and its remarks, up to the limits.
+/// Appends a query result as a table, and its remarks, up to the length limits.
 fn append_result(script_output: &mut RawScriptOutput, rows: &QueryResult) {
     if script_output.results.len() <= 4 * MAX_OUTPUT_CHARACTERS {
         script_output.results += &text::format_columns(rows);
@@ -41,15 +41,15 @@ fn truncate(text: &str, most: usize) -> String {
 }
 
 impl Session {
-    /// Prevents Python from being started, because the calls were decided elsewhere.
+    /// Disables Python, because the calls repeat recorded decisions.
     pub fn disable_python(&mut self) {
         self.context.is_python_disabled = true;
     }
 
-    /// Runs the script of a tool call.
+    /// Executes the script of a tool call.
     ///
     /// # Errors
-    /// `script_failed`, `script_timeout`, with the location.
+    /// `script_failed` or `script_timeout`, with the location in the script.
     pub(super) fn run_script(&mut self, script: &Script, via: Via) -> Result<ScriptOutput, Rejection> {
         let time = Duration::from_secs_f64(script.timeout_seconds);
         let script_output = match Language::detect(&script.code) {
@@ -68,13 +68,13 @@ impl Session {
         })
     }
 
-    /// Rejects Python unless a player makes the call.
+    /// Rejects Python unless a player executes the call.
     fn check_python_allowed(&self, via: Via) -> Result<(), Rejection> {
         let is_played = !matches!(via, Via::Policy | Via::Branch | Via::Lesson);
         require_player(is_played && !self.context.is_python_disabled)
     }
 
-    /// Runs a script in Python. Its statements are recorded if `noted` is true.
+    /// Executes a Python script. Records its queries if `noted` is true.
     fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<RawScriptOutput, Rejection> {
         let stop = self.up_to_date_database().and_then(RunDatabase::interrupt_handle);
         let stop = stop.map_err(|refusal| script_failed(refusal.message))?;
@@ -124,13 +124,13 @@ impl Session {
                 let (number, why) = (stopped.statement, refusal.message);
                 let hint = python_marker_hint(code).map(|hint| format!("; {hint}")).unwrap_or_default();
                 let message =
-                    format!("statement {number}: {why}; the ones before it changed nothing either{hint}");
+                    format!("statement {number}: {why}; the statements before it changed nothing{hint}");
                 Err(Rejection::for_field("code", kind, message))
             }
         }
     }
 
-    /// Runs all calculations on the current company. The output of a failed one is its error message. All
+    /// Executes all calculations on the current company. The output of a failed calculation is its error message. All
     /// calculations together have the time limit of one query.
     pub(super) fn run_calculations(&mut self, via: Via) -> Vec<CalculationOutput> {
         let entries = self.context.notebook.statements(NotebookSection::Calculation).entries().to_vec();
@@ -140,12 +140,11 @@ impl Session {
             let time = most.saturating_sub(started.elapsed());
             let result = match Language::detect(&code) {
                 _ if time.is_zero() => {
-                    let message =
-                        format!("the calculations before it used the {} s of a week", most.as_secs());
+                    let message = format!("earlier calculations used all {} s of this week", most.as_secs());
                     Err(Rejection::new("script_timeout", message))
                 }
                 Language::Sql => self.run_statements(&code, time),
-                // Queries of calculations are not recorded.
+                // Do not record the queries of calculations.
                 Language::Python => {
                     self.check_python_allowed(via).and_then(|()| self.run_python(&code, time, false))
                 }
@@ -159,7 +158,7 @@ impl Session {
         entries.into_iter().map(run).collect()
     }
 
-    /// Adds a remark that lists the calculations in Python, because another user may have registered them.
+    /// Adds a remark that lists the Python calculations, because another user may have registered them.
     pub(super) fn report_python_calculations(&mut self) {
         let kept = self.context.notebook.statements(NotebookSection::Calculation).entries();
         let python = kept.iter().filter(|(_, code)| Language::detect(code) == Language::Python);

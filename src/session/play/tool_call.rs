@@ -21,27 +21,27 @@ use novamind_tools::{
 };
 use novamind_world::command::{Command, ResolvedCommand};
 
-/// The effects of a call before it is made.
+/// The expected effects of a call that is not executed yet.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Preview {
-    /// Tool.
+    /// Tool of the call.
     pub tool: ToolId,
-    /// Immediate cost, dollars.
+    /// Immediate cost of the call, dollars.
     pub cost_now: f64,
-    /// Change of the running costs, dollars a day.
+    /// Change of the running costs, dollars per day.
     pub cost_per_day: f64,
-    /// First day with an effect; `None` if the call changes nothing.
+    /// First day on which the call has an effect; `None` if the call changes nothing.
     pub effect_day: Option<u32>,
-    /// Changed settings.
+    /// Settings that the call would change.
     pub changes: Vec<SettingChange>,
-    /// For an R&D project: its expected duration and gain.
+    /// Expected duration and gain, if the call starts an R&D project.
     pub research: Option<ResearchOutlook>,
 }
 
-/// Additional fields of a call's line.
+/// Additional fields of the line that records a call.
 #[derive(Debug, Default)]
 pub(crate) struct CallMetadata {
-    /// The earlier call that it undoes or redoes.
+    /// Earlier call that this call undoes or redoes, if any.
     pub(crate) reversal: Option<Reversal>,
     pub(crate) request: Option<RequestId>,
 }
@@ -53,7 +53,7 @@ struct AcceptedCall {
 }
 
 impl Session {
-    /// Returns the effects of a call without executing, recording or drawing anything.
+    /// Returns the expected effects of a call. Does not execute or record the call and makes no random draws.
     ///
     /// # Errors
     /// The rejections of the call.
@@ -105,11 +105,11 @@ impl Session {
         Ok(preview)
     }
 
-    /// Calls a tool. `next_week` and `query` have their own functions.
+    /// Executes and records a tool call. The tools `next_week` and `query` have separate functions.
     ///
     /// # Errors
-    /// The rejections of the tool; `unknown_tool`; `run_over`; `not_saved` if the disk fails. Nothing has changed
-    /// then.
+    /// The rejections of the tool; `unknown_tool`; `run_over`; `not_saved` if the line cannot be written. After an
+    /// error, nothing has changed.
     pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Answer, Rejection> {
         self.call_with_metadata(tool.as_ref(), arguments, via, CallMetadata::default())
     }
@@ -210,14 +210,15 @@ impl Session {
         self.finish_call(settings);
     }
 
-    /// Completes an applied command, live or replayed. `settings` is the settings family after the call.
+    /// Completes an applied command, whether live or replayed. `settings` contains the settings after the call, if the
+    /// call changed a setting.
     fn finish_call(&mut self, settings: Option<Value>) {
         if let Some(last) = self.history.cash_by_day.last_mut() {
             *last = self.simulation.world.finance.cash;
         }
         let notices = self.simulation.notice_texts();
         self.simulation.process_call(self.database.entry_writer(), notices, settings);
-        // The database must not be ahead of the disk.
+        // The database must not be ahead of the synced trajectory.
         if self.log.call_durability() == Durability::Synced {
             self.commit_projection();
         }
@@ -252,7 +253,7 @@ impl Session {
         Ok((given, planned))
     }
 
-    /// Plans a recorded call, without limits that earlier versions did not have.
+    /// Plans a recorded call. Does not apply limits that earlier versions did not have.
     fn plan_recorded_call(
         &self,
         tool: &'static dyn AnyTool,
@@ -263,7 +264,7 @@ impl Session {
         Ok((given, planned))
     }
 
-    /// Rejects acting tools if the run has ended or is open read-only.
+    /// Rejects tools that change the company if the run has ended or is open read-only.
     pub(crate) fn check_can_act(&self, kind: ToolKind) -> Result<(), Rejection> {
         if !kind.changes_company() {
             return Ok(());
@@ -272,21 +273,21 @@ impl Session {
             let day = self.simulation.world.day;
             let how = match ended {
                 novamind_record::trajectory::record::RunEndReason::Horizon => {
-                    format!("it reached its last day, {day}")
+                    format!("the last day, {day}, was reached")
                 }
                 novamind_record::trajectory::record::RunEndReason::Bankruptcy => {
                     format!("the company went bankrupt on day {day}")
                 }
                 novamind_record::trajectory::record::RunEndReason::Abandoned => {
-                    format!("it was abandoned on day {day}")
+                    format!("the run was abandoned on day {day}")
                 }
                 novamind_record::trajectory::record::RunEndReason::Lesson => {
-                    format!("its lesson ended on day {day}")
+                    format!("the lesson ended on day {day}")
                 }
             };
             return Err(Rejection::new(
                 "run_over",
-                format!("the run is over: {how}; you can still read and query"),
+                format!("the run is over: {how}; you can still read and query the run"),
             ));
         }
         self.check_writable()
@@ -299,7 +300,7 @@ impl Session {
         }
     }
 
-    /// Records a rejected call that no tool received, for example a rejected week.
+    /// Records a call that was rejected before a tool received it, for example a rejected week.
     pub(crate) fn record_rejection(
         &mut self,
         tool: &str,
@@ -315,8 +316,8 @@ impl Session {
         self.append_rejection(Record::Call(call));
     }
 
-    /// Records a call that was rejected before it reached the session. Returns the rejection, or `run_over` if the
-    /// run has ended and the tool acts.
+    /// Records a call that was rejected before it reached the session. Returns the rejection, or `run_over` if the run
+    /// has ended and the tool changes the company.
     pub fn record_early_rejection(
         &mut self,
         tool: &str,
@@ -348,12 +349,13 @@ pub(crate) fn not_saved_rejection(error: RunError) -> Rejection {
         return Rejection::new("not_saved", error.to_string());
     }
     let message = format!(
-        "{error}; nothing was changed and everything confirmed before is safe. Free some disk space, then try again"
+        "{error}; nothing was changed, and all confirmed lines are safe. Free some disk space, then try again"
     );
     Rejection::new("not_saved", message)
 }
 
-/// Makes answers comparable across versions: earlier versions wrote whole floats as integers and had other remarks.
+/// Converts an answer to a form that is comparable across versions. Earlier versions wrote whole floats as integers
+/// and had different remarks.
 fn comparable_answer(spec: &ToolSpec, answer: &Value) -> Value {
     let mut answer = normalize_json_numbers(answer.clone());
     if let Value::Object(fields) = &mut answer {
@@ -370,18 +372,18 @@ fn round_milliseconds(took_ms: f64) -> f64 {
 }
 
 impl Session {
-    /// Applies an accepted call of a trajectory again.
+    /// Applies a recorded, accepted call during a replay.
     ///
     /// # Errors
-    /// The reason why the call is not possible now: the line was changed, or another version recorded it.
+    /// The reason why the call cannot be replayed: the line was changed, or another version recorded it.
     pub(crate) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
         let tool = call.tool.tool_id().ok_or("the call names an unknown tool")?.tool();
         let (arguments, planned) =
             self.plan_recorded_call(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let PlannedCall { command, notebook_change: change, settings_row: row, reply } = planned;
         let resolved = self.simulation.resolve(command);
-        // Statements are not run again, because the database can be ahead of this line. Documentation texts can
-        // differ between versions.
+        // Results of SQL statements are not compared, because the database can be ahead of this line. Documentation
+        // texts are not compared, because they can differ between versions.
         let is_told_again = tool.spec().kind != ToolKind::Engine || change.is_some();
         let differs = |now: Answer| {
             comparable_answer(tool.spec(), answer) != comparable_answer(tool.spec(), &now.to_json())

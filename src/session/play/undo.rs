@@ -1,7 +1,7 @@
-//! Undo and redo of this week's settings.
+//! Undo and redo of the setting changes of the current week.
 //!
-//! Both are regular calls: they restore old values with the tool that set them, and their lines name the call that
-//! they undo or redo. Calls without effect are skipped.
+//! Undo and redo are regular calls that restore values with the tool that set them. Their lines name the call that is
+//! undone or redone. Calls without effect are skipped.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use novamind_record::trajectory::record::{Reversal, Via};
 use novamind_tools::{Rejection, ToolId};
 use novamind_world::settings::Settings;
 
-/// Returns the lines of the calls that were undone. A redo has its own line.
+/// Returns the line numbers of the calls that were undone. A redo has a separate line.
 pub fn undone_call_lines(journal: &[JournalEntry]) -> BTreeSet<u64> {
     let mut undone = BTreeSet::new();
     for entry in journal {
@@ -28,7 +28,7 @@ pub fn undone_call_lines(journal: &[JournalEntry]) -> BTreeSet<u64> {
 }
 
 impl Session {
-    /// Undoes the last call of this week that changed a setting. Returns the changes.
+    /// Undoes the last call of this week that changed a setting. Returns the restored settings.
     ///
     /// # Errors
     /// `nothing_to_undo`, `cannot_undo` if no call can restore the old value, and the rejections of the call.
@@ -41,13 +41,13 @@ impl Session {
         self.restore(&step, via, Reversal::Undoes(step.seq))
     }
 
-    /// Redoes the last undone call of this week. Returns the changes.
+    /// Redoes the last undone call of this week. Returns the restored settings.
     ///
     /// # Errors
     /// `nothing_to_redo`, and the rejections of the call.
     pub fn redo(&mut self, via: Via) -> Result<Vec<SettingChange>, Rejection> {
         let Some(step) = self.history.week_actions.redo.last().cloned() else {
-            let message = "no call was undone since the last change of a setting";
+            let message = "no call was undone since the last setting change";
             return Err(Rejection::new("nothing_to_redo", message));
         };
         self.restore(&step, via, Reversal::Redoes(step.seq))

@@ -1,5 +1,5 @@
-//! The language model of a run: scores of the player's posts on the day after, rewording of posts at the end of a
-//! week, replay of its answers, and connection to a reopened run.
+//! The language model of a run: scoring the player's posts on the next day, rewording posts at the end of a week,
+//! replaying recorded responses, and connecting the model to a reopened run.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ use novamind_world::identifiers::Group;
 use novamind_world::params::PostJudge;
 
 impl Session {
-    /// Requests scores of the player's posts that are judged next and have no recorded scores. If the scores cannot
+    /// Requests scores for the player's posts that are judged next and have no recorded scores. If the scores cannot
     /// be recorded, the built-in judge is used.
     pub(super) fn score_pending_posts(&mut self) {
         let is_judged = self.simulation.params.fidelity.post_judge != PostJudge::None;
@@ -46,7 +46,7 @@ impl Session {
         Group::all().filter(|group| self.simulation.world.market.is_known(*group)).collect()
     }
 
-    /// Returns the positions of the player's posts that are not judged and have no recorded scores.
+    /// Returns the indices of the player's posts that are not judged and have no recorded scores.
     fn unscored_posts(&self) -> Vec<usize> {
         let (known, simulation) = (self.known_groups(), &self.simulation);
         let posts = simulation.world.market.social.own.iter().enumerate();
@@ -56,7 +56,7 @@ impl Session {
             .collect()
     }
 
-    /// Sets recorded scores for posts that are published again.
+    /// Sets the recorded scores for posts of another run that this run publishes again.
     pub fn set_inherited_scores(&mut self, judged: Vec<JudgedPost>) {
         self.voice.inherited_scores = judged;
     }
@@ -116,7 +116,7 @@ impl Session {
         })));
     }
 
-    /// Requests other words for the newest posts after a day. Without a usable answer, the posts keep their texts.
+    /// Requests new texts for the newest posts after a day. If the response is not usable, the posts keep their texts.
     pub(super) fn reword_posts_after(&mut self, day: u32) {
         let Some(speaker) = self.voice.client.as_mut().filter(|speaker| speaker.settings.words) else {
             return;
@@ -156,10 +156,10 @@ impl Session {
             .send(|| ProjectionEntry { rewordings: rewordings(), ..ProjectionEntry::default() });
     }
 
-    /// Applies a `voice` line.
+    /// Applies a `voice` line during a replay.
     ///
     /// # Errors
-    /// The line is not possible: the run has no language model for it, or no model could have produced it.
+    /// The line is not valid: the run has no language model, or its model cannot have produced the line.
     pub(crate) fn replay_voice(&mut self, voice_answer: &VoiceAnswer) -> Result<(), String> {
         let Some(model) = &self.manifest.voice else {
             return Err("the run has no language model: the line was inserted".to_owned());
@@ -169,7 +169,7 @@ impl Session {
                 let fits =
                     model.judge && judged.scores.iter().all(|score: &ModelScore| score.check().is_ok());
                 if !fits {
-                    return Err("the language model of this run cannot have given these scores".to_owned());
+                    return Err("the language model of this run cannot have returned these scores".to_owned());
                 }
                 self.simulation.recorded_scores.add(judged.clone());
             }
@@ -181,7 +181,7 @@ impl Session {
                     is_there(worded_post.post) && wording::check(&worded_post.text).is_ok()
                 });
                 if !(model.words && fits) {
-                    return Err("the language model of this run cannot have written these texts".to_owned());
+                    return Err("the language model of this run cannot have returned these texts".to_owned());
                 }
                 self.apply_rewordings(&worded.posts);
                 self.commit_projection();
@@ -191,17 +191,17 @@ impl Session {
         Ok(())
     }
 
-    /// Opens a run to continue it, with its language model if the configuration names it.
+    /// Opens a run for play, and connects its language model if the configuration names that model.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The same errors as [`Session::open`].
     pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
         let mut session = Session::open(folder, Access::Write, true)?;
         session.connect_model(configuration.voice.as_ref());
         Ok(session)
     }
 
-    /// Connects the language model of the run. If that fails, adds a remark, and the built-in voice is used.
+    /// Connects the language model of the run. If the connection fails, adds a remark and uses the built-in voice.
     pub fn connect_model(&mut self, named: Option<&ModelSettings>) {
         if self.history.ended.is_some() || !self.log.is_written() {
             return;
@@ -210,13 +210,14 @@ impl Session {
             (None, None) => return,
             (None, Some(_)) => {
                 self.remarks.push(
-                    "This run started with the built-in voice and keeps it: --voice is ignored.".to_owned(),
+                    "This run started with the built-in voice and continues to use it: --voice is ignored."
+                        .to_owned(),
                 );
                 return;
             }
-            (Some(_), None) => "to use it, name its file with --voice".to_owned(),
+            (Some(_), None) => "to use this model, name its settings file with --voice".to_owned(),
             (Some(model), Some(named)) if named.stamp() != *model => {
-                format!("--voice names another model: {}", named.stamp().describe())
+                format!("--voice names a different model: {}", named.stamp().describe())
             }
             (Some(_), Some(named)) => match ModelClient::new(named) {
                 Ok(speaker) => {
@@ -228,7 +229,7 @@ impl Session {
         };
         let model = self.manifest.voice.as_ref().map(|model| model.describe()).unwrap_or_default();
         self.remarks.push(format!(
-            "In this run {model}; from now on the built-in voice does ({problem}). Existing texts and scores are kept."
+            "In this run, {model}. From now on, the built-in voice is used ({problem}). Existing texts and scores are kept."
         ));
     }
 

@@ -1,4 +1,4 @@
-//! Tests of a language model that works, is late, fails or is missing: record, replay and remarks.
+//! Tests of record, replay and remarks with a language model that works, is late, fails or is missing.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -45,13 +45,13 @@ fn publish_post(session: &mut Session) {
     session.call("post_social_media", &json!({ "content": POST }), Via::Script).expect("a post");
 }
 
-/// Simulates a week. Returns the remark.
+/// Simulates a week and returns the remark of its report.
 fn advance_week(session: &mut Session) -> Option<String> {
     let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").remark
 }
 
-/// Simulates three weeks, with a post before the second.
+/// Simulates three weeks and publishes a post before the second week.
 fn play_three_weeks(runs: &Path, configuration: &Configuration) -> (Session, Vec<Option<String>>) {
     let mut session = start_company(runs, configuration);
     let mut texts = vec![advance_week(&mut session)];
@@ -180,7 +180,7 @@ fn failing_model_changes_nothing_and_is_reported_once() {
         assert!(is_of(ModelTask::Scores) && is_of(ModelTask::Words), "{failed:?}");
         verify(&run_folder(&session)).expect("it replays");
     }
-    // The server is gone.
+    // The stub server is no longer running.
     let configuration = StubModel::start(StubBehavior::Correct).configuration(true, true, 1);
     let (session, weekly_notices) = play_three_weeks(runs.path(), &configuration);
     assert_eq!(session.state_hash(), plain.state_hash());
@@ -238,7 +238,7 @@ fn missing_key_prevents_the_run_and_other_model_is_rejected() {
     let folder = run_folder(&start_company(runs.path(), &stub.configuration(false, true, 30)));
     let mut session = Session::open_to_play(&folder, &stub.configuration(true, true, 30)).expect("it opens");
     assert!(
-        session.remarks().iter().any(|remark| remark.contains("names another")),
+        session.remarks().iter().any(|remark| remark.contains("names a different model")),
         "{:?}",
         session.remarks()
     );

@@ -1,7 +1,7 @@
-//! Playback of a recorded run: its company at any position, read-only, with the decisions made there.
+//! Read-only playback of a recorded run: the company at any position, and the decisions at that position.
 //!
-//! Lines of the trajectory are applied to a separate session with a database in memory; nothing on disk changes.
-//! Seeking forward applies more lines, seeking back starts a new session.
+//! Lines of the trajectory are applied to a separate session with a database in memory. Files on the disk do not
+//! change. Seeking forward applies more lines; seeking back starts a new session.
 
 pub(crate) mod position;
 pub(crate) mod record_view;
@@ -23,17 +23,17 @@ use novamind_tools::Rejection;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct WeekBoundary {
-    /// Number of lines up to it, including the end of the run if it follows directly.
+    /// Number of lines up to the boundary, including an `end` line that follows directly.
     line_count: usize,
     day: u32,
     cash: f64,
 }
 
-/// Playback of a recorded run.
+/// Read-only playback of a recorded run.
 pub struct Playback {
     origin: Origin,
     trajectory: Trajectory,
-    /// Number of lines that can be applied: all, unless one does not reproduce.
+    /// Number of lines that can be applied: all lines before a line that does not reproduce.
     valid_lines: usize,
     boundaries: Vec<WeekBoundary>,
     session: Session,
@@ -42,10 +42,10 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// Opens the run in a folder, or a trajectory file, at its start.
+    /// Opens the run in a folder, or a trajectory file, and starts the playback at the first line.
     ///
     /// # Errors
-    /// The run is missing, damaged or of another version. The error names the file and what is safe.
+    /// The run is missing, damaged or recorded with another version. The error names the file and the data that is safe.
     pub fn open(path: &Path) -> Result<Playback, RunError> {
         let (origin, trajectory) = read_origin(path)?;
         let session = origin.initial_session()?;
@@ -64,12 +64,12 @@ impl Playback {
         Ok(playback)
     }
 
-    /// Returns the lines that can be applied, including the first.
+    /// Returns the lines that can be applied, including the first line.
     pub fn lines(&self) -> &[Line] {
         &self.trajectory.lines[..self.valid_lines]
     }
 
-    /// Starts to wait for new lines.
+    /// Starts waiting for new lines, unless the run has ended.
     pub fn start_following(&mut self) {
         self.is_following = !self.has_end_record();
     }
@@ -79,20 +79,20 @@ impl Playback {
         self.is_following
     }
 
-    /// Returns the session at this position; it is read-only.
+    /// Returns the read-only session at the current position.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// Returns the session mutably, for queries.
+    /// Returns a mutable reference to the session, for queries.
     pub fn session_mut(&mut self) -> &mut Session {
         &mut self.session
     }
 
-    /// Seeks a target. Seeking back uses a new session, so that it can be stopped without an effect.
+    /// Moves the playback to a target. Seeking back uses a new session, so that the seek can be stopped without an effect.
     ///
     /// # Errors
-    /// A line does not reproduce the recorded state. The playback then ends before this line.
+    /// A line does not reproduce the recorded state. After such an error, the playback ends before this line.
     pub fn seek(
         &mut self,
         goal: SeekTarget,
@@ -106,7 +106,7 @@ impl Playback {
             self.seek_forward(line, progress)
         };
         if went.is_err() && self.valid_lines < before {
-            // The session has applied the invalid line: restore the state before it with a new session.
+            // The session has applied the invalid line: restore the previous state with a new session.
             self.seek_back(self.boundary_before(self.valid_lines), &mut |_| ControlFlow::Continue(()))?;
         }
         went
@@ -137,7 +137,7 @@ impl Playback {
         self.boundaries.iter().rfind(|stop| stop.line_count <= line).map_or(1, |stop| stop.line_count)
     }
 
-    /// Applies further lines. If stopped, keeps the lines applied so far.
+    /// Applies further lines. If the seek is stopped, keeps the lines that are applied already.
     fn seek_forward(
         &mut self,
         line: usize,
@@ -165,7 +165,7 @@ impl Playback {
         Ok(SeekResult::ReachedInNewSession)
     }
 
-    /// Returns a session before any target line, and the number of lines that it includes.
+    /// Returns a session before the first line, and the number of lines that it includes.
     fn initial_session(&self) -> Result<(Session, usize), RunError> {
         self.origin.initial_session().map(|session| (session, 0))
     }
@@ -184,7 +184,7 @@ impl Playback {
         }
     }
 
-    /// Reads lines that were written since. Returns whether there are any.
+    /// Reads lines that were written since the last poll. Returns whether there are new lines.
     ///
     /// # Errors
     /// The file cannot be read, or its new lines are damaged.
@@ -215,7 +215,7 @@ impl Playback {
         Ok(self.valid_lines > before)
     }
 
-    /// Returns whether the playback is after the last line.
+    /// Returns whether all valid lines are applied.
     pub fn is_at_end(&self) -> bool {
         self.applied == self.valid_lines
     }
@@ -224,7 +224,8 @@ impl Playback {
         self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
     }
 
-    /// Returns whether hidden state of the recorded run may be shown. The end of the record counts, not the position.
+    /// Returns whether hidden state of the recorded run may be shown. This depends on whether the recorded run has
+    /// ended, not on the position.
     pub fn can_inspect(&self) -> bool {
         let Origin { manifest, folder, .. } = &self.origin;
         let is_over = || self.has_end_record() && is_lesson_over(folder.as_deref(), manifest);
@@ -243,7 +244,7 @@ impl Playback {
                         cash: closing.cash,
                     });
                 }
-                // The last days and the end of the run are one position.
+                // The end of the last days and the end of the run are one position.
                 Record::End(_) => {
                     if let Some(stop) = self.boundaries.last_mut().filter(|stop| stop.line_count + 1 == after)
                     {
@@ -255,7 +256,7 @@ impl Playback {
         }
     }
 
-    /// Returns the position and the decisions made there.
+    /// Returns the current position and the decisions at this position.
     pub fn position(&self) -> PlaybackPosition {
         let recorded_day = self.boundaries.last().map_or(0, |stop| stop.day);
         PlaybackPosition {
@@ -272,7 +273,7 @@ impl Playback {
         }
     }
 
-    /// Returns the decisions before the next week, or before the last one at the end.
+    /// Returns the decisions before the next week. At the end of the run, returns the decisions before the last week.
     fn chapter(&self) -> Chapter {
         let last = self.trajectory.lines.len();
         let at_end =
@@ -292,7 +293,7 @@ impl Playback {
         }
     }
 
-    /// Returns cash on a day, including later days if they are recorded.
+    /// Returns the cash on a day. For days after the current position, returns the recorded cash, if any.
     fn cash_on(&self, day: u32) -> Option<f64> {
         if day <= self.session.day() {
             return self.session.cash_by_day().get(day as usize).copied();
@@ -300,7 +301,7 @@ impl Playback {
         self.boundaries.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }
 
-    /// Returns the notes at this position. Lines of format 1 do not contain them, so only the last notes are known.
+    /// Returns the notes at this position. Lines of format 1 do not contain notes, so only the last notes of the run are known.
     pub fn notes(&self) -> Option<String> {
         let lines = self.trajectory.lines[..self.applied].iter().rev();
         let kept = lines.map(|line| &line.record).find(|record| record.notes_digest().is_some())?;
@@ -323,18 +324,19 @@ impl Playback {
         })
     }
 
-    /// Creates a branch with all lines up to this position and opens it.
+    /// Creates a branch with all lines up to this position and opens the branch.
     ///
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run or a baseline branch, `not_possible`, `run_over`, `not_saved`.
+    /// `not_in_this_mode` for an unfinished baseline run or a baseline branch. Otherwise `not_possible`, `run_over` or
+    /// `not_saved`.
     pub fn create_branch(&self, mode: Mode) -> Result<Session, Rejection> {
         let folder = match (self.branch_rejection(), &self.origin.folder) {
             (None, Some(folder)) => folder,
             (refusal, _) => return Err(refusal.unwrap_or_else(standalone_rejection)),
         };
-        // An abandoned run can be continued in a branch; a run that reached its end cannot.
+        // A branch can continue an abandoned run, but not a run that has reached its end.
         if self.session.ended().is_some() && self.session.ended() != Some(RunEndReason::Abandoned) {
-            let message = "the run has ended at this position: go back to a week first";
+            let message = "the run has ended at this position: go back to an earlier week first";
             return Err(Rejection::new("run_over", message));
         }
         crate::resume::branch::create_branch(folder, &self.origin.manifest, &self.shared_lines(), mode)
@@ -358,7 +360,7 @@ fn standalone_rejection() -> Rejection {
     Rejection::new("not_possible", message)
 }
 
-/// Applies lines after the first `applied`. Returns the number of applied lines, and how it ended.
+/// Applies lines after the first `applied` lines. Returns the number of applied lines, and whether all lines were applied.
 fn apply_lines(
     session: &mut Session,
     path: &Path,

@@ -5,26 +5,26 @@ use super::record_view::RecordView;
 /// The target of a seek.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SeekTarget {
-    /// Before the first action.
+    /// The start of the run, before the first action.
     First,
-    /// After the last line.
+    /// The position after the last line.
     Last,
-    /// This number of weeks forward, or back if negative. Single steps of debug runs count as weeks.
+    /// The position this number of weeks ahead, or back if negative. Single days of debug runs count as weeks.
     Weeks(i32),
-    /// This number of lines forward, or back if negative.
+    /// The position this number of lines ahead, or back if negative.
     Lines(i32),
-    /// The end of a week, by number; 0 is the start.
+    /// The end of the week with this number; 0 is the start of the run.
     Week(u32),
 }
 
 /// The result of a seek.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SeekResult {
-    /// The target was reached.
+    /// The target was reached in the same session.
     Reached,
-    /// The target was reached with a new session; connections to the old database are stale.
+    /// The target was reached with a new session. Connections to the old database are stale.
     ReachedInNewSession,
-    /// The seek was stopped. Forward, the reached position is kept; back, the old position is kept.
+    /// The seek was stopped. A forward seek keeps the reached position; a backward seek keeps the old position.
     Stopped,
 }
 
@@ -33,11 +33,11 @@ pub enum SeekResult {
 pub struct PlaybackPosition {
     /// Number of applied lines.
     pub line: usize,
-    /// Number of lines.
+    /// Number of lines that can be applied.
     pub lines: usize,
-    /// Day of the run.
+    /// Day of the run at the position.
     pub day: u32,
-    /// Number of weeks that have passed.
+    /// Number of the current week.
     pub week: u32,
     /// Last recorded day.
     pub recorded_day: u32,
@@ -45,23 +45,23 @@ pub struct PlaybackPosition {
     pub weeks: u32,
     /// Whether the playback waits for new lines of a running session.
     pub is_following: bool,
-    /// Whether the playback is after the last line.
+    /// Whether all valid lines are applied.
     pub is_at_end: bool,
-    /// Decisions before the next week, or before the last one at the end.
+    /// Decisions before the next week, or before the last week at the end of the run.
     pub chapter: Chapter,
-    /// Reason why the run cannot be branched here.
+    /// Reason why the run cannot be branched at this position, if so.
     pub branch_rejection: Option<String>,
 }
 
-/// Decisions before a week.
+/// The recorded lines of a week: decisions, and the simulation of the week.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Chapter {
-    /// Number of the week, from 1.
+    /// Number of the week that the lines belong to, from 1.
     pub week: u32,
-    /// Decision day.
+    /// Decision day before the week.
     pub day: u32,
-    /// Lines up to the end of the week, in order.
+    /// Recorded lines up to the end of the week, in order.
     pub entries: Vec<RecordView>,
-    /// Number of these lines that are applied.
+    /// Number of lines of the chapter that are applied.
     pub applied_entries: usize,
 }

@@ -4,20 +4,20 @@ use crate::figures::scored_forecast::ScoredForecast;
 use novamind_record::trajectory::{Line, Record};
 use novamind_tools::Forecast;
 
-/// A line with the outcomes of its forecasts.
+/// A recorded line with the outcomes of its forecasts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordView {
     /// Number of the line.
     pub seq: u64,
-    /// Day of the run.
+    /// Day on which the line was written.
     pub day: u32,
-    /// Time of writing, RFC 3339.
+    /// Time at which the line was written, RFC 3339.
     pub at: String,
-    /// The record.
+    /// Event that the line records.
     pub record: Record,
-    /// Its forecasts, with outcomes from the complete record, including later ones.
+    /// Forecasts in the line, with outcomes from the complete record, including later outcomes.
     pub forecasts: Vec<ScoredForecast>,
-    /// Current day of the playback; later outcomes were not known on this day.
+    /// Current day of the playback. Outcomes after this day were not known to the player.
     pub today: u32,
 }
 

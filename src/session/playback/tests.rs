@@ -1,4 +1,4 @@
-//! Tests of playback: every seek reaches the recorded state, and nothing on disk changes.
+//! Tests of playback: every seek reaches the recorded state, and files on the disk do not change.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub(crate) struct RecordedRun {
     pub id: String,
 }
 
-/// Records a run with calls, a rejection, a query, notes and a view of a screen, and closes it.
+/// Records and closes a run with calls, a rejection, a query, notes and a screen view.
 pub(crate) fn record_run(mode: Mode, weeks: u32) -> RecordedRun {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_weeks(runs.path(), mode, weeks);
@@ -285,7 +285,7 @@ fn playback_follows_a_running_session() {
 fn playback_stops_before_a_state_that_does_not_reproduce() {
     let run = record_run(Mode::Sandbox, 4);
     let path = run.folder.join("trajectory.jsonl");
-    // Creates a valid hash chain with a changed call.
+    // Write a trajectory with a changed call and a valid hash chain.
     let read = Trajectory::read(&path).expect("a trajectory");
     let mut lines = read.lines.clone();
     let last_call = lines.iter_mut().rev().find_map(|line| match &mut line.record {

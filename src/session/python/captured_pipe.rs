@@ -1,4 +1,4 @@
-//! Captured output of a process: reads everything, keeps the start and the end.
+//! Captured output of a process. All bytes are read, but only the start and the end of the output are kept.
 
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read};
@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Bytes kept from the start: 5,000 characters of at most 4 bytes.
+/// Number of bytes that are kept from the start of the output: 5,000 characters of at most 4 bytes.
 const MAX_FIRST_BYTES: usize = 4 * 5000;
-/// Bytes kept from the end: 2,000 characters of at most 4 bytes.
+/// Number of bytes that are kept from the end of the output: 2,000 characters of at most 4 bytes.
 const MAX_LAST_BYTES: usize = 4 * 2000;
 
 #[derive(Debug, Default)]
@@ -36,7 +36,7 @@ pub(super) struct CapturedPipe {
 }
 
 impl CapturedPipe {
-    /// Starts to read.
+    /// Starts a thread that reads the pipe.
     ///
     /// # Errors
     /// The system cannot create a thread.
@@ -46,18 +46,18 @@ impl CapturedPipe {
         let capture_buffer = Arc::clone(&kept);
         thread::Builder::new().name("script output".to_owned()).spawn(move || {
             read_to_end(pipe, &capture_buffer);
-            // Fails if the script was terminated and nothing waits for its output.
+            // The send fails if the script was terminated and no thread waits for its output.
             let _ = tell.send(());
         })?;
         Ok(CapturedPipe { buffer: kept, end })
     }
 
-    /// Waits for the end of the pipe. Returns whether it came in time.
+    /// Waits until the pipe is closed, at most `time`. Returns whether the pipe was closed in time.
     pub fn closes_within(&self, time: Duration) -> bool {
         self.end.recv_timeout(time) != Err(RecvTimeoutError::Timeout)
     }
 
-    /// Returns the start of the output.
+    /// Returns the kept start of the output.
     pub fn first_text(&self) -> String {
         String::from_utf8_lossy(&lock_buffer(&self.buffer).first).into_owned()
     }

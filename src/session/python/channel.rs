@@ -1,5 +1,4 @@
-//! The socket between session and script: one JSON value per line, requests from the script and answers from the
-//! session.
+//! The socket between session and script. The script sends requests and the session sends answers, one JSON value per line.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;
@@ -13,16 +12,16 @@ use serde_json::Value;
 use super::ScriptRequest;
 
 const MAX_REQUEST_BYTES: usize = 1 << 20;
-/// Time between two attempts to write to a full socket.
+/// Time between two attempts to write to a socket whose buffer is full.
 const WRITE_RETRY_INTERVAL: Duration = Duration::from_millis(2);
 
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum ChannelEvent {
-    /// A request; `None` if the line is not valid.
+    /// A request line was received; `None` if the line is not valid.
     Request(Option<ScriptRequest>),
-    /// No complete line yet.
+    /// No complete line has been received yet.
     Idle,
-    /// The other end is closed.
+    /// The other end of the socket is closed.
     Closed,
 }
 
@@ -33,7 +32,7 @@ pub(super) struct Channel {
 }
 
 impl Channel {
-    /// Creates a channel, and the end for the process.
+    /// Creates a channel, and the end of the socket for the script's process.
     ///
     /// # Errors
     /// The system cannot create a socket.
@@ -42,7 +41,7 @@ impl Channel {
         Ok((Channel { socket, partial_line: Vec::new() }, OwnedFd::from(other)))
     }
 
-    /// Waits for a request, at most `time`.
+    /// Waits for a request from the script, at most `time`.
     pub fn receive(&mut self, time: Duration) -> ChannelEvent {
         if let Some(request) = self.take_line() {
             return ChannelEvent::Request(request);
@@ -72,14 +71,14 @@ impl Channel {
         Some(serde_json::from_slice(&line).ok())
     }
 
-    /// Sends a line. Calls `is_over` before each attempt to write, so that a slow reader cannot delay the end. After
-    /// an error nothing more can be sent.
+    /// Sends a message as a line. Calls `is_over` before each attempt to write, so that a slow reader cannot delay the
+    /// timeout. After an error, the channel cannot send more messages.
     ///
     /// # Errors
-    /// The other end is closed, or `TimedOut` if `is_over` returned true before everything was sent.
+    /// The other end of the socket is closed. `TimedOut` if `is_over` returned true before the whole line was sent.
     pub fn send_line(&mut self, message: &Value, is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
         let line = format!("{message}\n");
-        // The timeout of a blocking socket restarts after every partial write.
+        // Use a nonblocking socket, because the timeout of a blocking socket restarts after every partial write.
         self.socket.set_nonblocking(true)?;
         let sent = self.write_until(line.as_bytes(), is_over);
         self.socket.set_nonblocking(false)?;
@@ -103,12 +102,12 @@ impl Channel {
 
     /// Closes the socket, so that the script does not wait for an answer.
     pub fn close(&self) {
-        // The other end may have closed it already.
+        // Ignore the error: the other end may have closed the socket already.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
 }
 
-/// A socket timeout of zero would wait forever.
+/// Returns a timeout of at least 1 ms, because a zero socket timeout is not allowed.
 fn nonzero_timeout(time: Duration) -> Duration {
     time.max(Duration::from_millis(1))
 }

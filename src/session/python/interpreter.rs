@@ -1,4 +1,4 @@
-//! The Python interpreter of scripts.
+//! The Python interpreter that executes scripts.
 
 use std::ffi::OsString;
 use std::io::{Error, ErrorKind};
@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use novamind_record::mode::Mode;
 
-/// Locations of Python for baseline runs, in this order. On macOS `/usr/bin/python3` may be a stub that opens an
-/// installer.
+/// Locations of Python for baseline runs, in search order. `/usr/bin/python3` is omitted because it may be a stub that
+/// opens an installer.
 #[cfg(target_os = "macos")]
 const SYSTEM_PYTHONS: [&str; 5] = [
     "/Library/Developer/CommandLineTools/usr/bin/python3",
@@ -16,18 +16,19 @@ const SYSTEM_PYTHONS: [&str; 5] = [
     "/usr/local/bin/python3",
     "/opt/local/bin/python3",
 ];
-/// Locations of Python for baseline runs, in this order.
+/// Locations of Python for baseline runs, in search order.
 #[cfg(not(target_os = "macos"))]
 const SYSTEM_PYTHONS: [&str; 4] =
     ["/usr/bin/python3", "/usr/local/bin/python3", "/run/current-system/sw/bin/python3", "/opt/bin/python3"];
-/// The search path of scripts in baseline runs.
+/// Value of `PATH` for scripts in baseline runs.
 const SYSTEM_PATH: &str = "/usr/bin:/bin";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Interpreter {
-    /// The first on `PATH`.
+    /// The first `python3` on `PATH`.
     FromPath,
-    /// The first of a fixed list of absolute paths, so that a participant cannot choose it through `PATH`.
+    /// The first existing file in a fixed list of absolute paths, so that a participant cannot change the interpreter
+    /// through `PATH`.
     System,
 }
 
@@ -37,7 +38,7 @@ impl Interpreter {
         if mode == Mode::Baseline { Interpreter::System } else { Interpreter::FromPath }
     }
 
-    /// Returns the program to start and its `PATH`, given the `PATH` of this process.
+    /// Returns the program to start and the `PATH` for its process. `path` is the `PATH` of the current process.
     ///
     /// # Errors
     /// None of the fixed paths exists.
@@ -51,11 +52,11 @@ impl Interpreter {
             .ok_or_else(|| Error::from(ErrorKind::NotFound))
     }
 
-    /// Returns the message for a player if this Python does not exist.
+    /// Returns the message for the player if the interpreter does not exist.
     pub fn missing_message(self) -> String {
         match self {
             Interpreter::FromPath => {
-                "python3 is not on the path of this machine: install Python 3.8 or newer, or write SQL \
+                "python3 is not on the PATH of this machine: install Python 3.8 or newer, or write SQL \
                                     statements instead"
                     .to_owned()
             }

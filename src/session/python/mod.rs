@@ -1,9 +1,9 @@
-//! Scripts in Python: separate processes that query the session and change nothing
+//! Python scripts: separate processes that query the session and do not change the run
 //! (docs/interfaces/tools.md#scripts-in-python).
 //!
 //! The process receives its code and the answers to its requests over a socket, as lines of JSON. The session waits
-//! for the process and answers, without a server or another thread. The output of a script is recorded with the call
-//! or the week, so reading a record starts no process.
+//! for the process and answers its requests on the same thread. The output of a script is recorded with the call or
+//! the week, so a replay does not start a process.
 
 #[cfg(unix)]
 mod captured_pipe;
@@ -25,7 +25,7 @@ use serde_json::Value;
 
 use novamind_tools::Rejection;
 
-/// A request of a script.
+/// A request that a script sends to the session.
 #[derive(Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(not(unix), allow(dead_code))]
 #[serde(tag = "ask", rename_all = "lowercase")]
@@ -33,12 +33,11 @@ pub(crate) enum ScriptRequest {
     Query {
         sql: String,
     },
-    /// The state of the run.
+    /// Request for the variables that describe the run.
     Vars,
 }
 
-/// The host of a script: whether the player has stopped it, and the answers to its requests within the remaining
-/// time.
+/// The host of a script. It reports whether the player has stopped the script, and answers requests within the remaining time.
 pub(crate) struct ScriptHost<'a> {
     pub(crate) is_stopped: &'a dyn Fn() -> bool,
     pub(crate) answer: &'a mut dyn FnMut(ScriptRequest, Duration) -> Result<Value, Rejection>,
@@ -47,9 +46,9 @@ pub(crate) struct ScriptHost<'a> {
 /// The output of a script.
 #[derive(Debug, Default)]
 pub(crate) struct RawScriptOutput {
-    /// Results as tables, or printed text.
+    /// Query results as tables, or the text that the script printed.
     pub results: String,
-    /// Warnings and hints.
+    /// Warnings and hints about the results.
     pub remarks: String,
 }
 
@@ -57,14 +56,13 @@ pub(crate) fn script_failed(message: impl Into<String>) -> Rejection {
     Rejection::for_field("code", "script_failed", message)
 }
 
-/// Message if Python is not allowed.
-pub const PYTHON_DISABLED_MESSAGE: &str =
-    "Python is not run for policies or for decisions that were made elsewhere";
+/// Rejection message if Python is not allowed.
+pub const PYTHON_DISABLED_MESSAGE: &str = "Python is not run for policies or for repeated decisions";
 
-/// Rejects Python unless a player makes the call: records, policies and lessons must not start programs.
+/// Rejects Python unless a player executes the call: replays, policies and lessons must not start programs.
 ///
 /// # Errors
-/// `script_failed`.
+/// The rejection `script_failed`.
 pub(crate) fn require_player(is_played: bool) -> Result<(), Rejection> {
     match is_played {
         true => Ok(()),
@@ -74,7 +72,7 @@ pub(crate) fn require_player(is_played: bool) -> Result<(), Rejection> {
 
 #[cfg(not(unix))]
 pub(crate) mod run {
-    //! Stand-in for systems on which a process cannot be limited.
+    //! Placeholder for systems on which the resources of a process cannot be limited.
 
     use std::time::Duration;
 

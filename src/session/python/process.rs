@@ -1,5 +1,5 @@
-//! The process of a script: started in a clean environment, served while it runs, terminated with its child
-//! processes.
+//! The process of a script. It is started in a clean environment, its requests are answered, and it is terminated
+//! together with its child processes.
 
 use std::ffi::OsString;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -18,22 +18,22 @@ use super::script_folder::ScriptFolder;
 /// Python code that runs before the script.
 const BOOTSTRAP: &str = include_str!("../../../assets/scripts/python.py");
 const MAX_MEMORY_BYTES: u64 = 1 << 30;
-/// Time between two checks of clock and process.
+/// Time between two checks of the deadline and the process.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Time between two checks of a process that has closed its socket.
 const EXIT_POLL_INTERVAL: Duration = Duration::from_millis(2);
 /// Time that an ended process may take to close its pipes.
 const PIPE_CLOSE_TIMEOUT: Duration = Duration::from_millis(500);
-/// Number of the signal SIGXCPU (processor time limit), on every system with python3.
+/// Number of the signal SIGXCPU (processor time limit exceeded) on all supported systems.
 const SIGXCPU: i32 = 24;
 
 #[derive(Debug)]
 pub(super) enum ScriptEnd {
-    /// It exited, or was ended by a signal.
+    /// The process exited or was terminated by a signal.
     Ended(ExitStatus),
-    /// It reached its time limit.
+    /// The process reached its time limit.
     TimedOut,
-    /// The player stopped it.
+    /// The player stopped the script.
     Stopped,
 }
 
@@ -62,11 +62,11 @@ impl ScriptProcess {
         let (program, path) = interpreter.program(path)?;
         let mut command = Command::new(program);
         command.args(["-I", "-B", "-X", "utf8", "-c", BOOTSTRAP]).current_dir(folder.path());
-        // The process cannot start threads, so numerical libraries must not use them.
+        // The process cannot start threads, so numerical libraries must use one thread.
         command.env_clear().env("PATH", path).envs([("OPENBLAS_NUM_THREADS", "1"), ("OMP_NUM_THREADS", "1")]);
         command.stdin(other).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
         let mut process = command.spawn()?;
-        // Closes the child's end of the socket here, so that its exit can be detected.
+        // Close the child's end of the socket in this process, so that the exit of the child can be detected.
         drop(command);
         let pipes = (process.stdout.take(), process.stderr.take());
         let (Some(stdout), Some(stderr)) = pipes else { unreachable!("both pipes were requested") };
@@ -91,7 +91,7 @@ impl ScriptProcess {
         })
     }
 
-    /// Returns the remaining time.
+    /// Returns the time until the deadline of the script.
     pub fn time_left(&self) -> Duration {
         self.deadline.saturating_duration_since(Instant::now())
     }
@@ -102,7 +102,7 @@ impl ScriptProcess {
         is_stopped: &dyn Fn() -> bool,
         answer: &mut dyn FnMut(Option<ScriptRequest>, Duration) -> Value,
     ) -> ScriptEnd {
-        // If the process does not read its code, its own error is reported.
+        // Ignore the error: if the process does not read its code, the error of the process is reported.
         let given = self.setup_message.take();
         let _ = self.send_line(&given, is_stopped);
         let mut is_heard = true;
@@ -136,7 +136,7 @@ impl ScriptProcess {
         }
     }
 
-    /// Sends a line until the time is over, the script is stopped or its process has ended.
+    /// Sends a line. Gives up if the deadline has passed, the script is stopped or its process has ended.
     fn send_line(&mut self, message: &Value, is_stopped: &dyn Fn() -> bool) -> std::io::Result<()> {
         let Self { process, channel, deadline, .. } = self;
         channel.send_line(message, &mut || {
@@ -169,12 +169,12 @@ impl ScriptProcess {
         self.stdout.closes_within(left()) && self.stderr.closes_within(left())
     }
 
-    /// Kills the process group, whose number is the process id.
+    /// Kills the process group, whose id equals the process id.
     fn kill_group(&self) {
         let command = format!("kill -s KILL -- -{}", self.process.id());
         let mut shell = Command::new("/bin/sh");
         shell.args(["-c", &command]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        // The group may have ended already.
+        // Ignore the error: all processes of the group may have ended already.
         let _ = shell.status();
     }
 }
@@ -193,7 +193,7 @@ mod tests {
 
     use super::*;
 
-    /// Finds the socket to the program and sends one request.
+    /// Python code that finds the socket to the program and sends one request.
     const ASK_ONCE_CODE: &str = r#"
 import os, stat, time
 def is_socket(number):
@@ -205,7 +205,7 @@ socket = next(number for number in range(3, 64) if is_socket(number))
 os.write(socket, b'{"ask":"vars"}\n')
 "#;
 
-    /// Serves a script that sends one request, with an answer larger than the socket buffer.
+    /// Serves a script that sends one request. The answer is larger than the socket buffer.
     fn serve_script(code: &str, time: Duration, stop_after_asking: bool) -> (ScriptEnd, ScriptProcess) {
         let mut process =
             ScriptProcess::start(&format!("{ASK_ONCE_CODE}{code}"), Interpreter::FromPath, time)
@@ -221,7 +221,7 @@ os.write(socket, b'{"ask":"vars"}\n')
 
     #[test]
     fn slow_reader_is_terminated_at_the_deadline() {
-        // Reading everything would take 8 MiB / 64 KiB * 0.2 s = 25 s.
+        // Reading the whole answer would take 8 MiB / 64 KiB * 0.2 s = 25 s.
         let code =
             "while True:\n    os.read(socket, 1 << 16)\n    print('x', flush=True)\n    time.sleep(0.2)";
         let (end, process) = serve_script(code, Duration::from_secs(3), false);

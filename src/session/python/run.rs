@@ -1,4 +1,4 @@
-//! Running a script in Python, and the result for the player.
+//! Execution of a Python script, and its result for the player.
 
 use std::io::ErrorKind;
 use std::os::unix::process::ExitStatusExt;
@@ -14,13 +14,13 @@ use novamind_tools::Rejection;
 
 const MAX_QUERIES: u32 = 10_000;
 const MAX_TRACEBACK_CHARACTERS: usize = 2000;
-/// Maximum length of printed output in a rejection, characters.
+/// Maximum length of printed output in a rejection, in characters.
 const MAX_PRINTED_CHARACTERS: usize = 1000;
 
-/// Runs a script in Python and returns its output.
+/// Executes a Python script and returns its output.
 ///
 /// # Errors
-/// `script_failed`, `script_timeout`.
+/// One of the rejections `script_failed`, `script_timeout`.
 pub(crate) fn run_python(
     code: &str,
     time: Duration,
@@ -68,10 +68,10 @@ fn script_result(
         ScriptEnd::Ended(status) => {
             let how = match (status.code(), status.signal()) {
                 (Some(code), _) => format!("python3 ended with code {code}"),
-                (None, signal) => format!("python3 was ended by signal {}", signal.unwrap_or_default()),
+                (None, signal) => format!("python3 was terminated by signal {}", signal.unwrap_or_default()),
             };
             let traceback = process.stderr.last_text(MAX_TRACEBACK_CHARACTERS);
-            // The error message is in the last line; it comes first for displays of one line.
+            // The last line of the traceback is the error message. Put it first for displays that show only one line.
             let what = traceback.trim_end().lines().next_back().filter(|line| !line.trim().is_empty());
             let what = what.map_or_else(|| how.clone(), |what| format!("{}; {how}", what.trim()));
             Err(script_failed(format!("{what}{}{}", paragraph("", &traceback), printed_part(process))))
@@ -80,7 +80,8 @@ fn script_result(
             let seconds =
                 novamind_base::formatting::grouped_number((10.0 * time.as_secs_f64()).round() / 10.0, 1);
             let seconds = seconds.trim_end_matches(".0");
-            let message = format!("it did not end in {seconds} s and was stopped{}", printed_part(process));
+            let message =
+                format!("the script did not end in {seconds} s and was stopped{}", printed_part(process));
             Err(Rejection::for_field("code", "script_timeout", message))
         }
         ScriptEnd::Stopped => {
@@ -91,10 +92,10 @@ fn script_result(
 }
 
 fn printed_part(process: &ScriptProcess) -> String {
-    paragraph("before that it printed:\n", &process.stdout.last_text(MAX_PRINTED_CHARACTERS))
+    paragraph("output of the script:\n", &process.stdout.last_text(MAX_PRINTED_CHARACTERS))
 }
 
-/// Returns a paragraph of a message; empty if `text` is empty.
+/// Returns a paragraph of a message, or an empty string if `text` is empty.
 fn paragraph(heading: &str, text: &str) -> String {
     match text.trim_end() {
         "" => String::new(),

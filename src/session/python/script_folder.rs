@@ -1,4 +1,4 @@
-//! The temporary working folder of a script.
+//! The temporary working folder of a Python script.
 
 use std::fs::DirBuilder;
 use std::io::ErrorKind;
@@ -10,15 +10,15 @@ use std::time::Duration;
 
 const NAME_PREFIX: &str = "novamind-script-";
 
-/// Age after which a folder was left by a killed program: no script runs as long.
+/// Age after which a script folder is stale: no script runs this long, so a killed program must have left the folder.
 const STALE_AFTER: Duration = Duration::from_secs(60 * 60);
 
-/// An empty temporary folder; removed on drop.
+/// A new temporary folder, which is removed on drop.
 #[derive(Debug)]
 pub(super) struct ScriptFolder(PathBuf);
 
 impl ScriptFolder {
-    /// Creates a folder among the temporary files.
+    /// Creates a script folder in the system's temporary folder.
     ///
     /// # Errors
     /// The folder cannot be created.
@@ -32,20 +32,20 @@ impl ScriptFolder {
             let path = place.join(format!("{NAME_PREFIX}{}-{number}", std::process::id()));
             match DirBuilder::new().mode(0o700).create(&path) {
                 Ok(()) => return Ok(ScriptFolder(path)),
-                // A killed program with the same process id left it.
+                // A killed program with the same process id left this folder; try the next number.
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
         }
     }
 
-    /// Returns its path.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 }
 
-/// Removes folders left by killed programs, as far as permissions allow.
+/// Removes script folders that killed programs left, if the permissions allow it.
 fn remove_stale_folders(place: &Path, left_behind: Duration) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let is_ours = entry.file_name().to_string_lossy().starts_with(NAME_PREFIX);
@@ -62,7 +62,7 @@ fn remove_stale_folders(place: &Path, left_behind: Duration) {
 
 impl Drop for ScriptFolder {
     fn drop(&mut self) {
-        // A remaining empty folder among temporary files does no harm.
+        // Ignore the error: a remaining temporary folder is harmless.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -9,7 +9,7 @@ use novamind_record::mode::Mode;
 use std::path::Path;
 use toml::Table;
 
-/// Opens a run with this text as `run.toml`, or without the file. Returns the remarks.
+/// Opens a run with this text as `run.toml`, or without the file. Returns the remarks of the session.
 fn open_and_read_remarks(folder: &Path, text: Option<&str>) -> String {
     let path = folder.join("run.toml");
     match text {
@@ -57,7 +57,7 @@ fn manifest_is_restored_from_the_first_line() {
         let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
         let mut expected: Table = good.parse().expect("TOML");
         if text.is_none_or(|text| !text.contains("created")) {
-            // The creation time is recorded nowhere else.
+            // Only `run.toml` contains the creation time.
             expected["created"] = restored["created"].clone();
         }
         assert_eq!(restored, expected, "{problem}");

@@ -65,7 +65,7 @@ fn failed_append_loses_no_other_line() {
             "killing the program loses nothing"
         );
         cache.fail_next_syncs(0);
-        // The next line is not synced itself, but follows a rewrite that is.
+        // The next line is not synced, but it triggers a rewrite of earlier lines that is synced.
         writer.append(1, &memo_record(1), Durability::Written).expect("a line");
         assert!(memo_lengths(&cache.bytes_after_power_cut()).iter().all(|length| *length == 1));
     }

@@ -1,4 +1,4 @@
-//! Tests of the record that need a session to write it.
+//! Tests of the record that need a session to write the record.
 
 mod derived;
 mod failed_sync;

@@ -108,7 +108,7 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
     }
     let confirmed = std::fs::read(&path).expect("bytes");
     std::fs::remove_dir_all(&folder).expect("the whole folder is gone");
-    // A simulated week cannot be reverted: its line is saved with the others.
+    // A simulated week cannot be reverted, so its line is included in the copy.
     let aside = kept(writer.append_irrevocable(9, &memo_record()).expect_err("there is no file"));
     assert_eq!(aside.parent(), Some(folder.as_path()));
     let text = writer.loss_reason().expect("it is lost").to_owned();
@@ -125,7 +125,7 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
     std::fs::create_dir(&draft).expect("in the way");
     let error = writer.append_irrevocable(9, &memo_record()).expect_err("there is no file");
     let RunError::FileReplaced { saved_copy: Err(problem), .. } = error else { panic!("{error}") };
-    assert!(problem.contains("has an earlier copy"), "{problem}");
+    assert!(problem.contains("contains an earlier copy"), "{problem}");
     assert_eq!(std::fs::read(&aside).expect("a copy"), saved);
     std::fs::remove_dir(&draft).expect("removed");
     kept(writer.append_irrevocable(9, &memo_record()).expect_err("there is no file"));
@@ -140,7 +140,7 @@ fn parse_detects_flipped_bytes_and_missing_lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let bytes = std::fs::read(write_trajectory(folder.path(), 4)).expect("bytes");
     let trajectory = Trajectory::parse(&bytes).expect("it reads");
-    // Without its line end the last line counts as unfinished.
+    // Without its line feed, the last line counts as unfinished.
     for at in 0..bytes.len() - 1 {
         let mut damaged = bytes.clone();
         damaged[at] ^= 0x04;

@@ -1,4 +1,4 @@
-//! The log of user activities other than calls: sessions, views, the clock, time limits.
+//! The log of user activities other than calls: sessions, screen views, the clock and time limits.
 
 use std::time::Duration;
 
@@ -14,20 +14,19 @@ use novamind_tools::Rejection;
 /// Rationale of a week that is submitted because its time limit was reached.
 pub const TIME_LIMIT_RATIONALE: &str = "time limit";
 
-/// Time without a key after which a user is idle, if keys are watched.
+/// Time without a key press after which a user is idle, if the interface monitors keys.
 pub const IDLE_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// The interface of a session, and its window.
+/// The interface through which a user attaches to a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Interface {
-    /// `console`, `plain` or `http`.
+    /// Name of the interface: `console`, `plain` or `http`.
     pub name: &'static str,
-    /// Columns and rows of the terminal, if there is one.
+    /// Columns and rows of the terminal, if the interface has a terminal.
     pub window: Option<(u16, u16)>,
 }
 
-/// Records activities of the user other than calls. Ignores disk errors, because these lines have no effect on the
-/// run.
+/// A log that records user activities other than calls. Disk errors are ignored, because these lines have no effect on the run.
 pub struct ActivityLog<'a> {
     log: &'a mut RunLog,
     day: u32,
@@ -39,7 +38,7 @@ impl<'a> ActivityLog<'a> {
         ActivityLog { log, day, is_over }
     }
 
-    /// Records an activity, unless the rules exclude its kind.
+    /// Records an activity, unless the session rules exclude its kind.
     pub fn record(&mut self, activity: Activity) {
         if !self.log.rules.records_activity(activity.kind()) {
             return;
@@ -58,7 +57,7 @@ impl<'a> ActivityLog<'a> {
             ..new_presence(PresenceEvent::Opened)
         };
         self.record(Activity::Session(Box::new(presence)));
-        // The clock was stopped when the program closed the run.
+        // Restart a clock that was still stopped when the program closed the run.
         self.restart_clock(ClockEvent::Forgotten);
     }
 
@@ -79,13 +78,13 @@ impl<'a> ActivityLog<'a> {
         self.record(Activity::Session(Box::new(presence)));
     }
 
-    /// Records a view and its duration.
+    /// Records a screen view and its duration.
     pub fn record_view(&mut self, screen: &str, from: &str, for_ms: u64) {
         let view = ScreenView { screen: screen.to_owned(), from: from.to_owned(), for_ms };
         self.record(Activity::View(view));
     }
 
-    /// Stops the clock: from now on, time does not count.
+    /// Stops the clock, so that time does not count until the clock is started.
     ///
     /// # Errors
     /// `clock_stands`, and `reason_needed` if the rules require a reason and none is given.
@@ -102,12 +101,13 @@ impl<'a> ActivityLog<'a> {
         Ok(())
     }
 
-    /// Starts the clock again. Returns the seconds that it was stopped.
+    /// Restarts the clock. Returns the seconds for which the clock was stopped.
     ///
     /// # Errors
-    /// `clock_runs`.
+    /// The rejection `clock_runs`.
     pub fn start_clock(&mut self) -> Result<f64, Rejection> {
-        self.restart_clock(ClockEvent::Started).ok_or_else(|| Rejection::new("clock_runs", "the clock runs"))
+        self.restart_clock(ClockEvent::Started)
+            .ok_or_else(|| Rejection::new("clock_runs", "the clock is running already"))
     }
 
     fn restart_clock(&mut self, event: ClockEvent) -> Option<f64> {
@@ -120,12 +120,12 @@ impl<'a> ActivityLog<'a> {
         let event = clock.event;
         let stopped = (event == ClockEvent::Stopped).then(|| parse_seconds(&now()));
         self.record(Activity::Clock(clock));
-        // Set even if the rules exclude clock lines from the record, because the screen is covered in any case.
+        // Set this even if the rules exclude clock lines from the record, because the screen is covered in any case.
         self.log.clock.stopped_at = stopped;
         self.log.clock.is_stopped_by_limit &= event != ClockEvent::Started;
     }
 
-    /// Returns limits that are near or reached and not reported yet. Records each once.
+    /// Returns the time limits that are near or reached and not reported yet. Records each limit event once.
     pub fn check_limits(&mut self) -> Vec<Limit> {
         if self.is_over || self.log.is_clock_stopped() {
             return Vec::new();
@@ -136,7 +136,7 @@ impl<'a> ActivityLog<'a> {
             let used_ms = ((f64::from(left.minutes) * 60.0 - left.seconds) * 1e3) as u64;
             let limit = Limit { limit: left.scope, event, minutes: left.minutes, used_ms };
             self.record(Activity::Limit(limit.clone()));
-            // Set even if the rules exclude limit lines from the record.
+            // Set this even if the rules exclude limit lines from the record.
             self.log.clock.reported_limits.insert((limit.limit, event != LimitEvent::Warned));
             self.log.clock.is_stopped_by_limit |= event == LimitEvent::Paused;
             limits.push(limit);

@@ -1,11 +1,11 @@
-//! Identifiers of new runs, and removal of unfinished folders.
+//! Ids of new runs, and removal of stale staging folders.
 
 use std::path::Path;
 
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::runs::is_staging_folder;
 
-/// Returns eight hexadecimal digits that are almost certainly unique.
+/// Returns a run id: eight hexadecimal digits that are almost certainly unique.
 pub fn new_run_id() -> String {
     static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
     let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
@@ -15,7 +15,7 @@ pub fn new_run_id() -> String {
     blake3::hash(mix.as_bytes()).to_hex()[..8].to_owned()
 }
 
-/// Removes staging folders that a stopped program left. Staging folders in use are locked.
+/// Removes staging folders that a stopped program left. Keeps staging folders in use, which are locked.
 pub(crate) fn remove_stale_staging_folders(runs: &Path) {
     let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
     for folder in entries.map(|entry| entry.path()).filter(|path| is_staging_folder(path)) {

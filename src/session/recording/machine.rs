@@ -1,20 +1,20 @@
-//! The machine of a run, and its monotonic clock.
+//! The machine on which a run is played, and its monotonic clock.
 
 use std::time::Instant;
 
 use novamind_record::clock::scripted_monotonic_time;
 
-/// The machine, as a hash: records of one machine have the same value, but do not identify it.
+/// Pseudonyms of the machine. Records from the same machine have the same values, which do not identify the machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
-    /// 16 hexadecimal digits.
+    /// Pseudonym of the machine: 16 hexadecimal digits.
     pub id: String,
-    /// Hash of the time since the machine was started.
+    /// Pseudonym of the current boot of the machine: 16 hexadecimal digits.
     pub boot: String,
 }
 
 impl Machine {
-    /// Returns this machine.
+    /// Returns the pseudonyms of this machine.
     pub fn current() -> Machine {
         let read = |path: &str| std::fs::read_to_string(path).ok().filter(|text| !text.trim().is_empty());
         let name = read("/etc/machine-id").or_else(|| read("/var/lib/dbus/machine-id"));
@@ -28,8 +28,8 @@ impl Machine {
         }
     }
 
-    /// Returns milliseconds since the machine was started, or since the program was, if the system does not provide
-    /// this.
+    /// Returns the milliseconds since the boot of the machine. If the system does not provide this time, returns the
+    /// milliseconds since the program started.
     pub fn monotonic_ms() -> u64 {
         if let Some(scripted) = scripted_monotonic_time() {
             return scripted.as_millis() as u64;

@@ -1,4 +1,4 @@
-//! The record of an open run: recorder, durability, and what it contains about the user.
+//! The record of an open run: recorder, durability, and data about the user.
 
 pub(crate) mod activity;
 pub(crate) mod folders;
@@ -19,20 +19,20 @@ use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, LimitScope};
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory};
 
-/// The record of an open run, and the state that follows from it besides the company.
+/// The record of an open run, and the state that is derived from the record, except the company.
 pub struct RunLog {
     rules: SessionRules,
     position: ProjectionPosition,
     clock: SessionClock,
     answers: AnsweredQuestions,
-    /// The last day on which each screen of the console was left, in earlier sessions.
+    /// Day on which the user last left each screen of the console in an earlier session.
     last_views: BTreeMap<String, u32>,
-    /// The recorder; `None` if the run is open read-only.
+    /// Recorder of the run; `None` if the run is open read-only.
     recorder: Option<Recorder>,
 }
 
 impl RunLog {
-    /// Creates the log of a run without lines and without a recorder.
+    /// Creates an empty log without a recorder, for a run that is not written.
     pub(crate) fn read_only(rules: SessionRules) -> RunLog {
         RunLog {
             rules,
@@ -52,29 +52,30 @@ impl RunLog {
         self.recorder = Some(recorder);
     }
 
-    /// Reads clock, screens and answers from the lines of the run.
+    /// Reads the clock, the viewed screens and the answers from the lines of the run.
     pub(crate) fn load(&mut self, trajectory: &Trajectory) {
         self.clock = SessionClock::from_trajectory(trajectory);
         self.last_views = trajectory.lines.iter().filter_map(viewed_screen).collect();
         self.answers = AnsweredQuestions::from_lines(&trajectory.lines);
     }
 
-    /// Reads the answers from all lines, including those after the end of the run.
+    /// Reads the answers from all lines, including lines after the end of the run.
     pub(crate) fn load_answers<'a>(&mut self, lines: impl IntoIterator<Item = &'a Line>) {
         self.answers = AnsweredQuestions::from_lines(lines);
     }
 
-    /// Returns whether the user has stopped the clock.
+    /// Returns whether the clock is stopped.
     pub fn is_clock_stopped(&self) -> bool {
         self.clock.stopped_at.is_some()
     }
 
-    /// Returns whether a time limit has stopped the clock and it was not started since. Closing the run does not start it.
+    /// Returns whether a time limit has stopped the clock and the clock was not started since. Closing the run does
+    /// not start the clock.
     pub fn is_stopped_by_limit(&self) -> bool {
         self.clock.is_stopped_by_limit
     }
 
-    /// Returns the time left for each limit of the rules. While the clock is stopped, this time does not change.
+    /// Returns the time left for each limit of the rules. While the clock is stopped, these times do not change.
     pub fn time_left(&self) -> Vec<TimeLeft> {
         let limits = &self.rules.limits;
         let all = [
@@ -90,7 +91,7 @@ impl RunLog {
         all.into_iter().filter_map(left).collect()
     }
 
-    /// Returns the time spent in the scope of a limit; nothing if the run is open read-only.
+    /// Returns the time spent in the scope of a limit. The time is zero if the run is open read-only.
     pub fn time_spent(&self, scope: LimitScope) -> TimeSpent {
         let attendance = self.recorder.as_ref().map(Recorder::attendance);
         attendance.map(|time| time.spent_so_far(scope, parse_nanoseconds(&now()))).unwrap_or_default()
@@ -101,28 +102,27 @@ impl RunLog {
         &self.answers
     }
 
-    /// Returns the last day on which each screen of the console was left in an earlier session.
+    /// Returns the day on which the user last left each screen of the console in an earlier session.
     pub fn last_views(&self) -> &BTreeMap<String, u32> {
         &self.last_views
     }
 
-    /// Returns whether all events are in the trajectory: false if the run is open read-only, or if its file accepts no more
-    /// lines.
+    /// Returns whether all events are in the trajectory file. Returns false if the run is open read-only.
     pub fn is_complete(&self) -> bool {
         self.recorder.as_ref().is_some_and(Recorder::is_complete)
     }
 
-    /// Returns why nothing more can be saved: the file was replaced or changed. `None` while lines are saved.
+    /// Returns why no more lines can be saved, or `None` while lines can be saved.
     pub fn loss_reason(&self) -> Option<&str> {
         self.recorder.as_ref()?.loss_reason()
     }
 
-    /// Returns whether lines are written: false if the run is open read-only or replayed.
+    /// Returns whether lines are written. Returns false if the run is open read-only or replayed.
     pub fn is_written(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Returns whether the lines are in a file.
+    /// Returns whether the lines are written to a file, not only to memory.
     pub(crate) fn is_on_disk(&self) -> bool {
         self.recorder.as_ref().is_some_and(Recorder::is_on_disk)
     }
@@ -135,8 +135,7 @@ impl RunLog {
         self.position = position;
     }
 
-    /// Returns when the line of an accepted call must be synced. A run that is open read-only has the value of a
-    /// played one.
+    /// Returns when the line of an accepted call must be synced. A read-only run has the same value as a played run.
     pub(crate) fn call_durability(&self) -> Durability {
         self.recorder.as_ref().map_or(Durability::Synced, Recorder::call_durability)
     }
@@ -150,7 +149,7 @@ impl RunLog {
     ) -> Result<String, RunError> {
         let Some(recorder) = &mut self.recorder else { return Ok(String::new()) };
         if is_over {
-            // The trajectory has no lines after the end.
+            // Lines after the end of the run are not part of the trajectory.
             return recorder.append_afterwards(day, record, durability);
         }
         let at = recorder.append(day, record, durability)?;
@@ -159,7 +158,7 @@ impl RunLog {
         Ok(at)
     }
 
-    /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
+    /// Appends a line about an irrevocable action. Returns a description of the problem if the line is not saved yet.
     pub(crate) fn append_irrevocable(&mut self, day: u32, record: &Record) -> Option<String> {
         let recorder = self.recorder.as_mut()?;
         let problem = recorder.append_irrevocable(day, record);
@@ -172,7 +171,7 @@ impl RunLog {
         self.recorder.as_mut().map_or(Ok(()), Recorder::sync)
     }
 
-    /// Syncs pending lines of calls. Returns whether there can be any.
+    /// Syncs pending lines of calls. Returns false if calls are always synced at once.
     pub(crate) fn sync_pending_calls(&self) -> Result<bool, RunError> {
         match self.recorder.as_ref().filter(|recorder| !recorder.syncs_calls()) {
             Some(recorder) => recorder.sync_calls().map(|()| true),

@@ -12,19 +12,19 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::manifest::to_start_record;
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
 
-/// File in the run folder with lines recorded after the end of the run. Their hash chain continues the trajectory.
+/// File in the run folder with lines recorded after the end of the run. The hash chain of these lines continues the trajectory.
 ///
-/// The end is the last line of a trajectory, so a finished run never changes. Notes, saved statements, inspections
-/// and answers to questions can follow it.
+/// The `end` line is the last line of a trajectory, so a finished run never changes. Notes, saved statements,
+/// inspections and answers to questions can follow the end.
 pub(crate) const AFTERWARDS_FILE: &str = "afterwards.jsonl";
 
-/// The parts of a played run that a read-only run does not have.
+/// The state for writing the record of a run. A read-only run has no recorder.
 pub(crate) struct Recorder {
     trajectory: TrajectoryWriter,
-    /// Durability of an accepted call's line: synced before the call is confirmed, or, in headless runs, with the
-    /// week.
+    /// Durability of the line of an accepted call. The line is synced before the call is confirmed, or in headless
+    /// runs together with the week.
     call_durability: Durability,
-    /// Folder of the run; `None` in memory.
+    /// Folder of the run; `None` for a run in memory.
     folder: Option<PathBuf>,
     afterwards: Option<TrajectoryWriter>,
     attendance: Attendance,
@@ -32,7 +32,7 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// Creates the trajectory of a new run, in its folder or in memory, with its first line.
+    /// Creates the trajectory of a new run, in its folder or in memory, and appends the first line.
     pub(crate) fn create(
         manifest: &Manifest,
         folder: Option<&Path>,
@@ -56,7 +56,7 @@ impl Recorder {
         Ok(Recorder { trajectory, call_durability: calls, folder, afterwards: None, attendance, _lock: lock })
     }
 
-    /// Continues the trajectory of a run whose lock is held.
+    /// Continues the trajectory of a run that `lock` locks.
     pub(crate) fn resume(path: &Path, read: &Trajectory, lock: RunLock) -> Result<Recorder, RunError> {
         let trajectory = TrajectoryWriter::resume(path, read)?;
         let folder = path.parent().map(Path::to_owned);
@@ -78,7 +78,7 @@ impl Recorder {
         self.trajectory.last_position()
     }
 
-    /// Returns the durability of an accepted call's line.
+    /// Returns the durability of the line of an accepted call.
     pub(crate) fn call_durability(&self) -> Durability {
         self.call_durability
     }
@@ -88,10 +88,10 @@ impl Recorder {
         self.call_durability == Durability::Synced
     }
 
-    /// Appends a line and returns its time.
+    /// Appends a line and returns the time at which it was written.
     ///
     /// # Errors
-    /// The disk fails; then the line does not exist.
+    /// The line cannot be written. After an error, the line does not exist.
     pub(crate) fn append(
         &mut self,
         day: u32,
@@ -103,10 +103,10 @@ impl Recorder {
         Ok(at)
     }
 
-    /// Appends a line after the end of the run, to a separate file. In memory the line is not kept.
+    /// Appends a line after the end of the run to a separate file. For a run in memory, the line is discarded.
     ///
     /// # Errors
-    /// The disk fails, or the file is damaged; then the line does not exist.
+    /// The line cannot be written, or the file is damaged. After an error, the line does not exist.
     pub(crate) fn append_afterwards(
         &mut self,
         day: u32,
@@ -115,8 +115,7 @@ impl Recorder {
     ) -> Result<String, RunError> {
         let Some(folder) = &self.folder else { return Ok(now()) };
         if self.trajectory.has_unsynced_lines() {
-            // The new line contains the hash of the end, which would differ if the last week had to be simulated
-            // again.
+            // The new line contains the hash of the `end` line, which would differ if the last week had to be simulated again.
             self.trajectory.sync()?;
         }
         if self.afterwards.is_none() {
@@ -127,35 +126,35 @@ impl Recorder {
         writer.append(day, record, durability)
     }
 
-    /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
+    /// Appends a line about an irrevocable action. Returns a description of the problem if the line is not saved yet.
     pub(crate) fn append_irrevocable(&mut self, day: u32, record: &Record) -> Option<String> {
         let problem = self.trajectory.append_irrevocable(day, record).err().map(|error| error.to_string());
         self.attendance.add_line(parse_nanoseconds(self.trajectory.last_at()), record);
         problem
     }
 
-    /// Returns the time by kind, up to the last line.
+    /// Returns how the user spent the time up to the last line.
     pub(crate) fn attendance(&self) -> &Attendance {
         &self.attendance
     }
 
-    /// Syncs all lines, including those that could not be written before.
+    /// Syncs all lines, including lines that could not be written before.
     pub(crate) fn sync(&mut self) -> Result<(), RunError> {
         self.trajectory.sync()?;
         self.afterwards.as_mut().map_or(Ok(()), TrajectoryWriter::sync)
     }
 
-    /// Syncs the lines of confirmed calls. The database must not be ahead of the disk.
+    /// Syncs the lines of confirmed calls, so that the database is not ahead of the trajectory on the disk.
     pub(crate) fn sync_calls(&self) -> Result<(), RunError> {
         self.trajectory.sync_written()
     }
 
-    /// Returns why nothing more can be saved, once this was detected.
+    /// Returns why no more lines can be saved, after the recorder has detected the problem.
     pub(crate) fn loss_reason(&self) -> Option<&str> {
         self.trajectory.loss_reason()
     }
 
-    /// Returns whether the file is still in its place and no line is pending.
+    /// Returns whether the file is still at its path and contains all lines.
     pub(crate) fn is_complete(&self) -> bool {
         self.trajectory.is_complete()
     }
@@ -166,7 +165,8 @@ impl Recorder {
     }
 }
 
-/// Reads the lines after the end of a run; empty if there are none. Their hash chain continues the trajectory.
+/// Reads the lines after the end of a run. The hash chain of these lines continues the trajectory. The result is empty
+/// if the file does not exist.
 ///
 /// # Errors
 /// The file cannot be read, or is damaged.

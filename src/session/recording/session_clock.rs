@@ -1,4 +1,4 @@
-//! The user's clock according to the lines of a run, and the reported time limits.
+//! The state of the user's clock and of the time limits, derived from the lines of a run.
 
 use std::collections::BTreeSet;
 
@@ -8,22 +8,22 @@ use novamind_record::trajectory::{Record, Trajectory};
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SessionClock {
-    /// When it was stopped, in seconds since 1970; `None` while it runs.
+    /// Moment at which the clock was stopped, in seconds since 1970; `None` while the clock is running.
     pub(super) stopped_at: Option<f64>,
-    /// A limit has stopped it, and it was not started since.
+    /// Whether a time limit has stopped the clock and the clock was not started since.
     pub(super) is_stopped_by_limit: bool,
-    /// Reported limits: whether each was reached.
+    /// Reported limits, each with whether the limit was reached (true) or near (false).
     pub(super) reported_limits: BTreeSet<(LimitScope, bool)>,
 }
 
-/// A limit, and the time left.
+/// A time limit and the time that is left until it is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeLeft {
-    /// The scope of the limit.
+    /// Scope of the limit.
     pub scope: LimitScope,
-    /// Allowed minutes.
+    /// Allowed active time in minutes.
     pub minutes: u32,
-    /// Seconds left; negative once the limit is exceeded.
+    /// Seconds left until the limit is reached; negative if the limit is exceeded.
     pub seconds: f64,
 }
 
@@ -34,7 +34,7 @@ impl SessionClock {
         clock
     }
 
-    /// Applies a line written at `at`, in seconds since 1970.
+    /// Updates the state with a line. `at` is the time at which it was written, in seconds since 1970.
     pub(crate) fn apply(&mut self, record: &Record, at: f64) {
         match record {
             Record::Branch(_) => *self = SessionClock::default(),
@@ -54,14 +54,14 @@ impl SessionClock {
         }
     }
 
-    /// Returns the event of a limit that must be reported now.
+    /// Returns the event of a time limit that must be reported now, if any.
     pub(super) fn due_event(&self, left: TimeLeft, limits: &TimeLimits) -> Option<LimitEvent> {
         let is_told = |reached| self.reported_limits.contains(&(left.scope, reached));
         if left.seconds <= 0.0 {
             return (!is_told(true)).then_some(match (limits.at_limit, left.scope) {
                 (AtLimit::Remind, _) => LimitEvent::Reminded,
                 (AtLimit::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
-                // A week can be submitted automatically; a session cannot.
+                // Only a week can be submitted automatically. For other limits, stop the clock.
                 (AtLimit::Naive | AtLimit::Pause, _) => LimitEvent::Paused,
             });
         }
@@ -76,7 +76,7 @@ impl TimeLeft {
         (self.seconds / 60.0).ceil() as i64
     }
 
-    /// Describes the limit and the time left.
+    /// Describes the limit and the time left, for the user.
     pub fn describe(&self) -> String {
         let scope = match self.scope {
             LimitScope::Week => "this week",
@@ -89,12 +89,12 @@ impl TimeLeft {
         }
     }
 
-    /// Describes what happens when no time is left.
+    /// Describes the consequence of reaching the limit.
     pub fn describe_consequence(&self, at_limit: AtLimit) -> &'static str {
         match at_limit {
             AtLimit::Remind => "then you are asked to finish",
             AtLimit::Naive if self.scope == LimitScope::Week => {
-                "then the week is submitted with the naive projection, without your text"
+                "then the week is submitted with naive forecasts, without your text"
             }
             AtLimit::Naive | AtLimit::Pause => "then the clock is stopped",
         }

@@ -1,4 +1,4 @@
-//! Branches: new runs that share the lines of another run up to a decision day.
+//! Branches: new runs that copy the lines of another run up to a decision day.
 
 use std::path::Path;
 
@@ -17,12 +17,12 @@ use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Rejection;
 
 impl Session {
-    /// Creates a branch at the start of a week, counted from 1, and opens it.
+    /// Creates a branch at the start of a week and opens the branch. Weeks are counted from 1.
     ///
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run, for a baseline branch, and for a branch in another mode
-    /// than debug if the shared lines change parameters or the run has a seeded fault; `guess_first` while the
-    /// question of a lesson has no answer; `week_unknown`, `not_saved`.
+    /// `not_in_this_mode` for an unfinished baseline run and for a baseline branch. Also `not_in_this_mode` for a
+    /// branch in a mode other than debug if the copied lines change parameters or the run has a seeded fault.
+    /// `guess_first` while a question of a lesson is unanswered; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Rejection> {
         StagedBranch::stage(self, week, mode)?.publish().map_err(not_saved_error)
     }
@@ -32,7 +32,7 @@ impl StagedBranch {
     /// Creates a branch in a staging folder.
     ///
     /// # Errors
-    /// As [`Session::branch`].
+    /// The same errors as [`Session::branch`].
     pub fn stage(run: &Session, week: u32, mode: Mode) -> Result<StagedBranch, Rejection> {
         if run.manifest().mode == Mode::Baseline && run.ended().is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
@@ -58,15 +58,15 @@ impl StagedBranch {
     }
 }
 
-/// Returns the rejection for a failed write.
+/// Returns the rejection for a line or file that could not be written.
 pub fn not_saved_error(error: RunError) -> Rejection {
     Rejection::new("not_saved", error.to_string())
 }
 
-/// Creates a branch next to its parent that shares some of its lines, and opens it.
+/// Creates a branch in the folder next to its parent with the given lines, and opens the branch.
 ///
 /// # Errors
-/// `not_in_this_mode` for a baseline branch, and for a branch in another mode than debug if the shared lines change
+/// `not_in_this_mode` for a baseline branch, and for a branch in a mode other than debug if the copied lines change
 /// parameters or the run has a seeded fault; `not_saved`.
 pub(crate) fn create_branch(
     folder: &Path,
@@ -84,7 +84,7 @@ fn stage_branch(
     mode: Mode,
 ) -> Result<StagedBranch, Rejection> {
     if mode == Mode::Baseline {
-        return Err(Rejection::new("not_in_this_mode", "a branch can have any mode but baseline"));
+        return Err(Rejection::new("not_in_this_mode", "a branch can have any mode except baseline"));
     }
     if mode != Mode::Debug && parent.fault.is_some() {
         let message = "the run has a seeded fault, so its branches must be debug runs";
@@ -114,10 +114,10 @@ fn stage_branch(
     StagedBranch::create(folder, &manifest, &shared).map_err(not_saved_error)
 }
 
-/// Creates another attempt at a lesson from a day on, and opens it.
+/// Creates another attempt at a lesson that starts on a day of an earlier attempt, and opens the new run.
 ///
 /// # Errors
-/// `not_saved`.
+/// The rejection `not_saved`.
 pub fn create_lesson_branch(
     folder: &Path,
     parent: &Manifest,
@@ -140,8 +140,8 @@ pub fn create_lesson_branch(
     StagedBranch::create(folder, &manifest, &shared).and_then(StagedBranch::publish).map_err(not_saved_error)
 }
 
-/// Returns the lesson's lines on the first day of a step, before the step starts: the calls of its start, and the
-/// judgement of the step before.
+/// Returns the lesson's lines on the first day of a step, before the step starts: the initial calls, and the
+/// evaluation of the previous step.
 fn lines_before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     let begins = |line: &Line| match &line.record {
         Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,
@@ -154,7 +154,7 @@ fn lines_before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     lines.iter().take_while(move |line| line.day == day && !begins(line)).filter(is_of_lesson)
 }
 
-/// Returns the lines before a decision day, including the end of the week on that day, without decisions made on it.
+/// Returns the lines up to the start of a decision day: includes the end of the week on that day, but no decisions of that day.
 fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let is_before = |line: &Line| {
         let said_on_it = line.day == day && is_voice_line(line);
@@ -164,7 +164,7 @@ fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
 }
 
-/// Returns whether a language model produced the line. Such lines are written before the decisions of their day.
+/// Returns whether a language model produced the line. The lines of a model are written before the decisions of the day.
 fn is_voice_line(line: &Line) -> bool {
     matches!(line.record, Record::Voice(_))
 }
@@ -183,7 +183,7 @@ fn changes_state(line: &Line) -> bool {
         )
 }
 
-/// Writes the files of a branch that shares some lines with its parent, without opening it.
+/// Writes the files of a branch with the given lines of its parent, without opening the branch.
 ///
 /// # Errors
 /// The folder cannot be written.

@@ -1,5 +1,5 @@
-//! Reading an unfinished baseline run with a command. The read is recorded in the trajectory, because the participant
-//! can learn from the output.
+//! Record of commands that read an unfinished baseline run. A read is recorded because the participant can learn from
+//! the output.
 
 use std::path::Path;
 
@@ -12,8 +12,8 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{Activity, ExternalRead};
 use novamind_record::trajectory::{Durability, Record, Trajectory, TrajectoryWriter};
 
-/// Records that a command reads the run in a folder. Does nothing for ended runs, for other modes, and for folders
-/// that cannot be written.
+/// Records that a command reads the baseline run in a folder. Does nothing for ended runs, for other modes, and for
+/// folders that cannot be written.
 ///
 /// # Errors
 /// The run is in use or damaged, or the line cannot be written.
@@ -30,7 +30,7 @@ pub fn record_external_read(folder: &Path, command: &str, detail: &str) -> Resul
         Ok(lock) => lock,
         Err(RunError::NotWritable { .. }) => return Ok(()),
         Err(RunError::InUse { id, holder }) => {
-            // Only the experimenter can watch a run of a study.
+            // Do not suggest watching a run of a study: only the experimenter can do that.
             let watch = if manifest.study.is_none() {
                 format!(", or watch it with `novamind play --run {id} --watch`")
             } else {
@@ -47,7 +47,7 @@ pub fn record_external_read(folder: &Path, command: &str, detail: &str) -> Resul
         Activity::ExternalRead(ExternalRead { command: command.to_owned(), detail: detail.to_owned() });
     let trajectory = Trajectory::read(&path)?;
     if trajectory.unfinished_bytes > 0 || has_pending_week(&trajectory) {
-        // An interrupted run must be completed first, as when it is opened to play.
+        // Complete an interrupted run first by opening it for play.
         drop(lock);
         let mut session = Session::open(folder, Access::Write, true)?;
         session.activity().record(activity);
@@ -115,7 +115,7 @@ mod tests {
         session.save().expect("saved");
         drop(session);
         record_external_read(&folder, "query", "SELECT 1").expect("recorded");
-        // `run.toml` does not matter: the first line defines the mode.
+        // The first line of the trajectory, not `run.toml`, defines the mode.
         let manifest = folder.join("run.toml");
         let text = std::fs::read_to_string(&manifest).expect("a manifest");
         std::fs::write(&manifest, text.replace("\"baseline\"", "\"sandbox\"")).expect("written");
@@ -142,7 +142,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).expect("lines");
         let lines: Vec<&str> = text.lines().collect();
         let advance = lines.iter().position(|line| line.contains("\"kind\":\"advance\"")).expect("a week");
-        // The program was killed between the two lines of a week, while writing a line.
+        // The program was killed after the `advance` line, while writing the `week` line.
         std::fs::write(&path, lines[..=advance].join("\n") + "\n{\"seq\"").expect("written");
         for name in ["world.db", "snapshot.bin"] {
             let _ = std::fs::remove_file(folder.join(name));

@@ -1,4 +1,4 @@
-//! Operations on stored runs: branches, recovery, verification, rebuilding of databases.
+//! Operations on stored runs: branches, recovery, verification and rebuilding of databases.
 
 pub(crate) mod branch;
 pub(crate) mod external_read;

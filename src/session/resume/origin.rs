@@ -1,4 +1,4 @@
-//! The origin of a recorded run: its lines, manifest and parameters.
+//! The source of a recorded run: files, manifest and initial parameters.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,15 +12,15 @@ use novamind_record::trajectory::record::Activity;
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_world::params::Params;
 
-/// The origin of recorded lines.
+/// The source of recorded lines: a run folder or a trajectory file.
 pub struct Origin {
-    /// The trajectory.
+    /// Path of the trajectory file.
     pub path: PathBuf,
     /// Folder of the run; `None` for a trajectory without a run folder.
     pub folder: Option<PathBuf>,
-    /// The manifest.
+    /// Manifest of the run.
     pub manifest: Manifest,
-    /// The parameters at the start of the run.
+    /// Parameters at the start of the run.
     pub params: Arc<Params>,
 }
 
@@ -33,11 +33,11 @@ impl Origin {
         Ok(Session::read_only(manifest, self.folder.clone(), params, Some(projector)))
     }
 
-    /// Replays recorded lines in memory. Calls `after_line` after each line, with the session at this point. With
-    /// `has_database`, the database is complete at each lesson note.
+    /// Replays recorded lines in memory. Calls `after_line` with the session after each line. With `has_database`, the
+    /// database is up to date at each `lesson` line.
     ///
     /// # Errors
-    /// The first line that does not reproduce, or the first error of `after_line`.
+    /// A line does not reproduce the recorded state, or `after_line` returns an error.
     pub fn replay(
         &self,
         lines: &[Line],
@@ -58,7 +58,7 @@ impl Origin {
     }
 }
 
-/// Reads the lines of a run folder, or of a trajectory file without one.
+/// Reads the lines of a run folder, or of a trajectory file without a run folder.
 pub fn read_origin(path: &Path) -> Result<(Origin, Trajectory), RunError> {
     let (file, folder) = match path.is_dir() {
         true => (path.join("trajectory.jsonl"), Some(path.to_owned())),

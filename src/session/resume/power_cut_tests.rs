@@ -1,4 +1,4 @@
-//! Tests of power cuts: unsynced data is lost, confirmed lines are not (docs/formats/trajectory.md#durability).
+//! Tests of power cuts: unsynced data is lost, but confirmed lines survive (docs/formats/trajectory.md#durability).
 
 use std::path::Path;
 
@@ -51,10 +51,10 @@ fn advance_week(session: &mut Session) {
     session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
 
-/// Copies the run folder as it can be after a power cut: unsynced data of any file can be partly on the disk.
+/// Copies the run folder in a possible state after a power cut: any part of the unsynced data can be on the disk.
 fn copy_after_power_cut(session: &Session, to: &Path, cache: &PageCache, chance: &mut u64) {
     let folder = session.folder().expect("a folder");
-    // SQLite handles power cuts of the database itself; its files are copied while nothing writes them.
+    // SQLite protects the database against power cuts. Copy its files while no thread writes them.
     session.database().wait_until_written().expect("it is written");
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
@@ -114,7 +114,7 @@ fn power_cut_keeps_complete_weeks_of_headless_runs() {
             session.call("set_prices", &prices, Via::Policy).expect("prices");
         }
         if random_below(&mut chance, 2) == 0 {
-            // A query of a policy returns the effects of its calls; the database is never ahead of the disk.
+            // A query of a policy returns the effects of its calls, so these calls must be synced first.
             session.query("SELECT COUNT(*) FROM config_history").expect("rows");
         }
         let place = places.path().join(number.to_string());
@@ -175,7 +175,7 @@ fn run_ends_even_if_its_last_lines_are_not_saved() {
     assert!(last.remark.expect("the disk is full").contains("simulated again"));
     let refused = session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect_err("it is over");
     assert_eq!((refused.code, session.weeks().len(), session.day()), ("run_over", 4, 28));
-    // No line can follow an end that is not on the disk.
+    // No line can be recorded after an `end` line that is not on the disk.
     let afterwards = session.folder().expect("a folder").join("afterwards.jsonl");
     assert_eq!(session.set_notes("after the end").expect_err("no room").code, "not_saved");
     assert!(!afterwards.exists());

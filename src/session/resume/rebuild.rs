@@ -1,4 +1,4 @@
-//! Rebuilding the database file of a stored run; the run itself is only read.
+//! Rebuilding of the database file of a stored run. The trajectory of the run is only read.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,11 +17,11 @@ use novamind_record::folder::manifest_check::{ManifestCheck, check_start};
 use novamind_record::trajectory::{Record, Trajectory};
 use novamind_tools::Rejection;
 
-/// Brings `world.db` up to the last line of the trajectory, or rebuilds it. `progress` is called with each day
-/// reached and the last day of the run. `key` is the key of the run's snapshots.
+/// Updates `world.db` up to the last line of the trajectory, or rebuilds the file. Calls `progress` with the current
+/// day and the last day of the run. `key` is the seal key of the run's snapshots.
 ///
 /// # Errors
-/// The run is damaged, of another version or in use, or its folder cannot be written.
+/// The run is damaged, was recorded with another version or is in use, or its folder cannot be written.
 pub fn rebuild_database(
     folder: &Path,
     key: &SealKey,
@@ -54,8 +54,8 @@ pub fn rebuild_database(
     Ok(session.database().wait_until_written()?)
 }
 
-/// Returns whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown,
-/// and the existing snapshot is not sealed with the secret of a study.
+/// Returns whether a read-only command may store a snapshot of the end of a run. The run must have ended and its
+/// hidden state may be shown. An existing snapshot must not be sealed with the secret of a study.
 fn may_store_end(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
     let ended = trajectory.end_line().and_then(|line| match &line.record {
         Record::End(end) => Some(end.reason),
@@ -64,8 +64,8 @@ fn may_store_end(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, ke
     ended.is_some() && can_inspect(manifest, ended, Some(folder)) && SnapshotTarget::may_write(folder, key)
 }
 
-/// Opens a connection to the database file of a run as it is, and returns the line of the trajectory that it
-/// corresponds to. `key` is the key of the run's snapshots.
+/// Opens a connection to the existing database file of a run. Also returns the position of the trajectory line to
+/// which the database corresponds. `key` is the seal key of the run's snapshots.
 ///
 /// # Errors
 /// The file is missing, is not the database of a run, or was changed after the run was closed.
@@ -81,11 +81,11 @@ pub fn open_database_file(
 }
 
 impl Session {
-    /// Opens a run for reading. If the run has ended and had to be simulated, stores snapshot and database in its
-    /// folder, if possible, so that the next command opens it immediately.
+    /// Opens a run read-only. If the run has ended and had to be simulated, stores a snapshot and the database in its
+    /// folder, so that the next command opens the run immediately.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// The same errors as [`Session::open`].
     pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
         let keeping = CacheFunctions {
             may_store: may_store_end,
@@ -95,8 +95,8 @@ impl Session {
         Session::open_with_cache(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
-    /// Writes the snapshot of an ended run that was simulated for reading. Does nothing if the run is in use, or if
-    /// its folder cannot be written.
+    /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if the run is in use, or if its
+    /// folder cannot be written.
     fn store_end(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
             self.write_snapshot(SnapshotTarget::new(folder, self.seal_key()), false);
@@ -117,7 +117,7 @@ mod tests {
 
     const DERIVED_FILES: [&str; 2] = ["snapshot.bin", "world.db"];
 
-    /// Creates a run of two weeks without derived files, as after an import.
+    /// Creates a run of two weeks and deletes its derived files, as after an import.
     fn run_without_derived_files(runs: &Path, mode: Mode, ends: bool) -> PathBuf {
         let storage = Storage::Runs(runs.to_owned());
         let participant = Some("P01".to_owned());
@@ -143,7 +143,7 @@ mod tests {
         DERIVED_FILES.into_iter().filter(|file| folder.join(file).exists()).collect()
     }
 
-    /// Returns the number of lines that the next command simulates, and whether it uses the database file.
+    /// Returns the number of lines that the next command has to simulate, and whether that command uses the database file.
     fn next_open_cost(folder: &Path) -> (usize, bool) {
         let manifest = ManifestCheck::read(folder).expect("a manifest").manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
@@ -186,7 +186,7 @@ mod tests {
         let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
         Session::open_to_read(&folder, false).expect("it opens");
         assert_eq!((derived_files(&folder), next_open_cost(&folder)), (vec!["snapshot.bin"], (0, false)));
-        // The database is stored when it is needed.
+        // The database is stored when a command needs it.
         Session::open_to_read(&folder, true).expect("it opens");
         assert_eq!((derived_files(&folder), next_open_cost(&folder)), (DERIVED_FILES.to_vec(), (0, true)));
     }

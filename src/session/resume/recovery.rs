@@ -1,4 +1,4 @@
-//! Recovery of the undamaged prefix of a damaged run, as a branch. The run itself is not changed.
+//! Recovery of the undamaged prefix of a damaged run as a branch. The damaged run is not changed.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,23 +16,23 @@ use novamind_record::trajectory::{CHAIN_BROKEN_MESSAGE, Line, Trajectory};
 /// The result of a recovery.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecoveredRun {
-    /// The new run.
+    /// Id of the new run.
     pub run: String,
-    /// Its mode.
+    /// Mode of the new run.
     pub mode: Mode,
-    /// Number of recovered lines, from the first.
+    /// Number of recovered lines, counted from the first line.
     pub lines: usize,
     /// Last day of the new run.
     pub day: u32,
-    /// The damage.
+    /// Description of the damage.
     pub problem: String,
 }
 
-/// Creates a branch from the lines that are certainly valid, by their checksums or by a reproduced state. A baseline
-/// run becomes a sandbox. `key` is the key of the run's snapshots.
+/// Creates a branch from the lines that are certainly valid according to checksums or a reproduced state. The branch
+/// of a baseline run is a sandbox run. `key` is the seal key of the run's snapshots.
 ///
 /// # Errors
-/// The run is not damaged, no line of it can be used, or the branch cannot be written.
+/// The run is not damaged, none of its lines can be used, or the branch cannot be written.
 pub fn recover(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
     let path = folder.join("trajectory.jsonl");
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
@@ -59,7 +59,7 @@ pub fn recover(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
     Ok(RecoveredRun { run, mode, lines: good, day, problem: words })
 }
 
-/// Returns the number of certainly valid lines. Sets `problem` if a state does not reproduce.
+/// Returns the number of certainly valid lines. Sets `problem` if a line does not reproduce the recorded state.
 fn count_valid_lines(
     path: &Path,
     manifest: &Manifest,
@@ -68,7 +68,7 @@ fn count_valid_lines(
 ) -> Result<usize, RunError> {
     let params = Arc::new(manifest.load_params()?);
     let mut session = Session::read_only(manifest.clone(), None, params, None);
-    // Number of lines up to the last reproduced state; at least the first.
+    // Number of lines up to the last reproduced state; at least 1.
     let mut reached = 1;
     for (at, line) in lines.iter().enumerate() {
         if let Err(error) = session.apply_line(path, line) {
@@ -77,8 +77,8 @@ fn count_valid_lines(
                 other => other.to_string(),
             };
             *problem = Some((at + 1, words));
-            // If the last line fails, only this line is invalid. If an earlier line fails, all lines since the last
-            // reproduced state are doubtful.
+            // If the last line fails, only this line is invalid. If an earlier line fails, any line since the last
+            // reproduced state may be invalid.
             return Ok(if at + 1 == lines.len() { at } else { reached });
         }
         if line.closes_days() {
@@ -86,8 +86,8 @@ fn count_valid_lines(
         }
     }
     let summed = lines.first().is_some_and(Line::declares_sums);
-    // A checksum validates a line, unless the next line contradicts it. Lines without checksums are validated only by
-    // their state.
+    // A checksum validates a line, unless the hash in the next line differs. Lines without checksums are validated
+    // only by a reproduced state.
     let doubtful = problem.as_ref().is_some_and(|(_, words)| !summed || words == CHAIN_BROKEN_MESSAGE);
     Ok(if doubtful { reached.max(lines.len() - 1) } else { lines.len() })
 }
@@ -123,11 +123,11 @@ mod tests {
         let whole = Trajectory::parse(&bytes).expect("it is whole");
         for line in 1..whole.lines.len() {
             let (from, to) = (line_start(&bytes, line), line_start(&bytes, line + 1));
-            // A position at the start, in the middle or at the end of the line.
+            // Offset of a byte at the start, in the middle or at the end of the line.
             let at = [from + 2, from + (to - from) / 2, to - 3][line % 3];
             let found = recover_damaged(&run, |bytes| bytes[at] ^= 0x04);
             let Ok(found) = found else {
-                // Damage in the last line is detected only by its state or by the database.
+                // Damage in the last line is detected only by the state or the database.
                 assert_eq!(line + 1, whole.lines.len(), "{found:?}");
                 continue;
             };

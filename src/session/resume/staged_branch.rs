@@ -1,5 +1,5 @@
-//! Branches under construction. They are in a staging folder that is not listed, and are renamed once complete. A
-//! program that stops before leaves nothing that looks like a run.
+//! Branches under construction. A new branch is in a staging folder that is not listed as a run. The folder is renamed
+//! when the branch is complete. If the program stops earlier, no incomplete run is listed.
 
 use std::path::{Path, PathBuf};
 
@@ -23,10 +23,10 @@ pub struct StagedBranch {
 }
 
 impl StagedBranch {
-    /// Writes a branch next to its parent: manifest, shared lines and the branch line.
+    /// Creates a branch in a staging folder next to its parent: manifest, copied lines and the `branch` line.
     ///
     /// # Errors
-    /// The disk fails; then no folder remains.
+    /// A file cannot be written. After an error, no folder remains.
     pub(crate) fn create(
         parent: &Path,
         manifest: &Manifest,
@@ -50,7 +50,7 @@ impl StagedBranch {
         write_branch_files(folder, manifest, shared)
     }
 
-    /// Opens the branch in its staging folder.
+    /// Opens the branch while it is in its staging folder.
     ///
     /// # Errors
     /// The branch cannot be opened.
@@ -58,10 +58,10 @@ impl StagedBranch {
         Session::open(&self.folder, Access::Write, true)
     }
 
-    /// Publishes the branch as a run and opens it. No other session may have it open.
+    /// Publishes the branch as a run and opens the run. No other session may have the branch open.
     ///
     /// # Errors
-    /// The disk fails, or the branch cannot be opened; then no branch remains.
+    /// The folder cannot be renamed, or the branch cannot be opened. After an error, no branch remains.
     pub fn publish(self) -> Result<Session, RunError> {
         let StagedBranch { folder, final_folder: named } = &self;
         std::fs::rename(folder, named).map_err(RunError::io(named))?;
@@ -70,17 +70,16 @@ impl StagedBranch {
             .map_or(Ok(()), sync_folder)
             .and_then(|()| Session::open(named, Access::Write, true));
         if opened.is_err() {
-            // Remove a branch that cannot be opened.
             drop(std::fs::remove_dir_all(named));
         }
         opened
     }
 }
 
-/// Writes the files of a branch into its folder: manifest, shared lines and the branch line.
+/// Writes the files of a branch to its folder: manifest, copied lines and the `branch` line.
 ///
 /// # Errors
-/// The disk fails.
+/// A file cannot be written.
 pub(super) fn write_branch_files(
     folder: &Path,
     manifest: &Manifest,

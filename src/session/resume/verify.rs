@@ -1,4 +1,4 @@
-//! Verification of recorded runs.
+//! Verification of recorded runs by simulating them again.
 
 use std::path::Path;
 
@@ -8,34 +8,34 @@ use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
 
-/// The result of a verification.
+/// The result of a successful verification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verification {
-    /// Identifier of the run.
+    /// Id of the run.
     pub run: String,
     /// Number of checked lines.
     pub lines: usize,
-    /// Number of weeks and steps whose state was reproduced.
+    /// Number of weeks and single-day steps whose state was reproduced.
     pub states: usize,
-    /// Last day.
+    /// Last simulated day.
     pub day: u32,
-    /// Hash of the last state.
+    /// Hash of the last recorded state.
     pub state_hash: String,
 }
 
-/// Simulates a recorded run again, from a folder or a trajectory file, and compares every recorded state. Changes
-/// nothing.
+/// Simulates a recorded run again, from a run folder or a trajectory file, and compares every recorded state. Does not
+/// change any files.
 ///
 /// # Errors
-/// The first line that does not reproduce, or the run is missing or of another version.
+/// A line does not reproduce the recorded state, or the run is missing or was recorded with another version.
 pub fn verify(path: &Path) -> Result<Verification, RunError> {
     verify_sealed(path, &SealKey::default())
 }
 
-/// Like [`verify`], for a run whose snapshots are sealed with `key`.
+/// Verifies a run like [`verify`], with snapshots that are sealed with `key`.
 ///
 /// # Errors
-/// As [`verify`].
+/// The same errors as [`verify`].
 pub fn verify_sealed(path: &Path, key: &SealKey) -> Result<Verification, RunError> {
     let (origin, trajectory) = read_origin(path)?;
     let Origin { path, folder, manifest, params } = origin;

@@ -1,11 +1,11 @@
-//! `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens quickly.
+//! The snapshot file, `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens quickly.
 //!
 //! A snapshot is used only if it is intact, was written by this version for this run and these parameters, and
-//! belongs to a line that is in the trajectory. Otherwise the run is simulated from its start, which only takes
-//! longer (docs/formats/snapshot.md).
+//! belongs to a line that is in the trajectory. Otherwise, the run is simulated from its start, which takes longer
+//! (docs/formats/snapshot.md).
 //!
-//! The file has a title line, an envelope and sealed canonical bytes: header and history as JSON, the history
-//! deflated, then the numbers of world and session.
+//! The file consists of a title line, an envelope and sealed canonical bytes. The sealed bytes contain the header as
+//! JSON, the history as deflated JSON, and the numbers of world and session.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -40,20 +40,20 @@ use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Res
 use novamind_world::params::Params;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
-/// After the title: whether the secret of a study is needed.
+/// Byte after the title if the snapshot can be unsealed without the secret of a study.
 const RUN_KEY_MARK: u8 = b'r';
 const STUDY_KEY_MARK: u8 = b's';
 const TRAJECTORY_FILE: &str = "trajectory.jsonl";
 pub(crate) const SNAPSHOT_FILE: &str = "snapshot.bin";
-/// Initial capacity per subscriber: columns and a day's facts need about 190 bytes. Unused capacity costs nothing;
-/// too little costs a copy of everything.
+/// Initial buffer capacity per subscriber. Columns and the facts of a day need about 190 bytes. Unused capacity is
+/// cheap, but a buffer that is too small has to be copied.
 const BYTES_PER_SUBSCRIBER: usize = 320;
 pub(crate) const SNAPSHOT_INTERVAL_WEEKS: usize = 4;
 
-/// Identifies the state of a snapshot.
+/// The header of a snapshot, which identifies its state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Header {
-    /// Version of the program that wrote it.
+    /// Version of the program that wrote the snapshot.
     version: String,
     run: String,
     parameters_digest: String,
@@ -64,7 +64,7 @@ struct Header {
     database: Option<String>,
 }
 
-/// The history of a session: borrowed for writing, owned for reading.
+/// The stored history of a session. Its values are borrowed for writing and owned after reading.
 #[derive(Serialize, Deserialize)]
 struct StoredHistory<'a> {
     weeks: Cow<'a, [WeekFigures]>,
@@ -81,13 +81,13 @@ struct StoredHistory<'a> {
     last_dashboard: Option<Cow<'a, str>>,
     facts_chain: (String, bool),
     ended: Option<RunEndReason>,
-    /// Responses to weeks whose requests have an id.
+    /// Responses to requests for weeks that have a request id.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     answered_weeks: Vec<(RequestId, WeekResult)>,
 }
 
 impl StoredHistory<'_> {
-    /// Compresses, because a journal with thousands of offers is repetitive.
+    /// Compresses the history, because a journal with thousands of offers is repetitive.
     fn compress(&self) -> Vec<u8> {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
         let written = encoder.write_all(&serde_json::to_vec(self).unwrap_or_default());
@@ -107,7 +107,7 @@ impl StoredHistory<'_> {
 
 pub(crate) struct Snapshot {
     header: Header,
-    /// Title, envelope and the unsealed rest.
+    /// Content of the file: title, envelope and the unsealed bytes.
     file: Vec<u8>,
     history_offset: usize,
 }
@@ -119,10 +119,10 @@ pub(crate) struct RestoredSession {
 }
 
 impl Snapshot {
-    /// Reads the snapshot in a run folder; `None` if there is none.
+    /// Reads and unseals the snapshot in a run folder. Returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// A description of the problem with the file.
+    /// The file cannot be used; returns a description of the problem.
     pub(crate) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
         let mut file = match std::fs::read(folder.join(SNAPSHOT_FILE)) {
             Ok(file) => file,
@@ -132,8 +132,7 @@ impl Snapshot {
         let sealed = unseal_file(&mut file, folder, key)?;
         let mut reader = CanonicalReader::new(&file[sealed..]);
         let header: Option<String> = reader.read();
-        let header =
-            header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("is of another version")?;
+        let header = header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("has another version")?;
         let notes_at = file.len() - reader.remaining();
         Ok(Some(Snapshot { header, file, history_offset: notes_at }))
     }
@@ -147,7 +146,7 @@ impl Snapshot {
         self.header.database.as_deref()
     }
 
-    /// Replaces the digest of the database, which was rebuilt up to the same line.
+    /// Writes the snapshot again with a new digest of the database, which was rebuilt up to the same line.
     pub(crate) fn certify_database(mut self, place: &SnapshotTarget, database: Option<String>) {
         let header = Header { database, ..self.header };
         place.write(&header, &mut self.file[self.history_offset..]);
@@ -157,14 +156,14 @@ impl Snapshot {
         self.header.run == run
     }
 
-    /// Returns whether it was written by this version with these parameters.
+    /// Returns whether this version wrote the snapshot with these parameters.
     pub(crate) fn is_compatible(&self, manifest: &Manifest) -> bool {
         self.header.version == env!("CARGO_PKG_VERSION")
             && self.header.parameters_digest == manifest.parameters_digest
     }
 
-    /// Restores the state of a run that started with `params` and has these lines. Returns `None` if the state does
-    /// not match its hash.
+    /// Restores the state of a run that started with `params` and has these lines. The restored state includes
+    /// history and notebook. Returns `None` if the state does not match its hash.
     pub(crate) fn restore_session(
         &self,
         manifest: &Manifest,
@@ -173,8 +172,7 @@ impl Snapshot {
     ) -> Option<RestoredSession> {
         let mut reader = CanonicalReader::new(&self.file[self.history_offset..]);
         let notes = StoredHistory::decompress(&reader.read::<Vec<u8>>()?)?;
-        // Snapshots of earlier builds lack the dashboard, and it cannot be rebuilt from a state that has changed
-        // since.
+        // Snapshots of earlier builds do not contain the dashboard, which cannot be rebuilt from a later state.
         if notes.last_dashboard.is_none() && !notes.is_before_first_day() {
             return None;
         }
@@ -243,8 +241,8 @@ pub(crate) struct SnapshotSource<'a> {
 }
 
 impl SnapshotSource<'_> {
-    /// Returns a function that writes the snapshot, given the digest of the database file or `None`. The state is
-    /// copied now, so the function can run on another thread while the company changes.
+    /// Returns a function that writes the snapshot. Its argument is the digest of the database file, if known. The
+    /// state is copied immediately, so the function can run on another thread while the company changes.
     pub(crate) fn writer(
         &self,
         state_hash: String,
@@ -302,9 +300,9 @@ impl SnapshotSource<'_> {
     }
 }
 
-/// Unseals a file in place. Returns the offset of the unsealed part.
+/// Unseals a file in place. Returns the offset of the unsealed bytes.
 fn unseal_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
-    let rest = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
+    let rest = file.strip_prefix(TITLE).ok_or("has another version or is damaged")?;
     let (&of, rest) = rest.split_first().ok_or("is truncated")?;
     let (envelope, _) = rest.split_first_chunk().ok_or("is truncated")?;
     let envelope = Envelope::from_bytes(envelope);
@@ -312,21 +310,20 @@ fn unseal_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &
         return Err("is sealed with the key of a study");
     }
     let seal_key = if of == RUN_KEY_MARK { &SealKey::default() } else { key };
-    let first =
-        first_line_hash(&folder.join(TRAJECTORY_FILE)).ok_or("belongs to a trajectory that is not there")?;
+    let first = first_line_hash(&folder.join(TRAJECTORY_FILE)).ok_or("belongs to a missing trajectory")?;
     let at = TITLE.len() + 1 + Envelope::LENGTH_BYTES;
     seal_key
         .derive_run_keys(&first)
         .open(&envelope, &mut file[at..])
         .then_some(at)
-        .ok_or("is damaged or of another run")
+        .ok_or("is damaged or belongs to another run")
 }
 
-/// The path of a run's snapshot, and the keys that seal it.
+/// The path of a snapshot, and the keys that seal the snapshot.
 pub(crate) struct SnapshotTarget {
     path: PathBuf,
     key_mark: u8,
-    /// `None` if the trajectory is missing; then no snapshot is written.
+    /// Keys of the run; `None` if the trajectory is missing. Without keys, no snapshot is written.
     keys: Option<RunKeys>,
 }
 
@@ -337,28 +334,28 @@ impl SnapshotTarget {
         SnapshotTarget { path: folder.join(SNAPSHOT_FILE), key_mark: of, keys }
     }
 
-    /// Returns whether a program with this key may replace the snapshot in a folder. A snapshot sealed with the secret of a
-    /// study is replaced only with that secret.
+    /// Returns whether a program with this key may replace the snapshot in a folder. A snapshot that is sealed with
+    /// the secret of a study is replaced only with that secret.
     pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
         let mut begin = [0; TITLE.len() + 1];
         let read = File::open(folder.join(SNAPSHOT_FILE)).and_then(|mut file| file.read_exact(&mut begin));
         key.has_secret() || read.is_err() || begin[TITLE.len()] != STUDY_KEY_MARK
     }
 
-    /// Writes a snapshot in place of the old one and seals the state in place. Does not sync: after a power cut the
-    /// tag shows whether the file is intact.
+    /// Seals the state in place and replaces the snapshot file. Does not sync the file: after a power cut, the tag
+    /// shows whether the file is intact.
     fn write(&self, header: &Header, state: &mut [u8]) {
         let Some(keys) = &self.keys else { return };
         let mut header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
         let envelope = keys.seal(&mut header, state).to_bytes();
         let draft = self.path.with_extension("draft");
-        // Written in pieces, because a large state is a large part of the memory.
+        // Write the pieces separately to avoid another copy of a large state in memory.
         let pieces = [TITLE, &[self.key_mark], &envelope, &header, state];
         let written = File::create(&draft)
             .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
             .and_then(|()| std::fs::rename(&draft, &self.path));
         if written.is_err() {
-            // A partial file is useless and takes space on a full disk.
+            // Remove a partial file, which would use space on a full disk.
             let _ = std::fs::remove_file(&draft);
         }
     }

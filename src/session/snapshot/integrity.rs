@@ -1,6 +1,7 @@
-//! Checks of the end of a trajectory and of the database.
+//! Checks for truncated or changed trajectories, and checks of the database.
 //!
-//! Database and snapshot store the last line, so that a trajectory cut at a line end is detected.
+//! The database and the snapshot store the position of the last line. Therefore a trajectory that was truncated at a
+//! line end is detected.
 
 use std::path::Path;
 
@@ -16,18 +17,19 @@ use novamind_record::folder::manifest_check::ManifestCheck;
 use novamind_record::trajectory::record::VoiceAnswer;
 use novamind_record::trajectory::{RECOVERY_HINT, Record, Trajectory};
 
-/// Snapshot and database position, read before the trajectory.
+/// The snapshot and the position of the database, read before the trajectory.
 pub struct Integrity {
     pub(crate) snapshot: Option<Snapshot>,
-    /// Last line of the database, if it can be read.
+    /// Position of the last line in the database, if the database can be read.
     database: Option<ProjectionPosition>,
     is_foreign_database: bool,
-    /// Problems that the user should know.
+    /// Messages for the user about problems with snapshot and database.
     pub remarks: Vec<String>,
 }
 
 impl Integrity {
-    /// Reads snapshot and database position. Must be called before the trajectory is read, which can grow in between.
+    /// Reads the snapshot and the position of the database. Must be called before the trajectory is read, because
+    /// another program may append lines in between.
     pub fn read(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
@@ -40,12 +42,12 @@ impl Integrity {
         let snapshot = snapshot.filter(|snapshot| snapshot.belongs_to(&manifest.id));
         let foreign =
             read_owner(&database_location(folder)).is_some_and(|owner| owner != manifest.id_number());
-        // So is a database of another run.
+        // A database of another run is irrelevant, too.
         let database = if foreign { None } else { read_position(&database_location(folder)) };
         Integrity { snapshot, database, is_foreign_database: foreign, remarks }
     }
 
-    /// Checks that the trajectory contains the lines of database and snapshot.
+    /// Checks that the trajectory contains the last line of the database and the line of the snapshot.
     ///
     /// # Errors
     /// [`RunError::Damaged`] with the first missing or changed line.
@@ -58,22 +60,22 @@ impl Integrity {
             Err(RunError::Damaged {
                 path: path.to_owned(),
                 line: line as usize,
-                problem: format!("{problem} ({file} was made from it)"),
+                problem: format!("{problem} ({file} contains its result)"),
                 remedy: format!(
-                    "Lines 1 to {good} are intact; nothing was changed{RECOVERY_HINT}. To continue this run, restore the \
+                    "Lines 1 to {good} are valid; nothing was changed{RECOVERY_HINT}. To continue this run, restore the \
                      complete trajectory from a copy"
                 ),
             })
         })
     }
 
-    /// Returns whether the database has lines that the trajectory lacks.
+    /// Returns whether the database includes lines that are missing in the trajectory.
     pub(crate) fn is_database_ahead_of(&self, trajectory: &Trajectory) -> bool {
         let last = trajectory.lines.last().map(|line| line.seq);
         self.database.as_ref().is_some_and(|position| Some(position.seq) > last)
     }
 
-    /// Returns whether the database file is the one that was left when the run was closed; `None` if this is unknown.
+    /// Returns whether the database file is unchanged since the run was closed, or `None` if this is unknown.
     fn matches_closing_digest(&self, folder: &Path) -> Option<bool> {
         let position = self.database.as_ref()?;
         let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position)?;
@@ -81,7 +83,7 @@ impl Integrity {
         Some(file_digest(&folder.join("world.db")).as_deref() == Some(digest))
     }
 
-    /// Returns the database of an ended run, if its file is unchanged and complete.
+    /// Returns the database of an ended run, if the database file is unchanged and complete.
     pub(crate) fn finished_database(
         &self,
         folder: &Path,
@@ -95,7 +97,7 @@ impl Integrity {
             .then_some(location)
     }
 
-    /// Returns the snapshot, if its line is in the trajectory and the database lacks no row before it.
+    /// Returns the snapshot, if its line is in the trajectory and the database has all rows up to this line.
     pub(crate) fn usable_snapshot(
         &self,
         manifest: &Manifest,
@@ -109,8 +111,8 @@ impl Integrity {
         (line.hash == position.line_hash && complete).then_some(snapshot)
     }
 
-    /// Returns whether the database can be continued. Compares the digest of the file if the run was closed properly,
-    /// otherwise checks its structure.
+    /// Returns whether new rows can be added to the database. If the run was closed properly, compares the digest of
+    /// the database file. Otherwise, checks the structure of the file.
     pub(crate) fn check_database(&mut self, folder: &Path) -> bool {
         let file = folder.join("world.db");
         if !file.exists() {
@@ -124,7 +126,7 @@ impl Integrity {
             false if self.is_foreign_database => "belongs to another run",
             false => "is damaged",
             true if !has_current_layout(&database_location(folder)) => {
-                "was made by another version of the program"
+                "was written by another version of the program"
             }
             true => return true,
         };
@@ -143,19 +145,20 @@ pub(crate) fn is_database_unchanged(folder: &Path, key: &SealKey) -> bool {
     Integrity::read(folder, &manifest, key).matches_closing_digest(folder).unwrap_or(true)
 }
 
-/// Returns the line, from 1, that is missing or changed according to a stored position.
+/// Returns the number, from 1, of the line that is missing or changed according to a stored position, and the problem.
 fn find_contradiction(trajectory: &Trajectory, position: &ProjectionPosition) -> Option<(u64, &'static str)> {
     let last = trajectory.lines.last()?;
-    // An incomplete line is removed with a notice. A week without its closing lines is simulated again: week and end.
+    // An incomplete line is removed with a message. A week without its `week` and `end` lines is simulated again. Such
+    // lines may be missing.
     let is_open = matches!(last.record, Record::Advance(_) | Record::Voice(VoiceAnswer::Scores(_)));
     let has_model = matches!(&trajectory.lines[0].record, Record::Start(start) if start.voice.is_some());
-    // A language model that is not asked again writes no line for its texts and its scores.
+    // With a language model, two more lines may be missing, because the model is not asked again for texts and scores.
     let of_week = if has_model { 4 } else { 2 };
     let healing = if is_open { of_week } else { u64::from(trajectory.unfinished_bytes > 0) };
     match trajectory.lines.get(position.seq as usize) {
         None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
         Some(line) if line.hash != position.line_hash => {
-            Some((position.seq + 1, "the line is not the one that was recorded: it was changed"))
+            Some((position.seq + 1, "the line differs from the recorded line: it was changed"))
         }
         None | Some(_) => None,
     }

@@ -1,5 +1,5 @@
-//! Sealing: the state of a run is encrypted and authenticated, so that neither `strings` nor a parser can read hidden
-//! state (docs/formats/snapshot.md#sealing).
+//! Sealing of snapshots: the state of a run is encrypted and authenticated, so that neither `strings` nor a parser can
+//! read hidden state (docs/formats/snapshot.md#sealing).
 //!
 //! Keys are derived from the first line of the trajectory and, in a study, from a secret of the experimenter. The
 //! nonce is a keyed hash of the plain bytes, so that no two states of a run have the same key stream. The tag is a
@@ -7,10 +7,10 @@
 
 use std::fmt;
 
-/// Separates these keys from other uses of the same hash.
+/// Context string that separates the keys of snapshots from other keys that BLAKE3 derives.
 const KEY_CONTEXT: &str = "novamind 2026-11 sealed state of a run";
 const CHUNK_BYTES: usize = 1 << 12;
-/// Size of a nonce, a tag or a key, bytes.
+/// Size of a nonce, a tag or a key, in bytes.
 const KEY_BYTES: usize = 32;
 
 /// The secret part of the keys that seal snapshots.
@@ -20,7 +20,7 @@ pub struct SealKey {
 }
 
 impl SealKey {
-    /// Creates the key from the secret of a study, which is needed to unseal.
+    /// Creates a seal key from the secret of a study. Snapshots can then be unsealed only with this secret.
     pub fn with_study_secret(secret: &[u8; KEY_BYTES]) -> SealKey {
         SealKey { study_secret: Some(*secret) }
     }
@@ -75,7 +75,7 @@ impl Envelope {
 }
 
 impl RunKeys {
-    /// Seals header and state in place.
+    /// Encrypts header and state in place and returns the nonce and the tag.
     pub(super) fn seal(&self, header: &mut [u8], state: &mut [u8]) -> Envelope {
         let mut hasher = blake3::Hasher::new_keyed(&self.nonce);
         let nonce = *hasher.update(header).update(state).finalize().as_bytes();
@@ -84,7 +84,8 @@ impl RunKeys {
         Envelope { nonce, tag: *self.compute_tag(&nonce, &[header, state]).as_bytes() }
     }
 
-    /// Unseals in place and returns true if the tag is valid. Otherwise leaves the bytes unchanged.
+    /// Decrypts the bytes in place and returns true if the tag is valid. Otherwise, leaves the bytes unchanged and
+    /// returns false.
     pub(super) fn open(&self, envelope: &Envelope, sealed: &mut [u8]) -> bool {
         // Hashes are compared in constant time.
         let genuine = self.compute_tag(&envelope.nonce, &[sealed]) == blake3::Hash::from_bytes(envelope.tag);
@@ -103,8 +104,8 @@ impl RunKeys {
         hasher.finalize()
     }
 
-    /// Applies (XOR) the key stream of a nonce to bytes, starting at offset `from`. Uses only this thread: the
-    /// database writer calls it, and a simulation on all other threads may wait for the writer.
+    /// Encrypts or decrypts bytes by XOR with the key stream of a nonce, starting at offset `from`. Uses only this
+    /// thread, because the database writer calls this function while a simulation on all other threads may wait for the writer.
     fn apply_key_stream(&self, nonce: &[u8; KEY_BYTES], from: usize, bytes: &mut [u8]) {
         let mut stream = blake3::Hasher::new_keyed(&self.stream).update(nonce).finalize_xof();
         stream.set_position(from as u64);
@@ -174,7 +175,7 @@ mod tests {
         };
         let (one, two) = (seal(1), seal(2));
         assert_ne!(one.0.nonce, two.0.nonce);
-        // Sealed zeros are the key stream itself: no two of its blocks are equal.
+        // Sealed zeros equal the key stream, which must not repeat a block.
         let mut blocks: Vec<&[u8]> =
             [&one.1, &two.1].into_iter().flat_map(|bytes| bytes.chunks(32)).collect();
         let count = blocks.len();

@@ -12,50 +12,50 @@ use novamind_world::params::Params;
 /// A parameter whose current or scheduled value differs from the scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChangedParameter {
-    /// Full key.
+    /// Full key of the parameter.
     pub key: String,
     /// Value before the change, or in the scenario.
     pub old: Value,
-    /// New value.
+    /// Current or scheduled value.
     pub new: Value,
-    /// First simulated day with the new value; `None` if it is in force.
+    /// First simulated day with the new value; `None` if the value is in force.
     pub from_day: Option<u32>,
 }
 
 /// Differences between the parameters of a run and its scenario.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChangedParameters {
-    /// The bundled scenario that values are compared with; `None` if they are compared with the start of the run.
+    /// Bundled scenario with which the values are compared; `None` if they are compared with the start of the run.
     pub scenario: Option<String>,
-    /// Differing parameters in force, by key.
+    /// Parameters in force that differ, ordered by key.
     pub in_force: Vec<ChangedParameter>,
-    /// Scheduled changes, by day.
+    /// Scheduled changes, ordered by day.
     pub waiting: Vec<ChangedParameter>,
 }
 
-/// The parameters of a debug run.
+/// Read access to the parameters of a debug run.
 pub struct DebugParameters<'a>(CompanyView<'a>);
 
 impl<'a> CompanyView<'a> {
-    /// Returns the parameters for reading. Depends only on the mode of the run.
+    /// Returns read access to the parameters. Permission depends only on the mode of the run.
     ///
     /// # Errors
-    /// `not_in_this_mode`.
+    /// The rejection `not_in_this_mode`.
     pub fn debug_parameters(&self) -> Result<DebugParameters<'a>, Rejection> {
         require_debug_mode(self.manifest.mode).map(|()| DebugParameters(*self))
     }
 }
 
 impl DebugParameters<'_> {
-    /// Returns the value in force of a parameter, or of a list or table of parameters.
+    /// Returns the current value of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
-    /// `parameter_unknown`.
+    /// The rejection `parameter_unknown`.
     pub fn value(&self, key: &str) -> Result<Value, Rejection> {
         self.0.simulation.params.value(key).map(|value| value_to_json(&value)).map_err(unknown_parameter)
     }
 
-    /// Returns the parameters that differ from the scenario, and scheduled changes.
+    /// Returns the parameters that differ from the scenario, and the scheduled changes.
     ///
     /// # Errors
     /// `not_readable`: the parameters at the start of the run cannot be read.

@@ -1,4 +1,4 @@
-//! Plans that differ only in price: subscribers of the more expensive one get nothing more.
+//! Detection of plans that differ only in price, so that the more expensive plan has no benefit.
 
 use serde::Serialize;
 
@@ -6,25 +6,25 @@ use super::CompanyView;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::settings::{PerPlan, Settings};
 
-/// Two plans with the same model tier, quota, promotions and targeted operations.
+/// Two plans with the same model tier, quota, discounts and targeted operations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct IdenticalPlans {
-    /// The less expensive one; the first if the prices are equal.
+    /// The less expensive plan, or the first plan if the prices are equal.
     pub cheap: Plan,
-    /// The other one.
+    /// The other plan.
     pub dear: Plan,
-    /// List price of the less expensive plan, dollars a month.
+    /// List price of the less expensive plan, dollars per month.
     pub cheap_price: f64,
-    /// List price of the other plan, dollars a month.
+    /// List price of the other plan, dollars per month.
     pub dear_price: f64,
-    /// Active subscriptions of the other plan.
+    /// Active subscriptions to the other plan.
     pub subscribers: u32,
-    /// Whether they differed only in price already at the end of the last week.
+    /// Whether the plans already differed only in price at the end of the last week.
     pub before: bool,
 }
 
 impl CompanyView<'_> {
-    /// Returns pairs of plans on sale that differ only in price under the settings in force from the next day.
+    /// Returns the pairs of plans on sale that differ only in price, according to the settings in force from the next day.
     pub(crate) fn identical_plans(&self) -> Vec<IdenticalPlans> {
         let (now, before) = (&self.simulation.world.settings, &self.history.week_actions.settings);
         let pairs = [(Plan::A, Plan::B), (Plan::A, Plan::C), (Plan::B, Plan::C)];

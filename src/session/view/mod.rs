@@ -1,4 +1,4 @@
-//! A read-only view of a company for its player: no files, records or hidden state.
+//! A read-only view of a company for its player, without access to files, records or hidden state.
 
 pub(crate) mod debug_parameters;
 pub(crate) mod identical_plans;
@@ -35,7 +35,7 @@ use novamind_world::market::surges::week_end;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-/// A read-only view of the company of a run, as its player may see it.
+/// A read-only view of the company of a run that contains only what its player may see.
 #[derive(Clone, Copy)]
 pub struct CompanyView<'a> {
     pub(crate) manifest: &'a Manifest,
@@ -46,12 +46,12 @@ pub struct CompanyView<'a> {
 }
 
 impl<'a> CompanyView<'a> {
-    /// Returns the settings changed since the last week, with old and new values.
+    /// Returns the settings that changed since the last week, with old and new values.
     pub fn setting_changes(&self) -> Vec<SettingChange> {
         self.history.setting_changes(&self.simulation.world)
     }
 
-    /// Returns the current values of a tool's arguments, as a call would send them.
+    /// Returns the arguments of a tool call that would set the current values.
     pub fn current_arguments(&self, tool: impl AsRef<str>) -> Map<String, Value> {
         find(tool.as_ref())
             .map(|tool| tool.current_arguments(&self.simulation.world.settings))
@@ -80,7 +80,7 @@ impl<'a> CompanyView<'a> {
         week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
     }
 
-    /// Returns the posts of other authors, ordered by number.
+    /// Returns the social feed's posts of other authors, ordered by number.
     pub fn posts(&self) -> &'a [PublicPost] {
         &self.simulation.feed.posts
     }
@@ -90,17 +90,17 @@ impl<'a> CompanyView<'a> {
         &self.history.calculation_outputs
     }
 
-    /// Returns the decisions before each simulated week, in order; single steps count as weeks.
+    /// Returns the decisions before each simulated week, in order. Single days of debug runs count as weeks.
     pub fn decisions(&self) -> &'a [Decisions] {
         &self.history.decisions
     }
 
-    /// Returns the notices of the last simulated days: day and text.
+    /// Returns the notices of the last simulated days, each with its day and text.
     pub fn notices(&self) -> &'a [(u32, String)] {
         &self.history.notices
     }
 
-    /// Returns the figures of the groups for every simulated week.
+    /// Returns the figures of all groups for every simulated week.
     pub fn group_weeks(&self) -> &'a [ByGroup<GroupWeek>] {
         &self.history.group_weeks
     }
@@ -110,7 +110,7 @@ impl<'a> CompanyView<'a> {
         &self.history.query_history
     }
 
-    /// Returns the limits of a query in this run.
+    /// Returns the row and time limits of a query in this run.
     pub fn query_limits(&self) -> QueryLimits {
         let limits = &self.simulation.params.limits;
         QueryLimits {
@@ -125,13 +125,12 @@ impl<'a> CompanyView<'a> {
         &self.simulation.names
     }
 
-    /// Returns the customer numbers.
+    /// Returns the customer numbers of all customers.
     pub fn customer_numbers(&self) -> &'a CustomerNumbers {
         &self.simulation.world.customers.numbers
     }
 
-    /// Returns the score: cash after the last day, 0 after a bankruptcy. `None` before the end and for abandoned
-    /// runs.
+    /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for abandoned runs.
     pub(crate) fn score(&self) -> Option<f64> {
         match self.history.ended {
             Some(RunEndReason::Horizon) => Some(self.simulation.world.finance.cash),
@@ -140,7 +139,7 @@ impl<'a> CompanyView<'a> {
         }
     }
 
-    /// Returns the running costs that follow from settings alone, dollars a day.
+    /// Returns the running costs that depend only on settings, in dollars per day.
     pub(crate) fn daily_cost(&self, settings: &Settings) -> f64 {
         let capacity = self.simulation.params.capacity(settings.core.capacity_tier);
         daily_cost(settings, f64::from(capacity.cost_per_day))
@@ -151,12 +150,12 @@ impl<'a> CompanyView<'a> {
         delivered_quality(&self.simulation.world, &self.simulation.params)
     }
 
-    /// Returns the quality before any improvement, and the bonus from development for all groups.
+    /// Returns the base quality, and the general bonus from development for all groups.
     pub fn base_quality(&self) -> (f64, f64) {
         (self.simulation.params.quality.base_product_quality, self.simulation.world.product.shared_bonus)
     }
 
-    /// Returns the estimates of every known group, in fixed order. Not recorded.
+    /// Returns the estimates of every known group, in fixed order. Does not record a tool call.
     pub fn estimates(&self) -> Vec<Estimates> {
         let limits = self.tool_limits();
         let of = |group: Group| {
@@ -177,7 +176,7 @@ impl<'a> CompanyView<'a> {
         Group::all().filter(|group| self.simulation.world.market.is_known(*group)).filter_map(of).collect()
     }
 
-    /// Returns the scores of the forecasts so far, one per horizon.
+    /// Returns the scores of the submitted forecasts, one score per horizon.
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
         let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
         let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
@@ -190,33 +189,33 @@ impl<'a> CompanyView<'a> {
         CashRate::from_weeks(self.daily_cost(&self.simulation.world.settings), &weeks)
     }
 
-    /// Returns the naive forecasts of cash.
+    /// Returns the naive forecasts of cash for all horizons.
     pub fn naive_forecasts(&self) -> Forecasts {
         let horizons = &self.simulation.params.limits.prediction_horizons_days;
         let cash = self.simulation.world.finance.cash;
         naive::naive_forecasts(cash, &self.cash_rate(), &self.history.weeks, horizons)
     }
 
-    /// Returns the capacity tier that a rule sets now.
+    /// Returns the capacity tier that a rule would set now.
     pub fn capacity_tier_by_rule(&self, rule: UsageCapacityRule) -> u8 {
         let now = self.simulation.world.settings.core.capacity_tier;
         rule.next_tier(now, self.history.weeks.last(), &self.simulation.params)
     }
 
-    /// Returns the capacity tier one step toward the smallest that serves the mean usage of the last week at 80 %
-    /// utilization.
+    /// Returns the capacity tier that is one step closer to the smallest tier that serves the mean usage of the last
+    /// week at 80 % utilization.
     pub fn capacity_step_toward_usage(&self) -> u8 {
         self.capacity_tier_by_rule(UsageCapacityRule::StepByStep)
     }
 
-    /// Returns the channel with most leads per dollar for a group at the start of the run. Only for ended runs,
-    /// because players cannot see it.
+    /// Returns the channel with most leads per dollar for a group at the start of the run. Returns `None` for
+    /// unfinished runs, because this channel is hidden from players.
     pub fn true_best_channel(&self, group: Group) -> Option<Channel> {
         self.history.ended.map(|_| best_starting_channel(group, &self.simulation.params))
     }
 }
 
-/// Returns the channel with the highest starting yield for a group; the first in channel order if yields are equal.
+/// Returns the channel with the highest yield for a group on day 0. If yields are equal, returns the first channel.
 pub fn best_starting_channel(group: Group, params: &Params) -> Channel {
     let yields = params.starting_yields();
     let better =

@@ -17,20 +17,20 @@ use novamind_voice::model::settings::ModelStamp;
 use novamind_world::day::closing_figures;
 use novamind_world::identifiers::{Group, Plan};
 
-/// A summary of the company.
+/// A summary of the company and its run for the player.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Observation {
-    /// Identifier of the run.
+    /// Id of the run.
     pub run: String,
-    /// Mode.
+    /// Mode of the run.
     pub mode: Mode,
-    /// Seed; `None` in studies, whose participants must not know it.
+    /// Seed of the run; `None` in studies, because participants must not know the seed.
     pub seed: Option<u64>,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Whether the parameters differ from those of the bundled scenario of that name.
+    /// Whether the parameters differ from the bundled scenario of the same name.
     pub has_own_parameters: bool,
-    /// Language model of the run.
+    /// Language model of the run, if one is used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
     /// Whether the run is a branch of another run.
@@ -43,41 +43,41 @@ pub struct Observation {
     pub last_day: u32,
     /// Week of the last simulated day.
     pub week: u32,
-    /// Cash, dollars.
+    /// Current cash, dollars.
     pub cash: f64,
     /// Cash on day 0, before any purchase, dollars.
     pub starting_cash: f64,
-    /// Change of cash over the last week, or over the simulated days of a started week, dollars; 0 before the first.
+    /// Cash change over the last week, or over the simulated days of a started week, dollars; 0 before the first day.
     pub cash_change: f64,
-    /// Number of days of that change: fewer than 7 after single days, or if the run ended within a week.
+    /// Number of days of the cash change: fewer than 7 after single days, or if the run ended within a week.
     pub cash_change_days: u32,
-    /// Ledger totals since the end of the last week: purchases, and simulated days of a started week.
+    /// Ledger totals since the end of the last week: purchases, and entries of simulated days of a started week.
     pub booked_since: CategoryTotals,
-    /// Rate at which cash changes.
+    /// Rate at which cash currently changes.
     pub pace: CashRate,
-    /// Commitments of the settings at the end of the last week, dollars a day.
+    /// Costs to which the settings at the end of the last week commit, dollars per day.
     pub committed_before: f64,
-    /// Weeks until cash is 0 at this rate; `None` if it lasts to the last day.
+    /// Weeks until cash is 0 at the current rate; `None` if cash lasts to the last day.
     pub runway_weeks: Option<f64>,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
-    /// Active enterprises.
+    /// Number of active enterprises.
     pub companies: u32,
-    /// Seats of active enterprises.
+    /// Number of seats of active enterprises.
     pub seats: u32,
     /// Known groups, in fixed order.
     pub known_groups: Vec<Group>,
-    /// How the run ended.
+    /// Reason for the end of the run; `None` if the run is unfinished.
     pub ended: Option<RunEndReason>,
-    /// Score; `None` before the end.
+    /// Score of the run; `None` before the end.
     pub score: Option<f64>,
-    /// Figures of the last week; `None` before the first.
+    /// Figures of the last week; `None` before the end of the first week.
     pub last_week: Option<WeekFigures>,
-    /// The dashboard of the last week, or a new one before the first.
+    /// Dashboard of the last week, or a newly built dashboard before the first week.
     pub dashboard: String,
-    /// Settings changed since the last week.
+    /// Settings that changed since the last week.
     pub changes: Vec<SettingChange>,
-    /// Purchases and other irrevocable actions since the last week, as text.
+    /// Descriptions of purchases and other irrevocable actions since the last week.
     pub purchases: Vec<String>,
     /// Plans that differ only in price.
     pub alike_plans: Vec<IdenticalPlans>,
@@ -94,40 +94,40 @@ pub struct Observation {
 pub struct WaitingThread {
     /// Number of the thread.
     pub thread: u32,
-    /// The enterprise.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// Its group.
+    /// Group of the enterprise.
     pub group: &'static str,
-    /// Seats, whole number.
+    /// Seats of the enterprise.
     pub seats: u32,
-    /// How the thread started.
+    /// Kind of the thread, which depends on how the thread started.
     pub kind: &'static str,
-    /// Number of its last turn.
+    /// Number of the last turn in the thread.
     pub turn: u32,
-    /// Number of the player's offers in it.
+    /// Number of offers that the player sent in the thread.
     pub offers_so_far: u32,
-    /// The player's last offer: plans with prices, dollars a month and seat.
+    /// The player's last offer: plans with prices, dollars per month and seat.
     pub last_offer: Vec<(Plan, f64)>,
-    /// Last price that the enterprise named, dollars a month and seat.
+    /// Last price that the enterprise named, dollars per month and seat.
     pub asked: Option<f64>,
-    /// Days left before the deadline of the thread.
+    /// Days until the deadline of the thread.
     pub days_left: u32,
 }
 
 impl Observation {
-    /// Returns the active subscriptions: of individuals, and one for each enterprise.
+    /// Returns the number of active subscriptions. Each active enterprise counts as one subscription.
     pub fn active_subscriptions(&self) -> u32 {
         self.subscribers + self.companies
     }
 
-    /// Returns the whole weeks that cash lasts at this rate; `None` if it lasts to the last day.
+    /// Returns the number of whole weeks that cash lasts at the current rate, or `None` if cash lasts to the last day.
     pub fn whole_runway_weeks(&self) -> Option<u32> {
         self.runway_weeks.map(|weeks| weeks as u32)
     }
 }
 
 impl CompanyView<'_> {
-    /// Returns a summary of the company.
+    /// Returns a summary of the company for the player.
     pub fn observe(&self) -> Observation {
         let (closing, pace) = (closing_figures(&self.simulation.world), self.cash_rate());
         Observation {
@@ -175,8 +175,8 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Returns the weekly dashboard as of the last simulated day, regardless of later settings. Before the first day,
-    /// builds it from the current state.
+    /// Returns the weekly dashboard after the last simulated day, which does not show later setting changes. Before
+    /// the first day, builds the dashboard from the current state.
     pub fn dashboard(&self) -> String {
         self.history
             .last_dashboard

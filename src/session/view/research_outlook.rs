@@ -1,5 +1,5 @@
-//! Expected duration and gain of an R&D project before its purchase. Derived from the parameters in force, not from
-//! random draws of the run.
+//! Expected duration and gain of an R&D project before its purchase. The values are derived from the parameters in
+//! force, not from random draws of the run.
 
 use serde::Serialize;
 
@@ -10,62 +10,62 @@ use novamind_world::product::research_distribution::{
     duration_quantile, gain_quantile, mean_days, mean_gain, share_at_minimum_gain, share_done_within,
 };
 
-/// Outlook for a project that is started now.
+/// The expected duration and gain of an R&D project that is started now.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResearchOutlook {
     /// First possible day of completion.
     pub earliest: u32,
     /// Last day of the run.
     pub last_day: u32,
-    /// Mean duration and gain of the tier.
+    /// Mean duration and gain of projects of the tier.
     pub means: ResearchMeans,
-    /// Distribution of the tier's projects; `None` in a baseline session, because agents do not receive it.
+    /// Distribution of duration and gain; `None` in baseline runs, because agents do not receive the distribution.
     pub spread: Option<ResearchSpread>,
 }
 
-/// Mean duration and gain of a tier's projects, with the minimum duration and gain applied.
+/// Mean duration and gain of R&D projects of a tier, with the minimum duration and gain applied.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResearchMeans {
-    /// Duration, days.
+    /// Mean duration, days.
     pub days: f64,
-    /// Quality gain.
+    /// Mean quality gain.
     pub gain: f64,
-    /// Whether both are lower bounds, as in a baseline session: agents receive means without the spread.
+    /// Whether both means are lower bounds, as in baseline runs, because agents receive only means without the spread.
     pub are_lower_bounds: bool,
 }
 
-/// Distribution of a tier's projects that are started now.
+/// Distribution of duration and gain of R&D projects of a tier that are started now.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResearchSpread {
-    /// Share that finishes on the first possible day, 0..=1.
+    /// Share of projects that finish on the first possible day, 0 to 1.
     pub at_earliest: f64,
-    /// Days by which 25 %, 50 % and 75 % finish.
+    /// Days by which 25 %, 50 % and 75 % of projects finish.
     pub quartile_days: [u32; 3],
-    /// Share that finishes by the last day of the run, 0..=1.
+    /// Share of projects that finish by the last day of the run, 0 to 1.
     pub by_last_day: f64,
-    /// Quality gains that 25 %, 50 % and 75 % do not exceed.
+    /// Quality gains that 25 %, 50 % and 75 % of projects do not exceed.
     pub quartile_gains: [f64; 3],
-    /// The minimum gain.
+    /// Minimum quality gain.
     pub least_gain: f64,
-    /// Share with the minimum gain, 0..=1.
+    /// Share of projects with the minimum gain, 0 to 1.
     pub at_least_gain: f64,
 }
 
-/// A project that will not finish before the last day.
+/// An R&D project that will not finish by the last day.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LateProject {
-    /// Its identifier.
+    /// Id of the project.
     pub id: String,
-    /// Day of completion.
+    /// Day on which the project will finish.
     pub due_day: u32,
-    /// Whether it was started since the last week.
+    /// Whether the project was started since the last week.
     pub is_new: bool,
 }
 
 const QUARTILES: [f64; 3] = [0.25, 0.5, 0.75];
 
 impl CompanyView<'_> {
-    /// Returns the outlook for a project of a tier, 1..=20, that is started now.
+    /// Returns the expected duration and gain of a project that is started now. R&D tiers are 1 to 20.
     pub fn research_outlook(&self, tier: u8) -> ResearchOutlook {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let (research_tier, development) =
@@ -90,7 +90,7 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Returns the means of every R&D tier, lowest first.
+    /// Returns the mean duration and gain of every R&D tier, lowest tier first.
     pub fn research_means(&self) -> Vec<ResearchMeans> {
         self.simulation.params.research_tier.iter().map(|tier| self.tier_means(tier)).collect()
     }
@@ -111,7 +111,8 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Returns projects with a completion day after the last day. The response to their start named that day.
+    /// Returns the projects that will finish after the last day. Their completion days are not hidden: the tool call
+    /// that started a project returned its day.
     pub(crate) fn late_projects(&self) -> Vec<LateProject> {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let projects = self.simulation.world.product.research.iter();

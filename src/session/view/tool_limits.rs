@@ -1,92 +1,92 @@
-//! Limits that the documentation of the tools states: prices, delays, errors.
+//! Limits that the documentation of the tools states: prices, delays and errors.
 
 use super::CompanyView;
 use novamind_world::identifiers::Group;
 use novamind_world::product::development::targeted_development_gain;
 use novamind_world::product::service::outage_probability;
 
-/// A study level of a group.
+/// A study level and the cost of reaching it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StudyLevel {
-    /// Level, 1..=5; level 1 is reached by discovery.
+    /// Study level, 1 to 5; level 1 is reached by discovery.
     pub level: u8,
-    /// Cost in dollars, paid at once.
+    /// Cost of a study to this level, dollars, paid at once.
     pub cost: f64,
-    /// Days until completion.
+    /// Days from the order to the completion of the study.
     pub days: u32,
-    /// Maximum relative error of an estimate.
+    /// Maximum relative error of an estimate at this level.
     pub noise: f64,
 }
 
-/// A capacity tier.
+/// A capacity tier with its capacity and cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapacityTier {
-    /// Capacity, units a day.
+    /// Number of the capacity tier.
     pub tier: u8,
-    /// Units a day.
+    /// Capacity, units per day.
     pub units: f64,
-    /// Cost, dollars a day.
+    /// Cost, dollars per day.
     pub cost: f64,
 }
 
-/// A model tier.
+/// A model tier with its cost and quality.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelTier {
-    /// Tier, 1..=5.
+    /// Number of the model tier, 1 to 5.
     pub tier: u8,
-    /// Cost, dollars a unit.
+    /// Compute cost, dollars per unit.
     pub unit_cost: f64,
-    /// Factor of the product quality.
+    /// Factor by which the product quality is multiplied.
     pub multiplier: f64,
 }
 
-/// Limits of the tools.
+/// Limits and prices that the tools of a run have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToolLimits {
-    /// Maximum length of a post, characters.
+    /// Maximum length of a post, in characters.
     pub post_characters: usize,
     /// Cost of an attempt at market research, dollars.
     pub attempt_cost: f64,
-    /// Probability that an attempt finds a group.
+    /// Probability that one attempt discovers a group.
     pub attempt_chance: f64,
-    /// Study levels, lowest first.
+    /// Study levels, lowest level first.
     pub levels: Vec<StudyLevel>,
-    /// Lowest and highest level that a study can have as target.
+    /// Lowest and highest target level of a study.
     pub targets: (u8, u8),
-    /// Days between two measurements of the economy; the first is on day 1.
+    /// Days between two measurements of the economy; the first measurement is on day 1.
     pub economy_every_days: u32,
     /// Days from a measurement to its publication.
     pub economy_lag_days: u32,
-    /// Capacity tiers, lowest first.
+    /// Capacity tiers, lowest tier first.
     pub capacities: Vec<CapacityTier>,
-    /// Model tiers, lowest first.
+    /// Model tiers, lowest tier first.
     pub models: Vec<ModelTier>,
-    /// Issues of individuals that operations resolve per day: without spending, and per dollar.
+    /// Issues of individuals that are resolved per day: without operations spending, and per dollar of spending.
     pub issues_solved: (f64, f64),
-    /// Names of competitors in the news.
+    /// Names of competitors that appear in the news.
     pub competitors: Vec<String>,
 }
 
 impl ToolLimits {
-    /// Returns the data of a study level.
+    /// Returns the limits of a study level, if the level exists.
     pub fn study_level(&self, level: u8) -> Option<&StudyLevel> {
         self.levels.iter().find(|study_level| study_level.level == level)
     }
 
-    /// Returns each model tier with its cost, dollars a unit.
+    /// Returns each model tier with its compute cost, dollars per unit.
     pub fn unit_costs(&self) -> Vec<(u8, f64)> {
         self.models.iter().map(|model| (model.tier, model.unit_cost)).collect()
     }
 }
 
-/// A running study.
+/// A market study that is not completed yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RunningStudy {
-    /// Group.
+    /// Group that is studied.
     pub group: Group,
-    /// Target level.
+    /// Study level after completion.
     pub target: u8,
-    /// Day of completion, as returned when it was ordered.
+    /// Day of completion, as returned when the study was ordered.
     pub due_day: u32,
 }
 
@@ -131,19 +131,19 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Returns the share of days with an outage while demand is within capacity, at a spend on operations in dollars
-    /// a day.
+    /// Returns the share of days with an outage while demand is within capacity. `operations` is the operations
+    /// spending in dollars per day.
     pub fn outage_share(&self, operations: f64) -> f64 {
         outage_probability(operations, 0.0, &self.simulation.params.operations)
     }
 
-    /// Returns the quality that a day of targeted development adds for a group before the model's multiplier, at a
-    /// spend in dollars a day.
+    /// Returns the quality that one day of targeted development adds for a group, before the quality factor of the
+    /// model. `dollars` is the spending per day.
     pub fn targeted_development_gain(&self, dollars: f64) -> f64 {
         targeted_development_gain(dollars, &self.simulation.params.development)
     }
 
-    /// Returns the running studies, in order of purchase.
+    /// Returns the running market studies, in order of purchase.
     pub fn running_studies(&self) -> Vec<RunningStudy> {
         let of = |study: &novamind_world::events::Study| RunningStudy {
             group: study.group,

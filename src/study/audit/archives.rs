@@ -1,4 +1,4 @@
-//! Checks that archives among the runs are signed by the lab of the study.
+//! Checks that archives in the folders of runs are signed by the lab of the study.
 
 use std::path::{Path, PathBuf};
 
@@ -9,11 +9,11 @@ use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_session::{LabPublicKey, TemporaryFolder, import_run, is_archive_name};
 
-/// Returns a finding for each archive of the study that is damaged or not signed by the lab. Without a public key nothing is
-/// checked.
+/// Returns a finding for each archive of the study that is damaged or not signed by the lab. Returns no findings if
+/// the study has no public key.
 ///
 /// # Errors
-/// Fails if the public key cannot be read, or if there is no folder to unpack into.
+/// Returns an error if the public key cannot be read, or if no temporary folder can be created for unpacking.
 pub(super) fn unsigned_archives(study: &Study, folders: &[PathBuf]) -> Result<Vec<AuditFinding>, RunError> {
     let Some(lab) = load_lab_public_key(&study.folder)? else { return Ok(Vec::new()) };
     let workshop = TemporaryFolder::create_in(&std::env::temp_dir())?;
@@ -45,7 +45,7 @@ fn check_signature(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Pa
         .and_then(|()| import_run(place, archive, None));
     let (seal, signer, _) = match unpacked {
         Ok(unpacked) => unpacked,
-        // The run of an unreadable archive is unknown.
+        // The run ID of an unreadable archive is unknown.
         Err(problem) => return Some(finding(FindingKind::Damaged, "?", None, problem.to_string())),
     };
     let manifest = Manifest::read(&place.join(&seal.run)).ok()?;

@@ -3,14 +3,15 @@
 use novamind_record::trajectory::record::{Activity, Presence};
 use novamind_record::trajectory::{Line, Record};
 
-/// Correction of a running clock that is not reported, seconds.
+/// Largest correction of a running clock that is not reported, seconds.
 const MAX_CORRECTION_SECONDS: f64 = 2.0;
-/// Drift between the two clocks that is not reported, seconds per second: the fastest rate at which the Linux kernel slews a
-/// clock.
+/// Largest drift between the two clocks that is not reported, seconds per second. It is the highest rate at which the
+/// Linux kernel slews a clock.
 const MAX_DRIFT: f64 = 500e-6;
 
-/// Returns the lines before which the wall clock was changed, each with an explanation. Between two lines, the wall clock
-/// must not go back. Between two `session` lines of one start of the machine, it must agree with the monotonic clock.
+/// Returns the lines before which the wall clock was changed, each with an explanation. The wall clock must not go
+/// back between two lines. It must agree with the monotonic clock between two `session` lines that were written since
+/// the same start of the machine.
 pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Vec<(&'a Line, String)> {
     let (mut found, mut before, mut earlier) = (Vec::new(), None::<&Line>, None::<(&Line, &Presence)>);
     let mut is_known = false;
@@ -29,7 +30,7 @@ pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Ve
     found
 }
 
-/// Returns an explanation if the two clocks disagree between two `session` lines.
+/// Returns an explanation if the wall clock and the monotonic clock disagree between two `session` lines.
 fn clock_disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) -> Option<String> {
     let ((before, from), (line, to)) = (earlier, later);
     let steady = (to.monotonic_ms as f64 - from.monotonic_ms as f64) / 1e3;

@@ -1,4 +1,4 @@
-//! Figures on how a run was played. They are not findings.
+//! Facts about how a run was played, which are reported in addition to findings.
 
 use serde::Serialize;
 
@@ -7,34 +7,34 @@ use novamind_record::trajectory::record::{Activity, Outcome};
 use novamind_record::trajectory::{Record, Trajectory};
 use novamind_session::{Attendance, SessionCount};
 
-/// Figures on how a run of a study was played.
+/// Facts about how a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunFacts {
-    /// Run.
+    /// ID of the run.
     pub run: String,
-    /// Label.
+    /// Label of the participant.
     pub participant: Option<String>,
-    /// Condition.
+    /// Condition of the participant.
     pub condition: Option<String>,
-    /// Whether it is the practice run.
+    /// Whether the run is the practice run.
     pub practice: bool,
-    /// Time of creation, RFC 3339.
+    /// Time at which the run was created, RFC 3339.
     pub created: String,
-    /// Time of the last line, RFC 3339.
+    /// Time of the last line of the trajectory, RFC 3339.
     pub last_at: String,
-    /// Number of lines.
+    /// Number of lines of the trajectory.
     pub lines: u64,
     /// Number of simulated weeks.
     pub weeks: u32,
-    /// Reason of the end; `None` if the run has not ended.
+    /// Reason why the run ended; `None` if it has not ended.
     pub ended: Option<String>,
-    /// Number of sittings.
+    /// Number of times that the run was opened.
     pub sittings: u32,
-    /// Number of sittings without a closing line: the program was killed, or is still running.
+    /// Number of times that the run was opened and not closed: the program was killed or is still running.
     pub unclosed_sittings: u32,
-    /// Number of rejected calls and weeks.
+    /// Number of rejected tool calls and rejected weeks.
     pub refusals: u32,
-    /// Number of weeks in which the naive projection filled at least one forecast.
+    /// Number of weeks with at least one naive forecast.
     pub naive_weeks: u32,
     /// Number of weeks that were decided in less than ten active seconds.
     pub fast_weeks: u32,
@@ -42,7 +42,7 @@ pub struct RunFacts {
     pub pasted: Option<u64>,
     /// Number of attention checks that were not answered as expected.
     pub failed_checks: u32,
-    /// Longest time between successive lines, seconds.
+    /// Longest time between two successive lines, seconds.
     pub longest_gap: f64,
 }
 

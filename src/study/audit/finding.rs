@@ -1,21 +1,21 @@
-//! Findings of an audit.
+//! Findings of the audit of a study.
 
 use serde::Serialize;
 
-/// A contradiction that an honest session does not cause.
+/// A contradiction in the records that an honest session does not cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct AuditFinding {
-    /// Kind of finding.
+    /// Kind of this finding.
     pub kind: FindingKind,
-    /// Run; empty if the finding is not about a run.
+    /// ID of the run; empty if the finding is not about a run.
     pub run: String,
     /// Label of the participant, if known.
     pub participant: Option<String>,
     /// Line of the trajectory, from 1, if the finding is about a line.
     pub line: Option<u64>,
-    /// Time, RFC 3339; empty if unknown.
+    /// Time of the contradiction, RFC 3339; empty if unknown.
     pub at: String,
-    /// Description.
+    /// Description of the contradiction.
     pub words: String,
 }
 
@@ -25,36 +25,36 @@ pub struct AuditFinding {
 pub enum FindingKind {
     /// The folders contain no run of the study.
     NothingExamined,
-    /// The record is missing.
+    /// A run or its record is missing.
     Missing,
-    /// The record is damaged.
+    /// The record of the run is damaged.
     Damaged,
-    /// The database or the snapshot contains lines that the trajectory lacks.
+    /// The database or the snapshot contains lines that are missing in the trajectory.
     Cut,
-    /// Simulation does not reproduce the recorded states.
+    /// The re-simulation of the run does not reproduce the recorded states.
     NotReached,
     /// Lines could not be appended to the trajectory during the run.
     Unsaved,
-    /// The run belongs to another version of the protocol.
+    /// The run belongs to a different version of the protocol.
     OtherProtocol,
-    /// `run.toml` was edited.
+    /// `run.toml` differs from the first line of the trajectory.
     Manifest,
     /// Participant, seed, condition, rules or consent differ from the study.
     Assignment,
-    /// The recorded list of earlier runs lacks a run of the machine.
+    /// The recorded list of earlier runs does not contain an older run of the participant.
     EarlierRuns,
     /// Hidden state of a session's seed was viewed before the session ended.
     HiddenState,
-    /// The clock of the machine was changed.
+    /// The clock of the machine was changed during the run.
     Clock,
-    /// A participant has two sessions.
+    /// A participant has more than one session.
     SecondSession,
-    /// An archive is not signed by the lab.
+    /// An archive is not signed by the lab of the study.
     NotSigned,
 }
 
 impl FindingKind {
-    /// Every kind, most severe first.
+    /// Every kind of finding, most severe first.
     pub const ALL: [FindingKind; 14] = [
         FindingKind::NothingExamined,
         FindingKind::Missing,
@@ -72,7 +72,7 @@ impl FindingKind {
         FindingKind::NotSigned,
     ];
 
-    /// Returns the name for reports.
+    /// Returns the name of the kind that reports show.
     pub fn title(self) -> &'static str {
         match self {
             FindingKind::NothingExamined => "nothing examined",

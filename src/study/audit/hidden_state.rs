@@ -1,4 +1,4 @@
-//! Recorded views of the hidden state of a seed whose sessions had not ended.
+//! Detects recorded views of hidden state while sessions with the same seed had not ended.
 
 use super::run_record::RunRecord;
 use super::{AuditFinding, FindingKind};
@@ -10,7 +10,7 @@ use novamind_record::trajectory::record::Activity;
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::read_afterwards;
 
-/// The first moment at which a run showed hidden state.
+/// The first recorded view of hidden state in a run.
 struct HiddenView {
     seconds: f64,
     at: String,
@@ -19,8 +19,8 @@ struct HiddenView {
     words: String,
 }
 
-/// Returns a finding for each run that showed the hidden state of a session's seed before that session ended. The record
-/// does not identify the viewer.
+/// Returns a finding for each run in which the hidden state of a session's seed was viewed before the session ended.
+/// The record does not identify the viewer.
 pub(super) fn hidden_view_findings(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     let sessions: Vec<(&RunRecord, &Manifest, Option<f64>)> =
         runs.iter().filter_map(|run| study_session(study, run)).collect();
@@ -60,7 +60,7 @@ pub(super) fn hidden_view_findings(study: &Study, runs: &[&RunRecord]) -> Vec<Au
     runs.iter().filter_map(finding).collect()
 }
 
-/// Returns the run if it is a session of the study, with the time at which it ended, if it has.
+/// Returns the run with its manifest and the time of its end, or `None` if the run is not a session of the study.
 fn study_session<'a>(
     study: &Study,
     run: &'a RunRecord,

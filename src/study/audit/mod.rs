@@ -1,8 +1,8 @@
-//! The audit of a study: contradictions within and between its records, each with its line and its time.
+//! The audit of a study: contradictions within and between its records, each with line and time.
 //!
-//! A participant who controls the machine can change every file on it. The audit compares what the records contain: the
-//! chain of hashes, the simulation, the database and the snapshot, the assignment, two clocks. It cannot find a run that
-//! was continued in a copy of its folder, or lines that were rewritten with correct hashes.
+//! A participant who controls the machine can change every file on it. The audit therefore compares the records with
+//! each other: the chain of hashes, the simulation, the database and the snapshot, the assignment, and two clocks. The
+//! audit cannot find a run that was continued in a copy of its folder, or lines that were rewritten with correct hashes.
 
 mod archives;
 mod clock;
@@ -30,23 +30,23 @@ use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{Integrity, read_afterwards, verify_sealed};
 use run_record::{RunRecord, read_runs};
 
-/// The result of an audit.
+/// The result of the audit of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AuditReport {
-    /// Runs of the study, sorted by participant and run.
+    /// Facts about the runs of the study, sorted by participant and run.
     pub runs: Vec<RunFacts>,
     /// Findings, sorted by run, line and kind.
     pub findings: Vec<AuditFinding>,
-    /// Number of runs in the folders that belong to studies with another name. They were not examined.
+    /// Number of runs that belong to a study with a different name and were not examined.
     pub runs_of_other_studies: usize,
     /// Number of participants by outcome.
     pub visits: VisitSummary,
 }
 
-/// Audits the runs of a study in its machines' folders of runs or in copies of them.
+/// Audits the runs of a study in the folders of runs of its machines, or in copies of these folders.
 ///
 /// # Errors
-/// Fails if the public key of the lab cannot be read.
+/// Returns an error if the public key of the lab cannot be read.
 pub fn audit_study(study: &Study, machines: &[PathBuf]) -> Result<AuditReport, RunError> {
     let records: Vec<Vec<RunRecord>> = machines.iter().map(|base| read_runs(base)).collect();
     let mut audit = AuditReport {
@@ -83,7 +83,7 @@ pub fn audit_study(study: &Study, machines: &[PathBuf]) -> Result<AuditReport, R
             other.kind,
         ))
     });
-    // Folders may be copies of one another.
+    // Removes duplicate findings, because one folder may be a copy of another folder.
     audit.findings.dedup();
     Ok(audit)
 }
@@ -95,7 +95,9 @@ fn missing_run_finding(visit: &VisitLine) -> AuditFinding {
         participant: Some(visit.label.clone()),
         line: None,
         at: visit.at.clone(),
-        words: format!("{VISITS_FILE} records that this participant finished, but there is no run of theirs"),
+        words: format!(
+            "{VISITS_FILE} records that this participant finished, but the participant has no run"
+        ),
     }
 }
 
@@ -128,15 +130,16 @@ fn nothing_examined_finding(
 fn unexamined_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
     let (kind, at, words) = match (&run.manifest, run.stamp()) {
         (None, _) => {
-            let words = "neither its first line nor run.toml can be read, so its study is unknown".to_owned();
+            let words =
+                "the study of this run is unknown, because neither its first line nor run.toml can be read"
+                    .to_owned();
             (FindingKind::Damaged, String::new(), words)
         }
         (Some(manifest), Some(stamp))
             if stamp.name == study.protocol.name && stamp.digest != study.digest =>
         {
             let words = format!(
-                "it was played under the protocol digest {}, not {}. It was not examined. Audit it with the study \
-                 folder that has its digest",
+                "the run has the protocol digest {}, not {}, and was not examined. Audit it with the study folder that has its digest",
                 shorten_digest(&stamp.digest),
                 study.short_digest()
             );
@@ -148,7 +151,7 @@ fn unexamined_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFinding
     Some(AuditFinding { kind, run: run.id.clone(), participant, line: None, at, words })
 }
 
-/// A run and all runs of its machine.
+/// A run of the study with all runs of the same machine.
 struct RunAudit<'a> {
     study: &'a Study,
     machine: &'a [RunRecord],
@@ -206,7 +209,7 @@ impl RunAudit<'_> {
         unsaved.map(|name| self.finding(FindingKind::Unsaved, None, "", words(name))).collect()
     }
 
-    /// Returns a finding if simulation does not reproduce the recorded states.
+    /// Returns a finding if the re-simulation of the run does not reproduce the recorded states.
     fn check_simulation(&self) -> Option<AuditFinding> {
         let problem = verify_sealed(&self.run.folder.join("trajectory.jsonl"), &self.study.seal_key).err()?;
         let line = match &problem {
@@ -216,7 +219,7 @@ impl RunAudit<'_> {
         Some(self.finding(FindingKind::NotReached, line, "", problem.to_string()))
     }
 
-    /// Returns a finding if the database or the snapshot contains lines that the trajectory lacks.
+    /// Returns a finding if the database or the snapshot contains lines that are missing in the trajectory.
     fn check_against_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
         let manifest = self.run.manifest.as_ref()?;
         let path = self.run.folder.join("trajectory.jsonl");
@@ -229,7 +232,7 @@ impl RunAudit<'_> {
         }
     }
 
-    /// Returns findings on contradictions between `run.toml` and the first line.
+    /// Returns findings on contradictions between `run.toml` and the first line of the trajectory.
     fn check_manifest(&self) -> Vec<AuditFinding> {
         let manifests = self.run.manifest.iter();
         manifests
@@ -238,7 +241,7 @@ impl RunAudit<'_> {
             .collect()
     }
 
-    /// Returns findings if participant, seed, condition, rules or consent differ from the study.
+    /// Returns findings if the participant, seed, condition, rules or consent of the run differ from the study.
     fn check_assignment(&self, trajectory: &Trajectory) -> Vec<AuditFinding> {
         let (Some(manifest), Some(first)) = (&self.run.manifest, trajectory.lines.first()) else {
             return Vec::new();
@@ -257,7 +260,7 @@ impl RunAudit<'_> {
         // Earlier builds recorded `code_words`, which does not affect a run.
         let rules = SessionRules { code_words: None, ..manifest.recorded_rules() };
         if rules != self.study.session_rules() {
-            wrong.push("its rules differ from those of the protocol".to_owned());
+            wrong.push("its rules differ from the rules of the protocol".to_owned());
         }
         if self.study.consent.is_some() && manifest.consent.is_none() {
             wrong.push("it records no consent to the text of the study".to_owned());
@@ -274,7 +277,7 @@ impl RunAudit<'_> {
                     }),
                 );
                 if stamp.is_some_and(|stamp| stamp.condition != place.condition) {
-                    wrong.push(format!("{label} was assigned another condition"));
+                    wrong.push(format!("{label} was assigned a different condition"));
                 }
             }
             None => {}
@@ -286,14 +289,14 @@ impl RunAudit<'_> {
     }
 
     fn check_clock(&self, trajectory: &Trajectory, afterwards: &[Line]) -> Vec<AuditFinding> {
-        // The closing line of the last sitting follows the end of the run.
+        // Lines after the end of the run are included, because they contain the line that closes the run.
         let changes = clock::clock_changes(trajectory.lines.iter().chain(afterwards)).into_iter();
         changes
             .map(|(line, words)| self.finding(FindingKind::Clock, Some(line.seq + 1), &line.at, words))
             .collect()
     }
 
-    /// Returns findings on older runs of the participant that the first line does not list.
+    /// Returns findings on older runs of the participant that the first line of the run does not list.
     fn check_earlier_runs(&self) -> Vec<AuditFinding> {
         let Some(manifest) = &self.run.manifest else { return Vec::new() };
         let began = parse_seconds(&manifest.created);
@@ -323,7 +326,7 @@ fn duplicate_sessions(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
         let Some(manifest) = &run.manifest else { continue };
         if manifest.study.as_ref().is_some_and(|stamp| !stamp.practice) {
             let known = sessions.entry(manifest.participant.clone().unwrap_or_default()).or_default();
-            // The same run in two folders is a copy.
+            // A run that is found in two folders is a copy and not a second session.
             if !known.iter().any(|other| other.id == run.id && is_copy(other, run)) {
                 known.push(run);
             }

@@ -1,4 +1,4 @@
-//! The runs in a folder of runs.
+//! Reads the runs in a machine's folder of runs.
 
 use std::path::{Path, PathBuf};
 
@@ -9,16 +9,16 @@ use novamind_record::folder::runs::all_run_folders;
 use novamind_record::stamp::StudyStamp;
 use novamind_record::trajectory::Trajectory;
 
-/// A run as read from its folder.
+/// A run that was read from its folder.
 pub(super) struct RunRecord {
     pub id: String,
     pub folder: PathBuf,
-    /// The manifest in the first line, or in `run.toml` if that line cannot be read.
+    /// The manifest in the first line of the trajectory, or in `run.toml` if the line cannot be read.
     pub manifest: Option<Manifest>,
     pub trajectory: Result<Trajectory, RunError>,
 }
 
-/// Reads every run in a machine's folder of runs, those of participants included, ordered by path.
+/// Reads every run in a machine's folder of runs and in the folders of its participants, sorted by path.
 pub(super) fn read_runs(base: &Path) -> Vec<RunRecord> {
     let folders = all_run_folders(base);
     let entries = |folder: &PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -49,7 +49,7 @@ impl RunRecord {
         self.stamp().is_some_and(|stamp| stamp.digest == study)
     }
 
-    /// Returns whether the run belongs to a study with another name.
+    /// Returns whether the run belongs to a study with a different name.
     pub(super) fn belongs_to_another_study(&self, study: &Study) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
     }

@@ -62,39 +62,39 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"limit": 1}"#,
 };
 
-/// Maximum number of posts.
+/// Maximum number of posts that a call returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostLimit {
-    /// The default number.
+    /// The number of posts in the parameters.
     Default,
-    /// At most this number.
+    /// At most this number of posts.
     Newest(usize),
-    /// No limit.
+    /// All posts.
     All,
 }
 
 /// Posts of other authors, newest first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SocialPosts {
-    /// Posts.
+    /// Returned posts, newest first.
     pub posts: Vec<SocialPost>,
     /// Number of returned posts; absent if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total: Option<usize>,
 }
 
-/// A post of another author.
+/// A post of an author other than the player.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SocialPost {
-    /// Number.
+    /// Number of the post.
     pub post_id: u32,
-    /// Day.
+    /// Day on which the post was published.
     pub day: u32,
-    /// Text.
+    /// Text of the post.
     pub content: String,
-    /// Post of the company on which it comments.
+    /// Number of the company's post, if this post is a comment.
     pub reply_to_agent_post_id: Option<u32>,
-    /// Group whose mood a comment expresses.
+    /// Group whose mood a comment on the company's post expresses.
     pub source_group_id: Option<Group>,
     /// Group of the author; the press appears as the first group.
     pub group_id: Option<Group>,
@@ -104,7 +104,7 @@ pub struct SocialPost {
     pub custom_name: Option<String>,
     /// Name of the author's profile.
     pub persona_name: Option<Cow<'static, str>>,
-    /// Text of the company's post on which it comments.
+    /// Text of the company's post, if this post is a comment.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub replying_to_your_post: Option<String>,
 }
@@ -146,7 +146,7 @@ impl Tool for GetSocialPosts {
 }
 
 fn to_social_post(post: &PublicPost, view: &ToolContext<'_>) -> SocialPost {
-    // The market observer counts as an individual of the first group.
+    // The press appears as an individual of the first group.
     let group = post.written_by.or_else(|| Group::at(0));
     let company = group.is_some_and(Group::is_enterprise);
     let own_posts = &view.world().market.social.own;

@@ -1,4 +1,4 @@
-//! Public posts; targeted operations and development.
+//! Tools for public posts and for targeted budgets of operations and development.
 
 mod get_social_posts;
 mod set_targeted_dev_spend;

@@ -43,12 +43,12 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"targeted_spend": {"S1": 2500, "E3": 400}}"#,
 };
 
-/// Budgets in force.
+/// Targeted development budgets in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DevelopmentBudgets {
-    /// Dollars per day by group.
+    /// Budgets in dollars per day, by group.
     pub targeted_spend: IndexMap<Group, SentNumber>,
-    /// Their sum, dollars per day.
+    /// Sum of the budgets, in dollars per day.
     pub total_extra_per_day: SentNumber,
 }
 

@@ -91,7 +91,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"by_group": {"E2": 90}}"#,
 };
 
-/// Scopes that a call sets; the others do not change.
+/// Support budgets that a call sets. Omitted scopes do not change.
 pub struct SupportScopes {
     by_group: Option<PerGroup>,
     by_plan: Option<PerPlan>,
@@ -99,20 +99,20 @@ pub struct SupportScopes {
     by_customer: Option<PerCustomer>,
 }
 
-/// Budgets in force, dollars per day.
+/// Targeted support budgets in force, in dollars per day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SupportBudgets {
-    /// By group.
+    /// Budgets by group.
     pub by_group: PerGroup,
-    /// By plan.
+    /// Budgets by plan.
     pub by_plan: PerPlan,
-    /// By group and plan.
+    /// Budgets by group and plan.
     pub by_group_plan: IndexMap<Group, PerPlan>,
-    /// By customer.
+    /// Budgets by customer.
     pub by_customer: PerCustomer,
-    /// Sum of all scopes.
+    /// Sum of the budgets of all scopes.
     pub total_extra_per_day: f64,
-    /// By group, under the name of the argument.
+    /// Budgets by group, repeated under the name of the argument.
     pub targeted_spend: PerGroup,
 }
 

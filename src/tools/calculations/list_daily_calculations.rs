@@ -33,7 +33,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{}"#,
 };
 
-/// Registered calculations.
+/// Names of the registered calculations.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Calculations {
     /// Names in the order in which they were registered.

@@ -40,17 +40,17 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"table_names": "predictions"}"#,
 };
 
-/// Tables by name.
+/// Descriptions of tables, by name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableDescriptions {
-    /// Requested tables.
+    /// Descriptions of the requested tables.
     pub tables: IndexMap<&'static str, TableDescription>,
 }
 
 /// The description of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableDescription {
-    /// Description of the rows.
+    /// Description of what a row of the table represents.
     pub description: &'static str,
     /// Type, values and meaning of each column.
     pub columns: IndexMap<&'static str, String>,

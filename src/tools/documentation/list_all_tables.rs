@@ -31,10 +31,10 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{}"#,
 };
 
-/// Tables that can be queried.
+/// List of the tables that can be queried.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct TableList {
-    /// Number of tables.
+    /// Number of tables that can be queried.
     pub count: usize,
     /// Descriptions of the rows, by table name.
     pub tables: IndexMap<&'static str, &'static str>,

@@ -1,4 +1,4 @@
-//! Documentation of tables.
+//! Tools that return the documentation of tables.
 
 mod describe_tables;
 mod list_all_tables;
@@ -11,16 +11,16 @@ use super::arguments::{Arguments, wrong_type_rejection};
 use super::rejection::Rejection;
 use novamind_base::similar_names;
 
-/// Requested names.
+/// Names of tools or tables that a call requests.
 pub enum NameSelection {
     /// All names.
     All,
-    /// These names.
+    /// Only these names.
     Named(Vec<String>),
 }
 
 impl NameSelection {
-    /// Parses a name, a list of names, `all` alone or in the list, or nothing for all.
+    /// Parses a name or a list of names. `all`, alone or in the list, and a missing argument select all names.
     pub(super) fn parse(arguments: &Arguments, field: &'static str) -> Result<NameSelection, Rejection> {
         let wrong = || wrong_type_rejection(field, "a name, a list of names, or all");
         match arguments.get(field) {

@@ -1,4 +1,4 @@
-//! Negotiations with enterprises.
+//! Tools for negotiations with enterprises.
 
 mod parsing;
 mod reject_enterprise_deal;
@@ -15,9 +15,9 @@ use super::spec::ResultField;
 
 #[derive(Debug, Clone, PartialEq)]
 enum ElementOutcome {
-    /// Sent to this customer.
+    /// The offer or rejection was sent to this customer.
     Sent(u32),
-    /// Not sent.
+    /// The offer or rejection was not sent.
     Failed(ElementFailure),
 }
 
@@ -27,16 +27,16 @@ impl ElementOutcome {
     }
 }
 
-/// Why an element of a list of deals was not sent. Other elements are sent.
+/// The reason why one element of a list of deals was not sent. The other elements are sent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementFailure {
-    /// Customer, if the element names one.
+    /// Customer number, if the element contains a number.
     customer: Option<i64>,
-    /// Error in the result.
+    /// Error text for the result.
     error: String,
-    /// Rejection of the call, if no element is sent.
+    /// Rejection of the whole call, used if no element is sent.
     refusal: Box<Rejection>,
-    /// Whether the element could not be parsed. Such elements come first in the result.
+    /// Whether the element could not be parsed. The result lists such elements first.
     is_unreadable: bool,
 }
 
@@ -72,7 +72,8 @@ fn to_deal_result(fate: ElementOutcome) -> DealResult {
     }
 }
 
-/// Rejects a call if no element was sent, with the reason of the first element and the results of all.
+/// Rejects a call if no element was sent. The rejection contains the reason of the first element and the results of
+/// all elements.
 fn reject_if_all_failed(fates: Vec<ElementOutcome>) -> Result<DealResults, Rejection> {
     let refused = match fates.first() {
         Some(ElementOutcome::Failed(first))

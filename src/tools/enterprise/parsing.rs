@@ -1,4 +1,4 @@
-//! Parsing of deals in all accepted notations.
+//! Parses deals in all accepted notations.
 
 use serde_json::Value;
 
@@ -7,10 +7,10 @@ use super::{ElementFailure, Rejection};
 use novamind_world::events::Offering;
 use novamind_world::identifiers::Plan;
 
-/// Returns the elements of the argument; a value that is not a list is a single element.
+/// Returns the elements of the argument `deals`. A value that is not a list is treated as a single element.
 ///
 /// # Errors
-/// `deals_missing` if there are none.
+/// `deals_missing` if there are no elements.
 pub(super) fn parse_elements(given: Option<&Value>, example: &str) -> Result<Vec<Value>, Rejection> {
     let missing = || {
         let message = format!("deals are required: a list of at least one, for instance {example}");
@@ -28,14 +28,14 @@ pub(super) fn parse_elements(given: Option<&Value>, example: &str) -> Result<Vec
 
 /// An error that occurred while parsing an element.
 pub(super) enum ElementError {
-    /// An invalid number, which rejects the whole call.
+    /// An invalid number, for which the whole call is rejected.
     Call(Rejection),
-    /// An error of this element only.
+    /// An error that affects only this element.
     Element(ElementFailure),
 }
 
 impl ElementError {
-    /// Converts any error to an error of this element only.
+    /// Converts the error to an error that affects only this element.
     pub(super) fn into_element_failure(self) -> ElementFailure {
         match self {
             ElementError::Element(failure) => failure,
@@ -53,7 +53,7 @@ impl From<ElementFailure> for ElementError {
     }
 }
 
-/// Parses a customer number: an integer, also as text.
+/// Parses a customer number, which may be an integer or a text that contains an integer.
 ///
 /// # Errors
 /// `customer_missing`, `wrong_type`.
@@ -73,13 +73,13 @@ pub(super) fn parse_deal_customer(given: Option<&Value>, path: &str) -> Result<i
     }
 }
 
-/// Returns the error of an element that is not a deal.
+/// Returns the error for an element that is not a deal.
 pub(super) fn malformed_element(path: &str, expected: &str) -> ElementError {
     let refusal = Rejection::for_field(path, "deal_malformed", format!("{path} is not a deal: {expected}"));
     ElementFailure::unreadable(None, "invalid format", refusal).into()
 }
 
-/// Parses all offerings of a deal and returns the first `most`.
+/// Parses all offerings of a deal. Returns at most `most` offerings.
 ///
 /// # Errors
 /// `offerings_missing`, `offering_short`, `offering_no_price`, `offering_malformed`, `wrong_type`.

@@ -13,10 +13,10 @@ use novamind_world::command::Command;
 /// The tool `reject_enterprise_deal`.
 pub struct RejectEnterpriseDeal;
 
-/// A thread to end.
+/// A thread that the call ends.
 pub struct ThreadToEnd {
     customer: i64,
-    /// Path of the customer number.
+    /// Path of the customer number in the arguments.
     field: String,
 }
 

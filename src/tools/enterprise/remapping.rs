@@ -1,12 +1,13 @@
-//! Customers of deals, and their replacement.
+//! Finds and replaces the customer numbers in the arguments of deals.
 
 use serde_json::Value;
 
 use super::super::ToolId;
 use super::parsing::{ElementError, parse_deal_customer};
 
-/// Replaces the enterprises in the arguments of a call by their counterparts. Removes elements of enterprises without a
-/// counterpart, and returns `None` if no element is left. Keeps elements without an enterprise, and calls of other tools.
+/// Replaces the enterprises in the arguments of a call by their counterparts in another run. Removes elements whose
+/// enterprise has no counterpart. Returns `None` if no element remains. Elements without an enterprise and calls of
+/// other tools do not change.
 pub fn remap_customers(
     tool: ToolId,
     args: &Value,
@@ -29,7 +30,7 @@ pub fn remap_customers(
     is_left.then_some(args)
 }
 
-/// Returns the highest customer number in a call.
+/// Returns the highest customer number in the arguments of a call.
 pub fn highest_customer(tool: ToolId, args: &Value) -> Option<u32> {
     let mut highest = None;
     remap_customers(tool, args, &mut |customer| {
@@ -39,7 +40,7 @@ pub fn highest_customer(tool: ToolId, args: &Value) -> Option<u32> {
     highest
 }
 
-/// Replaces the enterprise of an element. Returns false if it has no counterpart.
+/// Replaces the enterprise of an element. Returns false if the enterprise has no counterpart.
 fn remap_element(element: &mut Value, stands_for: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
     let named = match element {
         Value::Object(map) => map.get_mut("customer_id"),

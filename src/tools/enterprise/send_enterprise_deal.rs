@@ -19,11 +19,11 @@ pub struct SendEnterpriseDeal;
 
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
 
-/// An offer to an enterprise.
+/// An offer that the call sends to an enterprise.
 pub struct Deal {
     customer: i64,
     offerings: Vec<Offering>,
-    /// Path of the customer number.
+    /// Path of the customer number in the arguments.
     field: String,
 }
 
@@ -123,7 +123,7 @@ fn parse_deal(element: &Value, path: &str, view: &ToolContext<'_>) -> Result<Dea
     })
 }
 
-/// Returns the proposal if the customer is an enterprise with an open thread or a subscription.
+/// Converts a deal to a proposal. The customer must be an enterprise with an open thread or a subscription.
 fn to_proposal(
     deal: Deal,
     view: &ToolContext<'_>,
@@ -138,7 +138,7 @@ fn to_proposal(
     if let Some(customer) = number.filter(|customer| open.newest(*customer).is_some()) {
         return Ok(OfferDraft { customer, offerings });
     }
-    // The market observer is in the table of customers, too.
+    // The table of customers also contains the market observer.
     let observer = number.is_some_and(|customer| customer > 0 && customer < FIRST_CUSTOMER);
     match number.and_then(|customer| world.customers.find(customer).map(|(group, _)| (customer, group))) {
         None if !observer => {

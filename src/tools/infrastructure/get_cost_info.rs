@@ -48,31 +48,31 @@ static SPEC: ToolSpec = ToolSpec {
 /// Costs of models and capacity.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PriceList {
-    /// Model tiers by number.
+    /// Facts about each model tier, by tier.
     pub model_tiers: IndexMap<u8, ModelTierFacts>,
-    /// Capacity tiers by number.
+    /// Facts about each capacity tier, by tier.
     pub capacity_tiers: IndexMap<u8, CapacityTierFacts>,
-    /// Definition of a unit, and the billing.
+    /// Text that defines a unit and explains the billing.
     pub note: String,
 }
 
-/// A model tier.
+/// Cost and quality of a model tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelTierFacts {
-    /// Dollars per unit.
+    /// Compute cost in dollars per unit.
     pub cost_per_usage_unit: f64,
-    /// Factor on product quality.
+    /// Factor by which the tier multiplies product quality.
     pub quality_multiplier: f64,
-    /// Kind of model.
+    /// Class of the model.
     pub class: String,
 }
 
-/// A capacity tier.
+/// Size and cost of a capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct CapacityTierFacts {
-    /// Capacity, units per day.
+    /// Capacity in units per day.
     pub capacity_units: u32,
-    /// Dollars per day.
+    /// Rent in dollars per day.
     pub cost_per_day: u32,
 }
 

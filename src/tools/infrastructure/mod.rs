@@ -1,4 +1,4 @@
-//! Capacity and the price list.
+//! Tools for capacity, and for the costs of capacity and models.
 
 mod get_cost_info;
 mod set_capacity_tier;

@@ -43,14 +43,14 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"tier": 2}"#,
 };
 
-/// Rented capacity.
+/// Rented capacity after a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct RentedCapacity {
-    /// Tier.
+    /// Rented capacity tier.
     pub tier: u8,
-    /// Capacity, units per day.
+    /// Capacity in units per day.
     pub capacity_units: u32,
-    /// Dollars per day.
+    /// Rent in dollars per day.
     pub cost_per_day: u32,
 }
 

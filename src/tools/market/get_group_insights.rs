@@ -70,30 +70,30 @@ static SPEC: ToolSpec = ToolSpec {
 /// Estimates of a group as of its last study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GroupInsights {
-    /// The group.
+    /// Identifier of the group.
     pub group_id: Group,
-    /// Name.
+    /// Name of the group.
     pub group_name: String,
-    /// Individual or Enterprise.
+    /// Segment of the group: Individual or Enterprise.
     pub segment: &'static str,
     /// Study level, 1 to 5.
     pub info_level: u8,
     /// Maximum error of the estimates, as text.
     pub noise: String,
-    /// Estimated means.
+    /// Estimated means of the group's parameters.
     pub estimates: Estimates,
-    /// Leads per subscriber and day from the group to known groups, and from them to it.
+    /// Leads per subscriber and day that the group brings to known groups, and that known groups bring to the group.
     pub network_influence: Influence,
-    /// Weights of its reputation for known groups, and of theirs for it.
+    /// Weight of the group's reputation for known groups, and of their reputations for the group.
     pub reputation_influence: Influence,
 }
 
-/// Estimated means of a group.
+/// Estimated means of a group's parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimates {
-    /// Budget, dollars per month; per seat for enterprises.
+    /// Mean budget in dollars per month, for enterprises per seat.
     pub willingness_to_pay: f64,
-    /// Usage, units per day; per seat for enterprises.
+    /// Mean usage in units per day, for enterprises per seat.
     pub usage_volume: f64,
     /// Lowest quality that a customer accepts.
     pub quality_floor_q_min: f64,
@@ -103,23 +103,23 @@ pub struct Estimates {
     pub market_cap: u64,
     /// Growth of the market as a share per year.
     pub annual_market_cap_growth_rate: f64,
-    /// Seats of the smallest and the largest enterprise.
+    /// Number of seats of the smallest and the largest enterprise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seat_range: Option<[u64; 2]>,
-    /// Turns that an enterprise accepts.
+    /// Number of turns that an enterprise accepts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decision_rounds: Option<u64>,
-    /// Days until an enterprise replies.
+    /// Mean number of days until an enterprise replies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub avg_response_days: Option<f64>,
 }
 
-/// Influence of a group and on a group, highest first.
+/// Influence that a group exerts and receives, highest first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Influence {
-    /// On other groups.
+    /// Influence of the group on other groups.
     pub outgoing: IndexMap<Group, f64>,
-    /// Of other groups.
+    /// Influence of other groups on the group.
     pub incoming: IndexMap<Group, f64>,
 }
 

@@ -42,44 +42,44 @@ static SPEC: ToolSpec = ToolSpec {
     example: "{}",
 };
 
-/// Known groups and the economy.
+/// Overview of the known groups and the economy.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MarketOverview {
     /// Known groups by identifier.
     pub known_groups: Vec<KnownGroup>,
-    /// Number of unknown groups.
+    /// Number of groups that are not discovered yet.
     pub undiscovered_count: usize,
-    /// Latest published index; `None` before the first.
+    /// Latest published PMI; `None` before the first publication.
     pub macroeconomic: Option<Macroeconomy>,
 }
 
 /// A known group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct KnownGroup {
-    /// The group.
+    /// Identifier of the known group.
     pub group_id: Group,
-    /// Name.
+    /// Name of the known group.
     pub group_name: String,
-    /// Individual or Enterprise.
+    /// Segment of the group: Individual or Enterprise.
     pub segment: &'static str,
     /// Study level, 1 to 5.
     pub info_level: u8,
-    /// Maximum error of estimates at that level, as text.
+    /// Maximum error of estimates at the group's study level, as text.
     pub noise: String,
 }
 
-/// A published index of the economy.
+/// A published PMI with its interpretation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Macroeconomy {
-    /// Index.
+    /// Value of the PMI; 50 is neutral.
     pub pmi_value: f64,
-    /// Trend.
+    /// Trend of the PMI.
     pub pmi_trend: Trend,
-    /// Change since the previous reading.
+    /// Change of the PMI since the previous publication.
     pub pmi_change: f64,
-    /// Phase of the cycle.
+    /// Phase of the economic cycle.
     pub cycle_phase: Phase,
-    /// Description.
+    /// Description of the economy in words.
     pub description: String,
 }
 

@@ -1,4 +1,4 @@
-//! Discovery and market studies of groups.
+//! Tools for the discovery of groups and for market studies.
 
 mod get_group_insights;
 mod get_market_overview;
@@ -36,7 +36,7 @@ fn segment_label(group: Group) -> &'static str {
     if group.is_enterprise() { "Enterprise" } else { "Individual" }
 }
 
-/// Formats the error of a study level, for example ±40%.
+/// Formats the margin of error of a study level, for example ±40%.
 fn noise_label(noise: f64) -> String {
     format!("\u{b1}{:.0}%", noise * 100.0)
 }

@@ -67,27 +67,27 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"group_id": "E2", "target_level": 3}"#,
 };
 
-/// An order of a study.
+/// Arguments of a call that orders a market study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StudyOrder {
     group: Group,
     target: u8,
 }
 
-/// An ordered study.
+/// A market study that a call ordered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct OrderedStudy {
-    /// The group.
+    /// Group that is studied.
     pub group_id: Group,
-    /// New level.
+    /// Study level after the completion.
     pub new_level: u8,
-    /// Completion day.
+    /// Day on which the study is completed.
     pub expected_completion_day: u32,
-    /// Whether the level stays the same.
+    /// Whether the study only refreshes the estimates at the same level.
     pub is_refresh: bool,
 }
 
-/// Parses the target level. As in the released simulator, 3.0 is not a valid level here.
+/// Parses the target level. As in the released simulator, 3.0 is not a valid level.
 fn parse_target_level(arguments: &Arguments, group: Group, view: &ToolContext<'_>) -> Result<u8, Rejection> {
     let research = &view.params().group_research;
     let level = view.world().market.knowledge[group].level;

@@ -44,14 +44,14 @@ static SPEC: ToolSpec = ToolSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum DiscoveryAttempt {
-    /// A group was discovered.
+    /// The attempt discovered a group.
     Found {
-        /// The group.
+        /// The discovered group.
         discovered_group_id: Group,
     },
-    /// No group was discovered.
+    /// The attempt discovered no group.
     Nothing {
-        /// Cost, dollars.
+        /// Cost of the attempt in dollars.
         cost: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! Budgets, advertising, in-app advertising, discounts for leads, posts.
+//! Tools for budgets, advertising, in-app advertising, first-bill discounts and posts.
 
 mod post_social_media;
 mod set_ads_strength;
@@ -15,7 +15,7 @@ pub use set_targeted_ad_spend::SetTargetedAdSpend;
 use super::arguments::AmountRule;
 use super::spec::NumberRange;
 
-/// Rule for daily budgets.
+/// Requirement for the amounts of daily budgets.
 pub(super) const BUDGET: AmountRule = AmountRule {
     code: "amount_invalid",
     requirement: "must be a number of at least zero, in dollars a day",

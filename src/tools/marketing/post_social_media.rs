@@ -57,16 +57,16 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"content": "Exports are twice as fast from today."}"#,
 };
 
-/// A post of the company.
+/// A post that the company published.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PublishedPost {
     /// Number among the company's posts.
     pub agent_post_id: u32,
-    /// Day.
+    /// Day on which the post was published.
     pub day: u32,
-    /// Text.
+    /// Text of the post.
     pub content: String,
-    /// Post to which it replies.
+    /// Number of the post to which this post replies.
     pub reply_to_post_id: Option<u32>,
 }
 
@@ -91,7 +91,7 @@ fn parse_content(view: &ToolContext<'_>, arguments: &Arguments) -> Result<String
     Ok(content.to_owned())
 }
 
-/// Parses the number of the post to which it replies.
+/// Parses the number of the post to which the new post replies.
 fn parse_replied_post(view: &ToolContext<'_>, given: &Value, field: &str) -> Result<u32, Rejection> {
     let number = json_i64(given).ok_or_else(|| wrong_type_rejection(field, "a whole number"))?;
     let post = u32::try_from(number).ok().filter(|post| view.world().market.social.has_post(*post));

@@ -65,7 +65,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"global_strength": 0.05}"#,
 };
 
-/// Scopes that a call sets; the others do not change.
+/// Strengths that a call sets. Omitted scopes do not change.
 pub struct AdStrengths {
     global: Option<f64>,
     by_group: Option<PerGroup>,

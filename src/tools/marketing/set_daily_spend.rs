@@ -54,32 +54,32 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"operations": 350}"#,
 };
 
-/// A general daily budget.
+/// A daily budget for all customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, EnumString, IntoStaticStr, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum DailyBudget {
-    /// Budget against outages and issues.
+    /// Budget that reduces outages and resolves issues.
     Operations,
-    /// Budget for quality.
+    /// Budget that raises quality.
     Development,
 }
 
-/// Sent budgets and budgets in force.
+/// Daily budgets that the call set, and all daily budgets in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailySpend {
-    /// Sent budgets, dollars per day.
+    /// Budgets that the call set, in dollars per day.
     pub updated: IndexMap<DailyBudget, SentNumber>,
-    /// Budgets in force.
+    /// All daily budgets in force.
     pub current: DailyBudgets,
 }
 
-/// Budgets in force, dollars per day.
+/// Daily budgets in force, in dollars per day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailyBudgets {
-    /// Operations.
+    /// Budget for operations.
     pub operations: SentNumber,
-    /// Development.
+    /// Budget for development.
     pub development: SentNumber,
 }
 

@@ -77,7 +77,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"by_channel": {"social_media": 3}}"#,
 };
 
-/// Scopes that a call sets; the others do not change.
+/// First-bill discounts that a call sets. Omitted scopes do not change.
 pub struct LeadDiscounts {
     global: Option<f64>,
     by_group: Option<PerGroup>,

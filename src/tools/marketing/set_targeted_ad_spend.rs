@@ -57,16 +57,16 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"targeted_spend": {"linkedin": {"E1": 120}, "search_ads": {"S1": 80, "S3": 40}}}"#,
 };
 
-/// Budgets in force.
+/// Advertising budgets in force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AdBudgets {
-    /// Dollars per day by channel and group.
+    /// Budgets in dollars per day, by channel and group.
     pub targeted_spend: IndexMap<Channel, IndexMap<Group, SentNumber>>,
-    /// Their sum, dollars per day.
+    /// Sum of the budgets, in dollars per day.
     pub total_per_day: SentNumber,
 }
 
-/// Converts a map of groups to channels to a map of channels to groups. Drops inner values that are not maps.
+/// Transposes a map by group and channel to a map by channel and group. Drops inner values that are not maps.
 fn transpose(map: &Map<String, Value>) -> Map<String, Value> {
     let mut turned = Map::new();
     for (group, channels) in map {

@@ -1,4 +1,4 @@
-//! Prices, model tiers, quotas, discounts.
+//! Tools for prices, model tiers, quotas and discounts.
 
 mod set_model_tiers;
 mod set_prices;
@@ -19,23 +19,23 @@ use super::rejection::Rejection;
 use super::spec::NumberRange;
 use novamind_world::identifiers::Plan;
 
-/// Sent values and values in force, for tools that set one number per plan.
+/// Result of tools that set one number per plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlanUpdate<T: Serialize> {
-    /// Sent values, in the order of the call.
+    /// Values that the call set, in the order of the call.
     pub updated: IndexMap<Plan, T>,
-    /// Values in force, by plan.
+    /// Values in force after the call, by plan.
     pub current: IndexMap<Plan, T>,
 }
 
-/// Rule for discounts of a scope.
+/// Requirement for the discounts of a scope.
 pub(super) const DISCOUNT: AmountRule = AmountRule {
     code: "promotion_negative",
     requirement: "must be a number of at least zero, in dollars a month",
     range: NumberRange::AT_LEAST_ZERO,
 };
 
-/// Parses the global discount of a promotion.
+/// Parses the discount that applies to all customers of a promotion.
 pub(super) fn parse_global_discount(value: &Value, field: &str) -> Result<f64, Rejection> {
     json_f64(value).filter(|number| NumberRange::AT_LEAST_ZERO.contains(*number)).ok_or_else(|| {
         let message = "the global discount must be a number of at least zero, in dollars a month";
@@ -43,7 +43,7 @@ pub(super) fn parse_global_discount(value: &Value, field: &str) -> Result<f64, R
     })
 }
 
-/// Parses the values of the plans in a call. Rejects a call without values or with an unknown plan.
+/// Parses the arguments of a call that sets one value per plan. Rejects a call without values or with an unknown plan.
 fn parse_per_plan_arguments<T>(
     arguments: &Arguments,
     read: impl Fn(Plan, &Value) -> Result<T, Rejection>,

@@ -78,7 +78,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"by_group": {"S2": 4}}"#,
 };
 
-/// Scopes that a call sets; the others do not change.
+/// Discounts that a call sets. Omitted scopes do not change.
 pub struct Discounts {
     global: Option<f64>,
     by_group: Option<PerGroup>,

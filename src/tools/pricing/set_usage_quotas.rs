@@ -50,10 +50,10 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"A": 150, "B": 400, "C": 900}"#,
 };
 
-/// Quotas in force.
+/// Quotas in force after a call.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UsageQuotas {
-    /// Units per day and customer, by plan.
+    /// Quotas in units per day and customer, by plan.
     pub quotas: IndexMap<Plan, SentNumber>,
 }
 

@@ -40,25 +40,25 @@ pub struct ResearchProjects {
     pub tiers: Vec<ResearchTierFacts>,
 }
 
-/// An R&D tier.
+/// Price, means and progress of an R&D tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResearchTierFacts {
-    /// Number.
+    /// Number of the R&D tier.
     pub tier: u8,
-    /// Name.
+    /// Name of the R&D tier.
     pub name: String,
-    /// Dollars.
+    /// Price of a project in dollars.
     pub cost: u32,
-    /// Mean days of a project before the minimum duration applies.
+    /// Mean duration of a project in days, before the minimum duration applies.
     #[serde(serialize_with = "serialize_whole_as_integer")]
     pub mean_days: f64,
     /// Mean quality gain of a project before the minimum gain applies.
     pub mean_quality_boost: f64,
-    /// Running projects.
+    /// Number of running projects.
     pub in_progress: usize,
-    /// Completed projects.
+    /// Number of completed projects.
     pub completed: usize,
-    /// Quality gain of the completed projects.
+    /// Total quality gain of the completed projects.
     #[serde(serialize_with = "serialize_whole_as_integer")]
     pub total_quality_boost: f64,
 }

@@ -1,4 +1,4 @@
-//! R&D projects.
+//! Tools for R&D projects.
 
 mod list_research_projects;
 mod start_research_project;
@@ -10,7 +10,7 @@ use super::rejection::Rejection;
 use super::tool_context::ToolContext;
 use novamind_base::formatting::dollars;
 
-/// Rejects a purchase that cash does not cover; cash may reach exactly zero.
+/// Rejects a purchase that costs more than the available cash.
 pub(super) fn check_affordable(cost: f64, view: &ToolContext<'_>) -> Result<(), Rejection> {
     if view.cash() >= cost {
         return Ok(());

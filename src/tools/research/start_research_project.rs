@@ -59,23 +59,23 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"tier": 2}"#,
 };
 
-/// A started project.
+/// An R&D project that a call started.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StartedProject {
-    /// Identifier.
+    /// Identifier of the project.
     pub project_id: String,
-    /// Tier.
+    /// R&D tier of the project.
     pub tier: u8,
-    /// Name of the tier.
+    /// Name of the R&D tier.
     pub name: String,
-    /// Dollars paid.
+    /// Price paid, in dollars.
     #[serde(serialize_with = "serialize_whole_as_integer")]
     pub cost: f64,
-    /// Completion day.
+    /// Day on which the project is completed.
     pub expected_completion_day: u32,
-    /// Duration in days.
+    /// Duration of the project in days.
     pub expected_duration_days: u32,
-    /// Quality gain.
+    /// Quality gain of the project.
     pub expected_quality_boost: f64,
 }
 

@@ -1,16 +1,16 @@
 //! Language of scripts and calculations.
 
-/// A language of scripts.
+/// The language of a script or calculation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Language {
     /// SQL statements, separated by `;`.
     Sql,
-    /// Python.
+    /// Python code.
     Python,
 }
 
 impl Language {
-    /// Returns the language of code. Code that starts with `#` is Python, because no SQL statement does.
+    /// Detects the language of code. Code that starts with `#` is Python, because no SQL statement does.
     pub fn detect(code: &str) -> Language {
         match code.trim_start_matches('\u{feff}').trim_start().starts_with('#') {
             true => Language::Python,
@@ -19,7 +19,7 @@ impl Language {
     }
 }
 
-/// Returns a hint on marking Python code, if code without the mark looks like Python.
+/// Returns a hint on how to mark Python code if unmarked code looks like Python. Otherwise, returns `None`.
 pub fn python_marker_hint(code: &str) -> Option<&'static str> {
     let is_python = |line: &str| {
         let begins = ["import ", "def ", "class ", "print("].iter().any(|word| line.starts_with(word));

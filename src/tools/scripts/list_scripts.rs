@@ -33,7 +33,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{}"#,
 };
 
-/// Stored scripts.
+/// Names of the stored scripts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Scripts {
     /// Names in the order in which they were stored.

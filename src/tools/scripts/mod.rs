@@ -1,7 +1,7 @@
-//! Scripts: SQL statements or Python code that run at once, or are stored under a name.
+//! Tools for scripts: SQL statements or Python code that runs immediately or is stored under a name.
 //!
-//! The output of statements are their results as tables, with the guard and the limits of a query. Python needs python3 and
-//! runs in a separate process, which uses the same guarded queries.
+//! SQL statements run with the guard and the limits of a query, and their output is the results as tables. Python
+//! needs python3 and runs in a separate process, which uses the same guarded queries.
 
 mod delete_script;
 mod language;

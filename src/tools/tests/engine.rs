@@ -1,4 +1,4 @@
-//! Tests of calculations, scripts and documentation. The session runs statements and tests that.
+//! Tests of calculations, scripts and documentation. Tests of the session cover the execution of statements.
 
 use serde_json::{Value, json};
 
@@ -47,7 +47,7 @@ impl SessionContext for TestHost {
 }
 
 impl TestHost {
-    /// Returns the result, or the script to run.
+    /// Returns the result of a call, or the script that the session would run.
     fn try_call(&mut self, name: &str, given: &Value) -> Result<Result<Value, Script>, Rejection> {
         let tool = find(name).expect("the tool exists");
         let params = Params::bundled();
@@ -84,7 +84,7 @@ impl TestHost {
             assert!(refusal.message.len() > 10);
         }
         let spec = find(name).expect("the tool exists").spec();
-        // The session tests these codes with a database.
+        // Tests of the session cover these codes, because they need a database.
         let by_session = ["script_failed", "script_timeout"];
         for code in spec.rejection_codes.iter().filter(|code| !by_session.contains(code)) {
             assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");

@@ -1,4 +1,4 @@
-//! Tests of market research, studies, overview and insights.
+//! Tests of the market tools: discovery, studies, overview and insights.
 
 use serde_json::json;
 
@@ -82,7 +82,7 @@ fn studies_are_charged_at_once_and_report_completion_day() {
     let expected =
         json!({"group_id": "S1", "new_level": 2, "expected_completion_day": 3, "is_refresh": false});
     assert_eq!(data, expected);
-    // Cash may reach zero.
+    // A purchase may use all cash.
     assert_eq!(company.world.finance.cash, 0.0);
     assert_eq!(company.call_rejected("research_market", json!({})).0, "insufficient_funds");
     company.world.finance.cash = 1_000_000.0;

@@ -31,7 +31,7 @@ static SPEC: ToolSpec = ToolSpec {
     example: "{}",
 };
 
-/// Variables of the run.
+/// Variables that `get_vars` returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Vars {
     /// The last simulated day.

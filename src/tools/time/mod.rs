@@ -1,4 +1,4 @@
-//! Time and data: tools that the session implements, and the checks of forecasts.
+//! Tools for time and data. The session implements the tools; this module checks their arguments.
 
 mod get_vars;
 mod next_week;

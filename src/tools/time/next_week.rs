@@ -8,7 +8,7 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `next_week`. The session implements it; this entry documents it and checks rationale and forecasts.
+/// The tool `next_week`. The session implements the tool. This type documents the tool and checks rationale and forecasts.
 pub struct NextWeek;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -63,11 +63,11 @@ static SPEC: ToolSpec = ToolSpec {
     example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}, "cash_4wk": {"point": 960000, "lower": 930000, "upper": 985000}, "cash_12wk": {"point": 900000, "lower": 800000, "upper": 1000000}, "cash_26wk": {"point": 850000, "lower": 600000, "upper": 1200000}}}"#,
 };
 
-/// The submission before a week.
+/// Rationale and forecasts that are submitted before a week.
 pub struct WeekArguments {
-    /// Rationale.
+    /// Rationale of the week.
     pub rationale: String,
-    /// Cash in 7, 28, 84 and 182 days.
+    /// Forecasts of cash in 7, 28, 84 and 182 days.
     pub forecasts: [Forecast; 4],
 }
 
@@ -92,23 +92,23 @@ impl Tool for NextWeek {
     }
 }
 
-/// Keys of the four forecasts, in order.
+/// Keys of the four forecasts, shortest horizon first.
 pub const FORECAST_KEYS: [&str; 4] = ["cash_1wk", "cash_4wk", "cash_12wk", "cash_26wk"];
 
-/// A forecast of cash.
+/// A forecast of cash at one horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
-    /// Days ahead: 7, 28, 84 or 182.
+    /// Horizon of the forecast: 7, 28, 84 or 182 days.
     pub horizon_days: u32,
-    /// Most likely value, dollars.
+    /// Predicted cash in dollars.
     pub point: f64,
-    /// Lower end of the 95 % interval, dollars.
+    /// Lower end of the 95 % interval, in dollars.
     pub lower: f64,
-    /// Upper end of the 95 % interval, dollars.
+    /// Upper end of the 95 % interval, in dollars.
     pub upper: f64,
 }
 
-/// Parses the rationale of a week: text that is not blank.
+/// Parses the rationale of a week, which must be a text that is not blank.
 pub fn parse_rationale(given: &Value) -> Result<String, Rejection> {
     match given.as_str() {
         Some(text) if !text.trim().is_empty() => Ok(text.to_owned()),
@@ -120,7 +120,7 @@ pub fn parse_rationale(given: &Value) -> Result<String, Rejection> {
     }
 }
 
-/// Parses the four forecasts of a week, checking one horizon after the other.
+/// Parses the four forecasts of a week, one horizon after the other.
 pub fn parse_forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Rejection> {
     let Some(map) = given.as_object() else {
         let message = format!("the forecasts are required: {}", FORECAST_KEYS.join(", "));
@@ -158,7 +158,7 @@ fn parse_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result
             Rejection::for_field(field, "prediction_not_number", format!("forecast {key} must hold numbers"))
         })
     };
-    // All three must exist before any of them is parsed as a number.
+    // Check that all three fields exist before any field is parsed as a number.
     for name in ["point", "lower", "upper"] {
         if map.get(name).is_none_or(Value::is_null) {
             read(name)?;

@@ -4,7 +4,7 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `query`. The session implements it; this entry documents it.
+/// The tool `query`. The session implements the tool. This type documents the tool.
 pub struct Query;
 
 static SPEC: ToolSpec = ToolSpec {

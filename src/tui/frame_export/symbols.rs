@@ -1,4 +1,5 @@
-//! Characters that are drawn as paths, so that lines connect and curves are visible with any font.
+//! SVG paths of box-drawing, block and braille characters. Characters are drawn as paths so that lines connect and
+//! curves are visible in any font.
 
 use std::fmt::Write;
 
@@ -7,7 +8,7 @@ const LINE_WIDTH: f64 = 1.2;
 const THICK_LINE_WIDTH: f64 = 2.6;
 const DOT_DIAMETER: f64 = 2.3;
 
-/// Returns the path of a character in a cell, or `None` for characters that are written as text.
+/// Returns the SVG path of a character in a cell, or `None` for characters that are written as text.
 pub fn symbol_path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Option<String> {
     let block = |from: f64, to: f64| rectangle(left, top + height * from, width, height * (to - from));
     Some(match sign {
@@ -30,7 +31,8 @@ fn rectangle(left: f64, top: f64, width: f64, height: f64) -> String {
     path
 }
 
-/// Two by four dots. The lower six bits run down the columns, the upper two are the last row.
+/// Returns the path of a braille character, which has two columns of four dots. The lower six bits are the first three
+/// rows by column, and the upper two bits are the last row.
 fn braille(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let bits = sign as u32 - 0x2800;
     let places = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3)];
@@ -44,7 +46,7 @@ fn braille(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Stri
     places.iter().enumerate().filter_map(dot).collect()
 }
 
-/// Fills a quarter, a half or three quarters of the cell with stripes.
+/// Returns the path of a shade character: stripes that fill a quarter, a half or three quarters of the cell.
 fn shade_path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let share = match sign {
         '░' => 0.25,
@@ -61,7 +63,7 @@ fn thin_variant(sign: char) -> Option<char> {
     pairs.into_iter().find(|(thick, _)| *thick == sign).map(|(_, thin)| thin)
 }
 
-/// Draws lines from the center of the cell to some of its sides.
+/// Returns the path of a box-drawing character: lines from the center of the cell to some of its sides.
 fn line_path(sign: char, line: f64, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let (to_left, to_right) = (!"│┌└├".contains(sign), !"│┐┘┤".contains(sign));
     let (up, down) = (!"─┌┐┬".contains(sign), !"─└┘┴".contains(sign));

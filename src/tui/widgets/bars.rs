@@ -1,4 +1,4 @@
-//! Horizontal bars with names and values, on a common scale with zero.
+//! Horizontal bars with names and values, on a common scale that includes zero.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -6,38 +6,38 @@ use unicode_width::UnicodeWidthStr;
 use crate::canvas::{Align, Canvas};
 use crate::theme::Role;
 
-/// Characters of the bars of each series, distinguishable without color and in ASCII.
+/// Characters of the bars of each series. The characters are distinguishable without color and in ASCII.
 pub const SERIES_SYMBOLS: [&str; 4] = ["█", "▒", "━", "•"];
 
-/// A bar.
+/// A bar with its name and value.
 pub struct Bar<'a> {
-    /// Name; empty below another bar of the same item.
+    /// Name of the item, or an empty text if the row above shows the same item.
     pub name: &'a str,
-    /// Alignment of the name: numbers are right-aligned.
+    /// Alignment of the name. Names that are numbers are right-aligned.
     pub name_align: Align,
-    /// Value; `None` draws no bar.
+    /// Value of the bar, or `None` for a row without a bar.
     pub value: Option<f64>,
-    /// Formatted value.
+    /// Formatted value of the bar.
     pub label: &'a str,
-    /// Index of its series.
+    /// Index of the series to which the bar belongs.
     pub series: usize,
-    /// Whether it is selected.
+    /// Whether the bar is selected.
     pub selected: bool,
 }
 
-/// Layout of the names, bars and values of a row, and the scale.
+/// Layout of the names, bars and values in a row, and the scale of the bars.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BarLayout {
     name_width: u16,
     value_width: u16,
     bar_width: u16,
-    /// Cell of zero, among those.
+    /// Index of the cell with the zero line among the cells of the bar.
     zero_cell: u16,
     cells_per_unit: f64,
 }
 
 impl BarLayout {
-    /// Returns a scale that fits all bars into rows of a width.
+    /// Returns the layout that fits all bars into rows of a width.
     pub fn for_bars<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> BarLayout {
         let (mut names, mut values, mut least, mut most) = (1, 1, 0.0_f64, 0.0_f64);
         for bar in bars {
@@ -49,7 +49,7 @@ impl BarLayout {
         let third = (width / 3).max(1);
         let names = (names.min(u16::MAX as usize) as u16).min(third.max(12)).min(width);
         let values = (values.min(u16::MAX as usize) as u16).min(third);
-        // Two spaces, and the zero line.
+        // Two spaces and the zero line need three columns.
         let room = width.saturating_sub(names + values + 3);
         let span = most - least;
         let per_unit = if span > 0.0 { f64::from(room) / span } else { 0.0 };
@@ -75,7 +75,7 @@ impl BarLayout {
         }
     }
 
-    /// Draws a bar in a row.
+    /// Draws a bar with its name and value in a row.
     pub fn draw(&self, canvas: &mut Canvas<'_>, row: Rect, bar: &Bar<'_>) {
         let name = Rect { width: self.name_width.min(row.width), ..row };
         if bar.selected {
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn zero_is_left_of_positive_bars_and_between_mixed_signs() {
-        // 4 for the name, 5 for the value, 3 between: 20 for the bars.
+        // The name needs 4 columns, the value 5 and the gaps 3, which leaves 20 columns for the bars.
         let positive = scale(&[10.0, 5.0, 0.01, 0.0], 32);
         assert_eq!(positive.cells(10.0), (1, 20));
         assert_eq!(positive.cells(5.0), (1, 10));

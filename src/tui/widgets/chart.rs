@@ -9,24 +9,24 @@ use crate::canvas::{Align, Canvas};
 use crate::text::format_change;
 use crate::theme::Role;
 
-/// Minimum width of a plot with names at the ends of its curves.
+/// Minimum width of a chart with names at the ends of its curves.
 const MIN_WIDTH_FOR_NAMES: u16 = 36;
 
 /// A curve of a chart.
 #[derive(Debug, Clone)]
 pub struct Curve {
-    /// Points; those that are not numbers are omitted.
+    /// Points of the curve. Points with a value that is not finite are omitted.
     pub points: Vec<(f64, f64)>,
-    /// Role.
+    /// Role that determines the color of the curve.
     pub role: Role,
     /// Whether single points are drawn instead of a line.
     pub is_scatter: bool,
-    /// Name at its end, if there is space; may be empty.
+    /// Name that is drawn at the end of the curve if there is space, or an empty text.
     pub name: &'static str,
 }
 
 impl Curve {
-    /// Returns a curve of values at 0, 1, 2, …
+    /// Returns a curve through values at the positions 0, 1, 2, …
     pub fn from_values(values: &[f64], role: Role) -> Curve {
         let points = values.iter().enumerate().map(|(at, value)| (at as f64, *value)).collect();
         Curve::from_points(points, role)
@@ -37,7 +37,7 @@ impl Curve {
         Curve { points, role, is_scatter: false, name: "" }
     }
 
-    /// Adds a name at its end.
+    /// Sets the name that is drawn at the end of the curve.
     pub fn with_name(self, name: &'static str) -> Curve {
         Curve { name, ..self }
     }
@@ -46,14 +46,14 @@ impl Curve {
 /// A shaded area between two curves.
 #[derive(Debug, Clone)]
 pub struct Band {
-    /// Position, lower and upper end, in the order of positions.
+    /// Position, lower bound and upper bound of each point, in the order of positions.
     pub bounds: Vec<(f64, f64, f64)>,
-    /// Name at its end; may be empty.
+    /// Name that is drawn at the end of the band, or an empty text.
     pub name: &'static str,
 }
 
 impl Band {
-    /// Returns the ends at a position, or `None` outside.
+    /// Returns the lower and upper bound at a position, or `None` outside of the band.
     fn bounds_at(&self, x: f64) -> Option<(f64, f64)> {
         let next = self.bounds.iter().position(|end| end.0 >= x)?;
         let (after, before) = (self.bounds[next], self.bounds[next.saturating_sub(1)]);
@@ -65,54 +65,54 @@ impl Band {
     }
 }
 
-/// The horizontal axis.
+/// The horizontal axis of a chart.
 pub struct XAxis<'a> {
-    /// Formats a value.
+    /// Function that formats a value for a label.
     pub format: &'a dyn Fn(f64) -> String,
     /// Values that the axis must contain.
     pub required_values: &'a [f64],
 }
 
-/// The vertical axis.
+/// The vertical axis of a chart.
 pub struct YAxis<'a> {
-    /// Unit of the values.
+    /// Unit of the values on the axis.
     pub unit: AxisUnit,
     /// Values that the axis must contain.
     pub required_values: &'a [f64],
 }
 
-/// A label at a point, on top of everything else.
+/// A label at a point of a chart, drawn above curves and bands.
 pub struct PointLabel {
-    /// Position on the horizontal axis.
+    /// Position of the label on the horizontal axis.
     pub x: f64,
-    /// Position on the vertical axis.
+    /// Position of the label on the vertical axis.
     pub y: f64,
-    /// The text.
+    /// The text of the label.
     pub text: &'static str,
-    /// Role.
+    /// Role that determines the style of the label.
     pub role: Role,
 }
 
-/// A chart.
+/// A chart of curves and an optional band.
 pub struct Plot<'a> {
-    /// Curves; the last one is on top.
+    /// Curves of the chart. Later curves are drawn above earlier curves.
     pub curves: &'a [Curve],
-    /// A band below the curves.
+    /// A band that is drawn behind the curves.
     pub band: Option<&'a Band>,
-    /// Position marked by a vertical line.
+    /// Position on the horizontal axis that a vertical line marks.
     pub marked_x: Option<f64>,
-    /// The horizontal axis.
+    /// The horizontal axis of the chart.
     pub x: &'a XAxis<'a>,
-    /// The vertical axis.
+    /// The vertical axis of the chart.
     pub y: &'a YAxis<'a>,
 }
 
-/// Draws curves, or a text if there is no data.
+/// Draws a chart of curves, or a text if there is no data.
 pub fn draw_chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], x: &XAxis<'_>, y: &YAxis<'_>) {
     Plot { curves: lines, band: None, marked_x: None, x, y }.draw(canvas, area);
 }
 
-/// A label of the horizontal axis: column of its tick, first column of its text, text.
+/// A label of the horizontal axis: the column of its tick, the first column of its text, and the text.
 type AxisLabel = (u16, u16, String);
 
 struct PlotFrame {
@@ -138,12 +138,12 @@ impl PlotFrame {
 }
 
 impl Plot<'_> {
-    /// Draws the plot, or a text if there is no data.
+    /// Draws the chart, or a text if there is no data.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         self.draw_with_labels(canvas, area, &[]);
     }
 
-    /// Draws the plot with labels on top; labels outside of the axes are drawn at the edge.
+    /// Draws the chart with labels above it. Labels outside of the axes are drawn at the edge.
     pub fn draw_with_labels(&self, canvas: &mut Canvas<'_>, area: Rect, signs: &[PointLabel]) {
         let area = area.intersection(canvas.buffer.area);
         if area.width < 16 || area.height < 4 {
@@ -211,7 +211,7 @@ impl Plot<'_> {
             (column, x.min(area.right().saturating_sub(width)), label)
         };
         let clear = |left: &AxisLabel, right: &AxisLabel| left.1 + (left.2.width() as u16) + 1 < right.1;
-        // Labels must not touch and must differ.
+        // Labels must differ and must not touch each other.
         let fits = |labels: &Vec<AxisLabel>| {
             labels.windows(2).all(|pair| clear(&pair[0], &pair[1]) && pair[0].2 != pair[1].2)
         };
@@ -233,7 +233,7 @@ impl Plot<'_> {
     fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame) {
         let Some(band) = self.band else { return };
         for at in 0..frame.area.width {
-            // Includes the edges of the column, so that neighboring columns of a steep band touch.
+            // A column covers the band between both of its edges, so that neighboring columns of a steep band touch.
             let edges = [f64::from(at) - 0.5, f64::from(at) + 0.5].map(|column| {
                 let share = column / f64::from(frame.area.width.saturating_sub(1).max(1));
                 band.bounds_at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
@@ -261,7 +261,7 @@ impl Plot<'_> {
             points.windows(2).for_each(|pair| raster.draw_line(pair[0], pair[1], line.role));
         }
         raster.draw(canvas, frame.area);
-        // A single week is drawn as a point.
+        // A curve with a single value is drawn as a point.
         for line in self.curves.iter().filter(|line| line.is_scatter || alone(line)) {
             for point in line.points.iter().filter(|point| point.1.is_finite()) {
                 let cell = Rect { x: frame.column(point.0), y: frame.row(point.1), width: 1, height: 1 };
@@ -270,7 +270,7 @@ impl Plot<'_> {
         }
     }
 
-    /// Draws names next to the last points, in vertical order.
+    /// Draws the names of curves next to their last points, in vertical order.
     fn draw_curve_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &PlotFrame) {
         let of_line = |line: &Curve| {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
@@ -291,7 +291,7 @@ impl Plot<'_> {
     }
 }
 
-/// Assigns different rows from top to bottom, each as close to the wanted row as the order permits.
+/// Returns a different row for each wanted row. The order is kept, and each row is as close to the wanted row as possible.
 fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
     for row in wanted {
@@ -314,7 +314,7 @@ fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
     match least {
         _ if most > least => [least, most],
         0.0 => [0.0, 1.0],
-        // A constant value is drawn in the middle, with an axis from zero.
+        // A constant value is drawn in the middle of an axis that starts at zero.
         level => [(2.0 * level).min(0.0), (2.0 * level).max(0.0)],
     }
 }
@@ -345,14 +345,15 @@ fn grid_line(width: u16) -> String {
     (0..width).map(|at| if at % 4 == 3 { '┈' } else { ' ' }).collect()
 }
 
-/// Returns zero as a required axis value if a curve is near it; otherwise it would flatten the curve.
+/// Returns zero as a required axis value if the values are near zero. Otherwise, an axis that includes zero would
+/// flatten the curve.
 pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64] {
     let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
     let least = values.fold(f64::INFINITY, f64::min);
     if least < 0.5 * most { &[0.0] } else { &[] }
 }
 
-/// Describes a series: last value, change, minimum and maximum, as far as they fit.
+/// Describes a series by its last value, its change, and its minimum and maximum, if they fit.
 pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> String {
     let Some(now) = values.last() else { return "no data yet".to_owned() };
     let mut words = write(*now);
@@ -371,7 +372,7 @@ pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> St
     words
 }
 
-/// Returns the width for a note next to the title of a pane.
+/// Returns the width that is available for a note next to the title of a pane.
 pub fn note_width(area: Rect, title: &str) -> usize {
     (area.width as usize).saturating_sub(title.width() + 9)
 }

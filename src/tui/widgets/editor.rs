@@ -1,4 +1,4 @@
-//! A multi-line editor, based on a text area of a library.
+//! A multi-line editor, based on the text area of a library.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Position, Rect};
@@ -9,13 +9,13 @@ use tui_textarea::{CursorMove, TextArea, WrapMode};
 use crate::canvas::Canvas;
 use crate::theme::Role;
 
-/// A multi-line editor.
+/// A multi-line text editor.
 #[derive(Debug, Clone)]
 pub struct TextEditor {
     area: TextArea<'static>,
 }
 
-/// Editing keys, their labels and descriptions.
+/// Editing keys with their labels and descriptions.
 pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
     ("ctrl-u", "line start", "Remove the text to the start of the line."),
     ("ctrl-k", "line end", "Remove the text to the end of the line."),
@@ -39,7 +39,7 @@ impl TextEditor {
         let mut area = TextArea::new(lines);
         area.set_wrap_mode(WrapMode::WordOrGlyph);
         area.set_tab_length(4);
-        // The cursor of the terminal marks the position.
+        // The terminal cursor marks the position, so the cursor line needs no style.
         area.set_cursor_line_style(Style::new());
         area.set_cursor_style(Style::new());
         area.move_cursor(CursorMove::Bottom);
@@ -47,23 +47,23 @@ impl TextEditor {
         TextEditor { area }
     }
 
-    /// Disables wrapping, for text with meaningful lines.
+    /// Disables wrapping, for text with meaningful lines, such as code.
     pub fn without_wrapping(mut self) -> TextEditor {
         self.area.set_wrap_mode(WrapMode::None);
         self
     }
 
-    /// Returns the text.
+    /// Returns the complete text of the editor.
     pub fn text(&self) -> String {
         self.area.lines().join("\n")
     }
 
-    /// Returns the lines.
+    /// Returns the lines of the text.
     pub fn lines(&self) -> &[String] {
         self.area.lines()
     }
 
-    /// Returns whether the text is empty or white space.
+    /// Returns whether the text contains only whitespace.
     pub fn is_blank(&self) -> bool {
         self.area.lines().iter().all(|line| line.trim().is_empty())
     }
@@ -79,7 +79,7 @@ impl TextEditor {
         self.area.scroll_offset()
     }
 
-    /// Handles a key. ctrl-u removes to the start of the line, as in fields, and ctrl-z undoes.
+    /// Handles a key. Ctrl-U deletes to the start of the line, as in text fields, and Ctrl-Z undoes the last change.
     pub fn handle_key(&mut self, key: &KeyEvent) {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
@@ -105,7 +105,7 @@ impl TextEditor {
         }
     }
 
-    /// Replaces the text; ctrl-z restores it.
+    /// Replaces the text of the editor. Ctrl-Z restores the replaced text.
     pub fn set_text(&mut self, text: &str) {
         self.area.select_all();
         self.area.cut();
@@ -119,14 +119,14 @@ impl TextEditor {
         self.area.move_cursor(CursorMove::Jump(number(row), number(column)));
     }
 
-    /// Removes characters before the cursor.
+    /// Deletes a number of characters before the cursor.
     pub fn delete_before_cursor(&mut self, count: usize) {
         for _ in 0..count {
             self.area.delete_char();
         }
     }
 
-    /// Draws the text, with the cursor while it is edited.
+    /// Draws the editor. The cursor is drawn while the user edits the text.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
         if area.is_empty() {
             return;

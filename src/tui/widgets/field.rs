@@ -14,11 +14,11 @@ pub struct TextField {
     text: String,
     /// Number of graphemes before the cursor.
     cursor: usize,
-    /// Whether the first typed letter replaces the text.
+    /// Whether the text is selected, so that the first typed letter replaces it.
     selected: bool,
 }
 
-/// Maximum length of the text, in bytes, as a protection from accidental pastes.
+/// Maximum length of the text in bytes, which limits accidental pastes.
 const MAX_BYTES: usize = 4096;
 
 impl TextField {
@@ -29,12 +29,13 @@ impl TextField {
         TextField { text, cursor, selected: false }
     }
 
-    /// Returns a field whose text is replaced by the first typed letter, unless another key comes first.
+    /// Returns a field with a selected text. The first typed letter replaces the text, and backspace deletes it. Other
+    /// keys clear the selection.
     pub fn with_selected_text(text: impl Into<String>) -> TextField {
         TextField { selected: true, ..TextField::with_text(text) }
     }
 
-    /// Returns the text.
+    /// Returns the text of the field.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -44,7 +45,7 @@ impl TextField {
         self.text.is_empty()
     }
 
-    /// Returns a copy with a dot for every letter.
+    /// Returns a copy of the field with a dot for every letter.
     pub fn masked(&self) -> TextField {
         let dots = "•".repeat(self.text.graphemes(true).count());
         TextField { text: dots, cursor: self.cursor, selected: self.selected }
@@ -94,7 +95,7 @@ impl TextField {
         }
     }
 
-    /// Inserts text at the cursor; line breaks become spaces.
+    /// Inserts text at the cursor. Line breaks are replaced by spaces.
     pub fn insert(&mut self, text: &str) {
         if std::mem::take(&mut self.selected) {
             *self = TextField::default();
@@ -106,7 +107,7 @@ impl TextField {
         }
         let at = self.byte_offset(self.cursor);
         self.text.insert_str(at, &clean);
-        // A combining mark joins the previous grapheme, so the cursor is computed from bytes.
+        // A combining mark extends the previous grapheme, so the cursor is computed from the byte position.
         self.cursor = self.text[..at + clean.len()].graphemes(true).count();
     }
 
@@ -128,7 +129,7 @@ impl TextField {
         self.cursor = self.text[..kept].graphemes(true).count();
     }
 
-    /// Draws the text with its cursor; a narrow field scrolls horizontally.
+    /// Draws the text with its cursor. A long text scrolls horizontally.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         if area.is_empty() {
             return;
@@ -156,7 +157,7 @@ impl TextField {
     }
 }
 
-/// Shown if a number is expected and another key is typed.
+/// Message for a letter that is typed into a number field.
 pub const NUMBER_HINT: &str = "enter a number: 1200, 1.5k, 2M; esc leaves the field";
 
 fn is_number_char(letter: char) -> bool {

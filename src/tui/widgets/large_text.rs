@@ -1,4 +1,4 @@
-//! Large digits.
+//! Large letters for the projector view.
 
 use ratatui::layout::Rect;
 
@@ -10,12 +10,12 @@ const LETTER_HEIGHT_POINTS: usize = 5;
 /// Width of a letter with its gap, in points.
 pub const LETTER_WIDTH_POINTS: u16 = 4;
 
-/// The size of a point.
+/// The size of a point of a large letter.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PointSize {
-    /// One column wide and half a row high.
+    /// A point that is one column wide and half a row high.
     Small,
-    /// Two columns wide and a row high.
+    /// A point that is two columns wide and one row high.
     Large,
 }
 
@@ -31,7 +31,7 @@ impl PointSize {
     }
 }
 
-/// Draws a figure in large letters, or as plain text if they do not fit.
+/// Draws a figure in large letters, or as plain text if large letters do not fit.
 pub fn draw_large_text(canvas: &mut Canvas<'_>, area: Rect, figure: &str, role: Role, size: PointSize) {
     let columns = figure.chars().count() as u16 * LETTER_WIDTH_POINTS * size.columns();
     if columns > area.width + size.columns() {
@@ -59,7 +59,7 @@ pub fn draw_large_text(canvas: &mut Canvas<'_>, area: Rect, figure: &str, role: 
     }
 }
 
-/// Returns the rows of a letter from top to bottom, three points each.
+/// Returns the bitmap of a letter: one value per row from top to bottom, with three points per row.
 fn letter_bitmap(letter: char) -> [u8; LETTER_HEIGHT_POINTS] {
     match letter {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],

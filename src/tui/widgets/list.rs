@@ -1,6 +1,6 @@
 //! Actions of lists, tables and scrolled texts.
 
-/// An action of a list, a table or a scrolled text. The application converts its own actions into these.
+/// An action of a list, a table or a scrolled text. The application converts its actions into list actions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListAction {
     /// Selects the row above.
@@ -11,26 +11,26 @@ pub enum ListAction {
     Left,
     /// Selects the column to the right.
     Right,
-    /// Moves up by a page.
+    /// Moves the selection up by a page.
     PageUp,
-    /// Moves down by a page.
+    /// Moves the selection down by a page.
     PageDown,
-    /// Moves to the first row.
+    /// Moves the selection to the first row.
     First,
-    /// Moves to the last row.
+    /// Moves the selection to the last row.
     Last,
-    /// Scrolls up by one row, without a selection.
+    /// Scrolls a text without a selection up by one row.
     ScrollUp,
-    /// Scrolls down by one row, without a selection.
+    /// Scrolls a text without a selection down by one row.
     ScrollDown,
     /// Sorts by the selected column.
     Sort,
-    /// Starts typing a filter.
+    /// Opens the filter field.
     Filter,
     /// Accepts the typed filter.
     Commit,
     /// Discards the typed filter.
     Discard,
-    /// Clears the filter.
+    /// Clears the filter, if a filter is set.
     Close,
 }

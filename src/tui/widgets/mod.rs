@@ -1,4 +1,4 @@
-//! Widgets that several screens share.
+//! Widgets for terminal applications.
 
 pub mod bars;
 pub mod chart;

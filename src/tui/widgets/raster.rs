@@ -1,4 +1,4 @@
-//! Curves of dots in terminal cells; some markers have several dots per cell.
+//! Rasters that draw curves as dots in terminal cells. Some markers have several dots per cell.
 
 use ratatui::layout::Rect;
 use ratatui::symbols::Marker;
@@ -9,23 +9,23 @@ use crate::theme::Role;
 /// Bits of the braille dots, by column and row.
 const BRAILLE: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 
-/// Dots over an area of cells.
+/// A raster of dots in an area of cells.
 pub struct Raster {
     marker: Marker,
     columns: usize,
     rows: usize,
-    /// Dots of each cell, and the role of the last one.
+    /// Bits of the dots in each cell, and the role of the dot that was set last.
     cells: Vec<(u8, Role)>,
 }
 
 impl Raster {
-    /// Returns an empty raster of a size in cells.
+    /// Returns an empty raster with a size in cells.
     pub fn new(marker: Marker, columns: u16, rows: u16) -> Raster {
         let (columns, rows) = (columns as usize, rows as usize);
         Raster { marker, columns, rows, cells: vec![(0, Role::Text); columns * rows] }
     }
 
-    /// Returns the dots per cell, horizontally and vertically.
+    /// Returns the number of dots per cell, horizontally and vertically.
     fn dots_per_cell(&self) -> (usize, usize) {
         match self.marker {
             Marker::Braille => (2, 4),
@@ -34,7 +34,7 @@ impl Raster {
         }
     }
 
-    /// Sets a dot, counted from the top left.
+    /// Sets a dot. Coordinates are counted from the top left corner.
     fn set_dot(&mut self, x: usize, y: usize, role: Role) {
         let (across, down) = self.dots_per_cell();
         let (column, row) = (x / across, y / down);
@@ -50,7 +50,7 @@ impl Raster {
         *cell = (cell.0 | bit, role);
     }
 
-    /// Draws a line between two points, given as shares of width and height from the lower left corner.
+    /// Draws a line between two points. Coordinates are fractions of the width and the height from the lower left corner.
     pub fn draw_line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
         let (from, to) = (self.dot_position(from), self.dot_position(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
@@ -67,7 +67,7 @@ impl Raster {
         (x.clamp(0.0, 1.0) * most(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * most(self.rows * down))
     }
 
-    /// Draws the dots over existing content.
+    /// Draws the dots over the existing content of an area.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         for (at, (bits, role)) in self.cells.iter().enumerate().filter(|(_, (bits, _))| *bits != 0) {
             let glyph = match self.marker {

@@ -1,16 +1,16 @@
 //! Round numbers between two bounds, for chart axes.
 
-/// The unit of an axis.
+/// The unit of the values on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisUnit {
-    /// Dollars.
+    /// Amounts in dollars.
     Dollars,
-    /// Any other unit.
+    /// Numbers of any other unit.
     Number,
 }
 
 impl AxisUnit {
-    /// Formats round values with as many decimals as they need to differ: `$500k`, `$1M`, `$1.002M`.
+    /// Formats round values with as many decimals as necessary to distinguish them: `$500k`, `$1M`, `$1.002M`.
     pub fn labels(self, values: &[f64]) -> Vec<String> {
         let step = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         values.iter().map(|value| self.label(*value, step)).collect()
@@ -48,7 +48,7 @@ pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
     (0..=(last - first) as usize).map(|at| (first + at as f64) * step + 0.0).collect()
 }
 
-/// Returns the distance of at most `most` ticks; not finite if there is none.
+/// Returns the distance between at most `most` ticks, or NaN if no ticks are possible.
 fn tick_step([from, to]: [f64; 2], most: usize) -> f64 {
     let span = to - from;
     if !span.is_finite() || span <= 0.0 || most == 0 {
@@ -70,7 +70,7 @@ fn tick_step([from, to]: [f64; 2], most: usize) -> f64 {
     }
 }
 
-/// Widens bounds to the next ticks if those are close, so that curves end below a label.
+/// Widens bounds to the next ticks if the ticks are close, so that the axis ends at a label.
 pub fn widen_to_ticks([from, to]: [f64; 2], most: usize) -> [f64; 2] {
     let step = tick_step([from, to], most);
     if !step.is_finite() {

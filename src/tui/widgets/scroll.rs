@@ -4,16 +4,16 @@ use std::cell::Cell;
 
 use super::ListAction;
 
-/// The first visible row, and the last possible one.
+/// The first visible row of a text, and the maximum for this row.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ScrollState {
     first_row: usize,
-    /// The last useful position, as of the last frame.
+    /// The maximum of `first_row`, determined when the last frame was drawn.
     max_first_row: Cell<usize>,
 }
 
 impl ScrollState {
-    /// Scrolls by rows, by pages of `page` rows, or to an end. Returns whether the action was a scroll action.
+    /// Scrolls by rows, by pages of `page` rows, or to the start or end. Returns whether the action was a scroll action.
     pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
         let from = self.first_row.min(self.max_first_row.get());
         let to = match action.into() {

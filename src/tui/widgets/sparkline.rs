@@ -2,7 +2,7 @@
 
 const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Returns the last values as a sparkline. Equal values are at half height, zeros at the bottom.
+/// Formats the last values as a sparkline. If all values are equal, they are at half height, or at the bottom if they are zero.
 pub fn sparkline(values: &[f64], width: usize) -> String {
     let shown = &values[values.len().saturating_sub(width)..];
     let finite = || shown.iter().copied().filter(|value| value.is_finite());
@@ -16,7 +16,7 @@ pub fn sparkline(values: &[f64], width: usize) -> String {
     shown.iter().map(level).collect()
 }
 
-/// Returns a bar for a share of a width.
+/// Returns a bar that fills a share of a width.
 pub fn bar(share: f64, width: usize) -> String {
     let filled = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
     "█".repeat(filled) + &"░".repeat(width - filled)

@@ -1,4 +1,4 @@
-//! A table with selection, sorting and filter. Only visible rows are drawn.
+//! A table with a selection, sorting and a filter. Only visible rows are drawn.
 
 use std::cmp::Ordering;
 
@@ -14,78 +14,78 @@ use crate::theme::Role;
 /// Minimum width of a truncated text column.
 const MIN_TEXT_WIDTH: u16 = 8;
 
-/// A column.
+/// A column of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableColumn {
-    /// Title.
+    /// Heading of the column.
     pub title: String,
-    /// Alignment of its cells.
+    /// Alignment of the heading and the cells.
     pub align: Align,
-    /// Maximum width.
+    /// Maximum width in cells of the terminal.
     pub max_width: u16,
-    /// Width to which it may shrink in favor of later columns.
+    /// Width to which the column may shrink in favor of later columns.
     pub min_width: u16,
 }
 
 impl TableColumn {
-    /// Returns a text column.
+    /// Returns a left-aligned column for text.
     pub fn text(title: impl Into<String>) -> TableColumn {
         TableColumn { title: title.into(), align: Align::Left, max_width: 40, min_width: u16::MAX }
     }
 
-    /// Returns a column of numbers.
+    /// Returns a right-aligned column for numbers.
     pub fn numeric(title: impl Into<String>) -> TableColumn {
         TableColumn { title: title.into(), align: Align::Right, max_width: 24, min_width: u16::MAX }
     }
 
-    /// Limits the width.
+    /// Sets the maximum width of the column.
     pub fn with_max_width(self, most: u16) -> TableColumn {
         TableColumn { max_width: most, ..self }
     }
 
-    /// Permits it to shrink to this width if later columns need the space.
+    /// Sets the width to which the column may shrink if later columns need the space.
     pub fn with_min_width(self, least: u16) -> TableColumn {
         TableColumn { min_width: least, ..self }
     }
 }
 
-/// A cell: the displayed text and the sort key.
+/// A cell of a table: the displayed text and the sort key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableCell {
-    /// Text.
+    /// Displayed text of the cell.
     pub text: String,
-    /// Number to sort by, if it is a number.
+    /// Sort key of the cell if the cell is a number.
     pub number: Option<f64>,
-    /// Role.
+    /// Role that determines the style of the cell.
     pub role: Role,
 }
 
 impl TableCell {
-    /// Returns a text cell.
+    /// Returns a cell with a text.
     pub fn from_text(text: impl Into<String>) -> TableCell {
         TableCell { text: text.into(), number: None, role: Role::Text }
     }
 
-    /// Returns a number cell with its formatted value.
+    /// Returns a cell with a number and its formatted value.
     pub fn from_number(value: f64, shown: impl Into<String>) -> TableCell {
         TableCell { text: shown.into(), number: Some(value), role: Role::Text }
     }
 
-    /// Sets the role.
+    /// Sets the role of the cell.
     pub fn with_role(self, role: Role) -> TableCell {
         TableCell { role, ..self }
     }
 }
 
-/// A table with its selection, order and filter.
+/// A table with its selection, sort order and filter.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     columns: Vec<TableColumn>,
     rows: Vec<Vec<TableCell>>,
-    /// Indices of the displayed rows, filtered and sorted.
+    /// Indexes of the displayed rows, filtered and sorted.
     visible_rows: Vec<usize>,
     widths: Vec<u16>,
-    /// Position among the displayed rows.
+    /// Position of the selected row among the displayed rows.
     selected: usize,
     column: usize,
     sort_order: Option<(usize, Ordering)>,
@@ -102,12 +102,12 @@ impl Table {
         table
     }
 
-    /// Marks the selected cell in its row.
+    /// Enables the selection of a single cell in the selected row.
     pub fn with_cell_selection(self) -> Table {
         Table { selects_cells: true, ..self }
     }
 
-    /// Replaces columns and rows, and keeps selection, order and filter if possible.
+    /// Replaces the columns and rows. Keeps the selection, the sort order and the filter if possible.
     pub fn set_columns_and_rows(&mut self, columns: Vec<TableColumn>, rows: Vec<Vec<TableCell>>) {
         if columns.len() != self.columns.len() {
             self.sort_order = None;
@@ -117,7 +117,7 @@ impl Table {
         self.column = self.column.min(self.columns.len().saturating_sub(1));
     }
 
-    /// Replaces the rows.
+    /// Replaces the rows of the table.
     pub fn set_rows(&mut self, rows: Vec<Vec<TableCell>>) {
         self.rows = rows;
         self.measure_columns();
@@ -129,12 +129,12 @@ impl Table {
         &self.rows
     }
 
-    /// Returns the index of the selected row among all rows.
+    /// Returns the index of the selected row in the list of all rows.
     pub fn selected(&self) -> Option<usize> {
         self.visible_rows.get(self.selected).copied()
     }
 
-    /// Returns the indices of the displayed rows in their order.
+    /// Returns the indexes of the displayed rows in display order.
     pub fn visible_rows(&self) -> &[usize] {
         &self.visible_rows
     }
@@ -144,12 +144,12 @@ impl Table {
         self.column
     }
 
-    /// Selects a column, at most the last one.
+    /// Selects a column. If the index is too high, selects the last column.
     pub fn select_column(&mut self, column: usize) {
         self.column = column.min(self.columns.len().saturating_sub(1));
     }
 
-    /// Selects a row by its index among all rows.
+    /// Selects a row by its index in the list of all rows.
     pub fn select(&mut self, row: usize) {
         if let Some(place) = self.visible_rows.iter().position(|shown| *shown == row) {
             self.selected = place;
@@ -161,27 +161,27 @@ impl Table {
         self.selected = place.min(self.visible_rows.len().saturating_sub(1));
     }
 
-    /// Returns whether a filter is being typed.
+    /// Returns whether the user is typing a filter.
     pub fn is_filter_open(&self) -> bool {
         self.filter_field.is_some()
     }
 
-    /// Returns whether a filter is set or being typed.
+    /// Returns whether a filter is set or the user is typing one.
     pub fn is_filtered(&self) -> bool {
         self.is_filter_open() || !self.filter.is_empty()
     }
 
-    /// Returns the filter, or an empty text.
+    /// Returns the text of the filter, or an empty text if there is no filter.
     pub fn filter_text(&self) -> &str {
         &self.filter
     }
 
-    /// Returns the field of the filter.
+    /// Returns the field in which the user types the filter, if it is open.
     pub fn filter_field(&mut self) -> Option<&mut TextField> {
         self.filter_field.as_mut()
     }
 
-    /// Changes the filter while it is typed and applies it.
+    /// Edits the text in the filter field and applies the filter.
     pub fn edit_filter(&mut self, edit: impl FnOnce(&mut TextField)) {
         if let Some(field) = &mut self.filter_field {
             edit(field);
@@ -189,7 +189,7 @@ impl Table {
         }
     }
 
-    /// Applies the filter as typed so far.
+    /// Applies the text in the filter field as the filter.
     pub fn apply_filter(&mut self) {
         if let Some(field) = &self.filter_field {
             self.filter = field.text().to_owned();
@@ -197,7 +197,7 @@ impl Table {
         }
     }
 
-    /// Describes the displayed and all rows, filter and order, for the title of a pane.
+    /// Describes the number of displayed rows, the filter and the sort order, for the note of a pane.
     pub fn summary(&self) -> String {
         let mut parts = Vec::new();
         if !self.filter.is_empty() {
@@ -216,7 +216,7 @@ impl Table {
         parts.join(" · ")
     }
 
-    /// Handles a list action. Returns false if it is not supported.
+    /// Handles a list action. Returns false if the table does not support the action.
     pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: u16) -> bool {
         let Some(action) = action.into() else { return false };
         let last = self.visible_rows.len().saturating_sub(1);
@@ -249,7 +249,7 @@ impl Table {
     fn sort(&mut self) {
         let numeric =
             self.rows.iter().any(|row| row.get(self.column).is_some_and(|cell| cell.number.is_some()));
-        // Numbers are first sorted in descending order, text in ascending order.
+        // The first sort order of numbers is descending, the first sort order of text is ascending.
         let first = if numeric { Ordering::Greater } else { Ordering::Less };
         self.sort_order = match self.sort_order {
             Some((column, order)) if column == self.column && order == first => {
@@ -289,7 +289,7 @@ impl Table {
         self.widths = self.columns.iter().enumerate().map(|(at, column)| width(at, column)).collect();
     }
 
-    /// Draws the head and the rows. `pane` is the number of the pane for clicks.
+    /// Draws the column headings and the rows. Clicks are registered with `pane` as the number of the pane.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, focused: bool, pane: usize) {
         if area.height < 2 || area.width < 2 {
             return;
@@ -307,7 +307,7 @@ impl Table {
             let role = if focused && *at == self.column { Role::Title } else { Role::Header };
             canvas.draw_aligned(cell, &column.title, role, column.align);
         }
-        // Shows that there are more columns to the left or right.
+        // Signs show that further columns are to the left or to the right.
         if let [_, (second, (x, _)), ..] = columns[..]
             && second > 1
         {
@@ -358,7 +358,7 @@ impl Table {
         }
     }
 
-    /// Returns the widths of the columns after shrinking.
+    /// Returns the widths of the columns after they are shrunk to fit into a width.
     fn fit_widths(&self, width: u16) -> Vec<u16> {
         let all: usize = self.widths.iter().map(|number| usize::from(*number) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
@@ -379,7 +379,7 @@ impl Table {
             let order = std::iter::once(0).chain(from..self.columns.len());
             for at in order.filter(|at| *at < self.columns.len()) {
                 let number = widths[at];
-                // A truncated column must still be readable text.
+                // A truncated column must be wide enough for readable text.
                 let room = width.saturating_sub(x);
                 let readable = match self.columns[at].align {
                     Align::Right => number,
@@ -404,7 +404,7 @@ impl Table {
     }
 }
 
-/// Returns the first visible row so that the selected one is near the middle.
+/// Returns the first visible row for which the selected row is near the middle.
 pub fn first_visible_row(selected: usize, height: usize, rows: usize) -> usize {
     selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
 }

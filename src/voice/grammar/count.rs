@@ -1,4 +1,4 @@
-//! Counts the expansions of a rule.
+//! Counts the expansions of a grammar rule.
 
 use super::{Context, Grammar, Part, has_required_values};
 

@@ -50,7 +50,7 @@ fn name_set(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> 
     texts.ok_or_else(|| GrammarError(format!("{key} is not a list of names")))
 }
 
-/// Converts nested tables to dotted names.
+/// Converts nested TOML tables to rules with dotted names.
 fn flatten_rules(
     before: &str,
     table: &Table,
@@ -107,7 +107,7 @@ struct PartParser<'a> {
 }
 
 impl PartParser<'_> {
-    /// Parses up to the end, or within a choice up to `|` or `]`, which are not consumed.
+    /// Parses parts up to the end of the text. Within a choice, stops before `|` or `]`.
     fn parse_parts(&mut self, within_choice: bool) -> Result<Vec<Part>, String> {
         let mut parts = Vec::new();
         loop {

@@ -5,7 +5,7 @@ pub fn polish(text: &str) -> String {
     fix_capitals(&fix_spaces(&fix_articles(text)))
 }
 
-/// Replaces `a/an` and `A/an` by the article that fits the next word.
+/// Replaces `a/an` and `A/an` with the correct article for the next word.
 fn fix_articles(text: &str) -> String {
     let mut polished = String::with_capacity(text.len());
     let mut rest = text;
@@ -23,8 +23,8 @@ fn fix_articles(text: &str) -> String {
     polished
 }
 
-/// Returns whether a word starts with a vowel sound. Abbreviations that are spelled out count by the name of
-/// their first letter.
+/// Returns whether a word starts with a vowel sound. For abbreviations that are spelled out, the name of the first
+/// letter decides.
 fn starts_with_vowel_sound(word: &str) -> bool {
     let word: String = word.chars().take_while(|c| c.is_alphanumeric()).collect();
     let spelt = word.len() >= 2 && word.chars().take(2).all(|c| c.is_ascii_uppercase());
@@ -71,7 +71,7 @@ fn fix_capitals(text: &str) -> String {
             polished.extend(character.to_uppercase());
             begins = false;
         } else {
-            // A word that starts with a digit or sign needs no capital later.
+            // A sentence that starts with a digit, `@` or `#` is not capitalized.
             begins &= !character.is_alphanumeric() && !matches!(character, '@' | '#');
             polished.push(character);
         }

@@ -1,21 +1,21 @@
-//! Claims of a post and whether readers experienced them (docs/mechanics/market/social/judge.md#claims).
+//! Claims of a post, compared with the experience of its readers (docs/mechanics/market/social/judge.md#claims).
 
 use super::context::{JudgeContext, ReaderGroup};
 use super::features::Features;
 use super::lexicon::Lexicon;
 
-/// A claim and a group's verdict.
+/// A claim of a post and the verdict of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Claim {
-    /// Its name.
+    /// Name of the claim.
     pub name: &'static str,
-    /// True, false, or `None` if the readers do not know.
+    /// Whether the claim is true, or `None` if the readers do not know.
     pub verdict: Option<bool>,
 }
 
 const CLAIM_NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "speed", "support", "limits"];
 
-/// Returns the claims of a post with the verdict of a group.
+/// Returns the claims of a post, each with the verdict of a group.
 pub fn evaluate_claims(
     features: &Features,
     readers: &ReaderGroup,
@@ -76,7 +76,7 @@ fn verdict(
     }
 }
 
-/// Returns the largest number before customers, users or subscribers; `k` is a thousand, `m` a million.
+/// Returns the largest number before the words customer, user or subscriber. The suffix `k` means a thousand, `m` a million.
 fn claimed_audience(normal: &str) -> Option<f64> {
     let words = ["customer", "user", "subscriber"];
     let ends = words.iter().flat_map(|word| normal.match_indices(word)).map(|(at, _)| at);

@@ -1,4 +1,4 @@
-//! The context of a judgement: the readers' experience and current events
+//! The data on which a judgement depends: the readers' experience and current events
 //! (docs/mechanics/market/social/judge.md#circumstances). The judge uses no other data about the company.
 
 use super::lexicon::Lexicon;
@@ -10,69 +10,69 @@ use novamind_world::params::Params;
 use novamind_world::quality::{quota_demand, quota_factor};
 use novamind_world::state::World;
 
-/// Facts that a judgement uses.
+/// Facts about the company on which a judgement depends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgeContext {
-    /// By group.
+    /// Experience of the readers of each group.
     pub groups: ByGroup<ReaderGroup>,
-    /// Total active subscriptions.
+    /// Number of active subscriptions in all groups.
     pub subscribers: u32,
-    /// Whether own research was completed in the last four weeks.
+    /// Whether an R&D project of the company was completed in the last four weeks.
     pub research_done: bool,
-    /// Whether a list price is below that of four weeks ago, or a discount is new.
+    /// Whether a list price is lower or the discount is larger than four weeks ago.
     pub price_cut: bool,
-    /// Whether a discount is available.
+    /// Whether the first-bill discount is above 0.
     pub promotion: bool,
-    /// Whether a quota is above that of four weeks ago.
+    /// Whether a quota is larger than four weeks ago.
     pub quota_up: bool,
-    /// Days with an outage in the last two weeks.
+    /// Number of days with an outage in the last two weeks.
     pub outage_days: u32,
     /// Largest overload of the last two weeks.
     pub overload: f64,
-    /// Mean latency of the last seven days, ms.
+    /// Mean 95th-percentile latency of the last seven days, in milliseconds.
     pub p95_ms: f64,
-    /// Open issues per subscriber.
+    /// Number of open issues per subscriber.
     pub issue_rate: f64,
-    /// Mean age of open issues in days.
+    /// Mean age of open issues, in days.
     pub issue_age: f64,
-    /// Current events with their age in days.
+    /// Current events, each with its age in days.
     pub live_events: Vec<(LiveEvent, u32)>,
 }
 
-/// The state of a group of readers.
+/// The experience of the readers of one group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReaderGroup {
-    /// Active subscriptions.
+    /// Number of active subscriptions in the group.
     pub subscribers: u32,
-    /// Mean satisfaction, 0 without subscribers.
+    /// Mean satisfaction of the subscribers, or 0 if there are none.
     pub satisfaction: f64,
-    /// Quality gained in four weeks.
+    /// Change of the group's quality bonus over four weeks.
     pub progress: f64,
 }
 
-/// A current event.
+/// A current event that a post can address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LiveEvent {
-    /// The service was down.
+    /// An outage of the service.
     Outage,
-    /// A list price was raised.
+    /// An increase of a list price.
     PriceUp,
-    /// Support cannot resolve issues fast enough.
+    /// Many or old open issues.
     Issues,
-    /// Many subscribers lack quota.
+    /// A quota that is too small for many subscribers.
     Quota,
-    /// A competitor made a large improvement.
+    /// A moderate or larger improvement by a competitor.
     Competitor,
-    /// The economy is reported to contract.
+    /// A published PMI that shows a contracting economy.
     MacroDown,
-    /// The economy is reported to grow.
+    /// A published PMI that shows a growing economy.
     MacroUp,
-    /// Own research was completed.
+    /// The completion of an R&D project.
     Research,
 }
 
 impl LiveEvent {
-    /// Identifier for reasons.
+    /// Returns the name of the event in the reasons of a judgement.
     pub fn id(self) -> &'static str {
         match self {
             LiveEvent::Outage => "outage",
@@ -92,13 +92,13 @@ const TWO_WEEKS: usize = 14;
 const WEEK: usize = 7;
 
 impl JudgeContext {
-    /// Returns the context at the end of the world's last day.
+    /// Computes the context at the end of the last simulated day.
     pub fn from_world(world: &World, params: &Params, lexicon: &Lexicon) -> JudgeContext {
         let chronicle = &world.market.social.chronicle;
         let (today, before) = (chronicle.today(), chronicle.oldest());
         let (issue_rate, issue_age, short) = service_strain(world, params);
         let latencies: Vec<f64> = chronicle.newest_first(WEEK).filter_map(|page| page.p95_ms).collect();
-        // A price of 0 means that nothing was on sale.
+        // A plan that was not on sale four weeks ago has price 0, and no price is lower.
         let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
         let mut judge_context = JudgeContext {
             groups: ByGroup::from_fn(|group| reader_group(group, world)),
@@ -118,7 +118,7 @@ impl JudgeContext {
         judge_context
     }
 
-    /// Returns the age of a current event, or `None` if it is not current.
+    /// Returns the age of an event in days, or `None` if the event is not current.
     pub fn event_age(&self, event: LiveEvent) -> Option<u32> {
         self.live_events.iter().find(|(live, _)| *live == event).map(|(_, age)| *age)
     }
@@ -136,7 +136,8 @@ fn reader_group(group: Group, world: &World) -> ReaderGroup {
     }
 }
 
-/// Returns open issues per subscriber, their mean age in days, and the share of subscribers who lack quota.
+/// Returns the open issues per subscriber, the mean age of open issues in days, and the share of subscribers whose
+/// quota is too small.
 fn service_strain(world: &World, params: &Params) -> (f64, f64, f64) {
     let core = &world.settings.core;
     let weekday = params.calendar.weekly[(world.day % 7) as usize];

@@ -1,48 +1,48 @@
-//! Features of a post, the same for every reader (docs/mechanics/market/social/judge.md#features).
+//! Features of a post that do not depend on the reader (docs/mechanics/market/social/judge.md#features).
 
 use super::lexicon::{Features as Law, Lexicon};
 use super::text::{TokenizedText, WordPattern, is_emoji};
 
-/// Features of a post.
+/// Features of a post that do not depend on the reader.
 #[derive(Debug, Clone)]
 pub struct Features {
-    /// The tokenized text.
+    /// The tokenized text of the post.
     pub text: TokenizedText,
-    /// Strength of every topic, 0..=1, in the order of the lexicon.
+    /// Strength of each topic, 0..=1, in the topic order of the lexicon.
     pub topics: Vec<f64>,
-    /// Number of numbers and amounts of money.
+    /// Count of numbers and amounts of money.
     pub numbers: u32,
-    /// Specificity, 0..=1.
+    /// How specific the post is, 0..=1.
     pub specificity: f64,
-    /// Promises without measure, 0..=1.
+    /// Amount of exaggerated promises, 0..=1.
     pub absolutes: f64,
-    /// Advertising words, 0..=1.
+    /// Amount of advertising language, 0..=1.
     pub buzzwords: f64,
-    /// Casual style, 0..=1.
+    /// How casual the style is, 0..=1.
     pub casual: f64,
-    /// Technical style, 0..=1.
+    /// How technical the style is, 0..=1.
     pub technical: f64,
-    /// Whether it apologizes.
+    /// Whether the post apologizes.
     pub has_apology: bool,
-    /// Whether it names a cause.
+    /// Whether the post names a cause.
     pub names_cause: bool,
-    /// Whether it names a remedy.
+    /// Whether the post names a remedy.
     pub names_remedy: bool,
-    /// Whether it names a time or a number.
+    /// Whether the post names a time or a number.
     pub names_time: bool,
-    /// Sales pressure, 0..=3.
+    /// Number of high-pressure sales phrases, 0..=3.
     pub sales_pressure: f64,
-    /// Whether it blames the reader.
+    /// Whether the post blames the reader.
     pub defensive: bool,
-    /// Whether it contains misconduct, such as insults.
+    /// Whether the post contains misconduct, such as insults.
     pub has_misconduct: bool,
-    /// Whether it disparages competitors.
+    /// Whether the post disparages competitors.
     pub attacks_competitors: bool,
-    /// Whether it addresses the reader.
+    /// Whether the post addresses the reader.
     pub addresses_reader: bool,
-    /// Keyword stuffing.
+    /// Degree of keyword stuffing; 0 is none.
     pub keyword_stuffing: f64,
-    /// Whether the text is too short to judge.
+    /// Whether the post is too short to be judged.
     pub is_empty: bool,
 }
 
@@ -89,7 +89,7 @@ impl Features {
         }
     }
 
-    /// Returns whether the post mentions a topic.
+    /// Returns whether the post mentions the topic with this index.
     pub fn mentions_topic(&self, topic: usize) -> bool {
         self.topics[topic] > 0.0
     }
@@ -113,7 +113,7 @@ fn casualness(content: &str, slang: u32, features: &Law) -> f64 {
     total.min(1.0)
 }
 
-/// Returns whether a digit is followed by one of these units.
+/// Returns whether the text contains a digit followed by one of the units.
 fn has_unit(normal: &str, units: &[String]) -> bool {
     normal.char_indices().any(|(at, character)| {
         let rest = normal[at + character.len_utf8()..].trim_start_matches(' ');
@@ -121,7 +121,7 @@ fn has_unit(normal: &str, units: &[String]) -> bool {
     })
 }
 
-/// Returns the share of topic words beyond one half, plus the lack of function words.
+/// Returns the degree of keyword stuffing: topic words above a threshold share, plus a penalty for too few function words.
 fn keyword_stuffing(reading: &TokenizedText, lexicon: &Lexicon) -> f64 {
     let features = &lexicon.features;
     let tokens = reading.tokens().len();

@@ -11,28 +11,28 @@ use novamind_world::identifiers::Group;
 /// A list of word patterns.
 pub type EntryList = Vec<WordPattern>;
 
-/// Word lists, weights and profiles of the judge.
+/// The judge's word lists, weights and group profiles.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lexicon {
-    /// The fixed order of the topics; the first of equally strong ones leads.
+    /// Names of the topics in their fixed order. If two topics are equally strong, the first one leads.
     topic_order: Vec<String>,
-    /// Topics in their fixed order.
+    /// Word lists of the topics, in topic order.
     #[serde(deserialize_with = "lists")]
     pub topics: IndexMap<String, EntryList>,
-    /// Other lists.
+    /// Word lists that do not belong to a topic.
     pub words: Words,
-    /// Patterns of claims.
+    /// Patterns that detect claims, by claim.
     pub claims: IndexMap<String, ClaimPattern>,
-    /// Thresholds of true and false claims.
+    /// Thresholds that decide whether a claim is true or false.
     pub verdicts: Verdicts,
-    /// Current events.
+    /// Thresholds of current events, and the topics that address them.
     pub events: Events,
-    /// Salience of current events.
+    /// Importance of each current event to a group.
     pub salience: Salience,
-    /// Weights from words to features.
+    /// Weights with which words count towards features.
     pub features: Features,
-    /// Weights from features to a score.
+    /// Weights with which features count towards a score.
     pub terms: Terms,
     /// Preferences of each group.
     profiles: IndexMap<String, Profile>,
@@ -51,17 +51,17 @@ impl Lexicon {
         &SHIPPED
     }
 
-    /// Returns the profile of a group.
+    /// Returns the preferences of a group.
     pub fn profile(&self, group: Group) -> &Profile {
         &self.profiles[group.id()]
     }
 
-    /// Returns the index of a topic in the fixed order.
+    /// Returns the index of a topic in topic order.
     pub fn topic_index(&self, name: &str) -> usize {
         self.topics.get_index_of(name).expect("the topic is in the bundled lists")
     }
 
-    /// Returns the name of a topic.
+    /// Returns the name of the topic with this index.
     pub fn topic_name(&self, topic: usize) -> &str {
         self.topics.get_index(topic).map_or("", |(name, _)| name)
     }
@@ -78,7 +78,7 @@ fn list<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
 
 fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
-    // An entry with a slash, such as 24/7, is not a token, so it is searched for anywhere. Single words match tokens.
+    // A text with a slash, such as 24/7, is not a token and is searched for in the whole text. Other words match tokens.
     Ok(texts
         .iter()
         .map(|text| if text.contains('/') { WordPattern::phrase(text) } else { WordPattern::parse(text) })
@@ -91,13 +91,13 @@ fn parse_entries(texts: &[String]) -> EntryList {
 
 macro_rules! words {
     ($($(#[$doc:meta])* $field:ident,)*) => {
-        /// Lists other than topics.
+        /// Word lists that do not belong to a topic.
         #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: EntryList,)* }
 
         impl Words {
-            /// Returns all lists, for tests that draw from them.
+            /// Returns all word lists, from which tests draw words.
             #[cfg(test)]
             pub fn all(&self) -> Vec<&EntryList> {
                 vec![$(&self.$field),*]
@@ -107,7 +107,7 @@ macro_rules! words {
 }
 
 words! {
-    /// Promises without measure.
+    /// Words of exaggerated promises.
     absolutes,
     /// Advertising words.
     buzzwords,
@@ -115,52 +115,52 @@ words! {
     slang,
     /// Engineering terms.
     tech,
-    /// Statements of what was done.
+    /// Words for completed actions.
     actions,
-    /// Times.
+    /// Words for points in time.
     times,
-    /// Apologies.
+    /// Words of an apology.
     apology,
-    /// Naming a cause.
+    /// Words that name a cause.
     cause,
-    /// Naming a remedy.
+    /// Words that name a remedy.
     remedy,
-    /// Sales pressure.
+    /// High-pressure sales phrases.
     hard_sell,
-    /// Blaming the reader.
+    /// Words that blame the reader.
     defensive,
-    /// Misconduct, such as insults.
+    /// Words of misconduct, such as insults.
     conduct,
     /// Names of competitors.
     rivals,
     /// Disparaging words.
     negative,
-    /// Addressing the reader.
+    /// Words that address the reader.
     you,
     /// Function words.
     function,
 }
 
-/// Pattern of a claim.
+/// A pattern that detects a claim: a phrase of `says`, or a word of `near` close to a word of `to`.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClaimPattern {
-    /// One of these, or
+    /// Phrases that alone make the claim.
     #[serde(deserialize_with = "anywhere")]
     pub says: EntryList,
-    /// one of these close to
+    /// Words that make the claim if they are close to a word of `to`.
     #[serde(deserialize_with = "list")]
     pub near: EntryList,
-    /// one of these.
+    /// Words that make the claim if they are close to a word of `near`.
     #[serde(deserialize_with = "list")]
     pub to: EntryList,
 }
 
-/// Preferences of a group.
+/// Preferences of a group of readers.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
-    /// Formality, 0..=1.
+    /// Preference for formal style, 0..=1.
     pub f: f64,
     /// Preference for technical style, 0..=1.
     pub t: f64,
@@ -168,19 +168,19 @@ pub struct Profile {
     pub a: f64,
     /// Tolerance of casual style, 0..=1.
     pub m: f64,
-    /// Gain.
+    /// Factor by which the sum of the terms is multiplied.
     pub k: f64,
     /// Weights of topics; other topics have weight 0.
     w: IndexMap<String, f64>,
 }
 
 impl Profile {
-    /// Returns the weight of a topic.
+    /// Returns the weight of a topic for the group.
     pub fn weight(&self, topic: &str) -> f64 {
         self.w.get(topic).copied().unwrap_or(0.0)
     }
 
-    /// Returns the topics with a weight.
+    /// Returns the topics that have a weight.
     #[cfg(test)]
     pub fn topics(&self) -> impl Iterator<Item = (&str, f64)> {
         self.w.iter().map(|(topic, weight)| (topic.as_str(), *weight))
@@ -198,7 +198,7 @@ macro_rules! numbers {
 }
 
 numbers! {
-    /// Thresholds of true and false claims.
+    /// Thresholds that decide whether a claim is true or false.
     Verdicts {
         near_positions: usize,
         quality_progress: f64,
@@ -215,7 +215,7 @@ numbers! {
 }
 
 numbers! {
-    /// Current events and the topics that address them.
+    /// Thresholds of current events, and the topics that address them.
     Events {
         kept_days: u32,
         fresh_days: u32,
@@ -236,7 +236,7 @@ numbers! {
 }
 
 numbers! {
-    /// Salience of a current event for a group.
+    /// Importance of each current event to a group.
     Salience {
         outage_minded: f64,
         outage: f64,
@@ -253,7 +253,7 @@ numbers! {
 }
 
 numbers! {
-    /// Weights from words to features.
+    /// Weights with which words count towards features.
     Features {
         topic_first: f64,
         topic_more: f64,
@@ -287,7 +287,7 @@ numbers! {
 }
 
 numbers! {
-    /// Weights from features to a score.
+    /// Weights with which features count towards a score.
     Terms {
         receptive: f64,
         topics: f64,

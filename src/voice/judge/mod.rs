@@ -1,9 +1,9 @@
 //! The judge of the player's posts: returns one reaction per group with reasons
 //! (docs/mechanics/market/social/judge.md).
 //!
-//! It models readers who either ignore or answer a post. Reactions are within -1..=1; from 0.6 on, positive
-//! or negative, they cause comments and change leads. Readers compare claims with their experience, so honest
-//! posts score higher. The judge is pure: it uses neither randomness nor a clock.
+//! The judge models readers who either ignore or answer a post. Reactions are within -1..=1. Reactions of at least
+//! 0.6, positive or negative, cause comments and change leads. Readers compare claims with their experience, so honest
+//! posts score higher. The judge is deterministic: it uses neither random draws nor a clock.
 
 mod claims;
 pub mod context;
@@ -28,72 +28,72 @@ use novamind_world::identifiers::Group;
 use std::borrow::Cow;
 use text::{TokenizedText, pair_overlap};
 
-/// A post of the player with its context.
+/// A post of the player, with the post that it answers and earlier posts.
 #[derive(Debug, Clone, Default)]
 pub struct SubmittedPost<'a> {
-    /// Its text.
+    /// Text of the post.
     pub content: &'a str,
-    /// Day it was made.
+    /// Day on which the post was published.
     pub day: u32,
-    /// The post that it replies to.
+    /// The post to which the player replies.
     pub original: Option<OriginalPost<'a>>,
-    /// Earlier posts of the player: day and text.
+    /// Day and text of the player's earlier posts.
     pub earlier: Vec<(u32, &'a str)>,
 }
 
-/// A post that is replied to.
+/// A post to which the player replies.
 #[derive(Debug, Clone, Copy)]
 pub struct OriginalPost<'a> {
-    /// Its text.
+    /// Text of the post.
     pub content: &'a str,
-    /// Whether it is a complaint.
+    /// Whether the post is a complaint.
     pub negative: bool,
-    /// Group of its author; `None` for the press.
+    /// Group of the post's author; `None` for the press.
     pub group: Option<Group>,
 }
 
-/// The reaction of a group, with reasons.
+/// The reaction of a group to a post, with reasons.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// The group.
+    /// The group that reacts.
     pub group: Group,
-    /// Reaction, -1..=1 in hundredths.
+    /// The reaction, -1..=1, rounded to hundredths.
     pub effect: f64,
-    /// Terms of the reaction before the group's gain, in a fixed order without zeros.
+    /// Terms of the reaction that are not zero, in a fixed order, before multiplication by the group's factor.
     pub terms: Vec<ScoreTerm>,
-    /// The reason given by a language model, if one judged.
+    /// The reason that a language model gave, if a model judged the post.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_reason: Option<String>,
 }
 
-/// One term of a reaction.
+/// One term in the sum of a reaction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScoreTerm {
-    /// Name.
+    /// Name of the term.
     pub name: Cow<'static, str>,
-    /// Signed size.
+    /// Signed value of the term.
     pub value: f64,
-    /// Topics, claims or events that caused it.
+    /// Topics, claims or events that caused the term.
     pub because: Vec<String>,
 }
 
 impl Judgement {
-    /// Returns the terms in descending order of size.
+    /// Returns the terms in descending order of absolute value.
     pub fn terms_by_size(&self) -> Vec<&ScoreTerm> {
         let mut terms: Vec<&ScoreTerm> = self.terms.iter().collect();
         terms.sort_by(|one, other| other.value.abs().total_cmp(&one.value.abs()));
         terms
     }
 
-    /// Replaces the reaction by a language model's score. The topics stay, because comments name them.
+    /// Replaces the reaction with a language model's score. Keeps the topics, because comments name them.
     pub fn with_model_score(self, score: &ModelScore) -> Judgement {
         let Judgement { group, mut terms, .. } = self;
         terms.retain(|term| term.name == "topics");
         Judgement { group, effect: score.score, terms, model_reason: Some(score.reason.clone()) }
     }
 
-    /// Returns the three largest terms in one line, for instance `topics +0.40 (api, limits), specific
-    /// +0.20`, or the reason given by a language model if one judged.
+    /// Returns the three largest terms on one line, for instance `topics +0.40 (api, limits), specific +0.20`. Returns
+    /// the model's reason instead if a language model judged the post.
     pub fn reason(&self) -> String {
         if let Some(reason) = &self.model_reason {
             return reason.clone();
@@ -110,20 +110,20 @@ impl Judgement {
     }
 }
 
-/// Group-independent data of a post.
+/// Data about a post that all groups share.
 struct Case<'a> {
     features: Features,
-    /// Features of the post that is replied to.
+    /// The post to which the player replies, with its features.
     original: Option<(Features, OriginalPost<'a>)>,
-    /// Earlier posts of the last four weeks.
+    /// Features of the player's recent posts.
     recent: Vec<Features>,
-    /// Largest overlap with an earlier post.
+    /// Largest text overlap with a recent post, 0..=1.
     overlap: f64,
     circumstances: &'a JudgeContext,
     lexicon: &'a Lexicon,
 }
 
-/// Returns the reactions of these groups to a post.
+/// Returns the reaction of each group to a post.
 pub fn judge_post(
     submission: &SubmittedPost<'_>,
     groups: impl IntoIterator<Item = Group>,

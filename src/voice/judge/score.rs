@@ -1,4 +1,4 @@
-//! The score of one group (docs/mechanics/market/social/judge.md#terms).
+//! The reaction score of one group (docs/mechanics/market/social/judge.md#terms).
 
 use super::claims::{Claim, evaluate_claims};
 use super::context::LiveEvent;
@@ -7,7 +7,7 @@ use super::lexicon::Profile;
 use super::{Case, Judgement, ScoreTerm};
 use novamind_world::identifiers::Group;
 
-/// A post as one group judges it.
+/// A post with the data that one group needs to judge it.
 struct GroupJudge<'a> {
     group: Group,
     case: &'a Case<'a>,
@@ -33,7 +33,7 @@ pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
     Judgement { group, effect: compress(raw, lexicon.terms.knee), terms, model_reason: None }
 }
 
-/// Compresses a score into -1..=1, rounded to hundredths: above the knee it approaches 1.
+/// Compresses a score into -1..=1 and rounds it to hundredths. Absolute values above `knee` approach 1.
 fn compress(raw: f64, knee: f64) -> f64 {
     let size = raw.abs();
     let rest = 1.0 - knee;
@@ -103,7 +103,7 @@ impl GroupJudge<'_> {
         self.profile.weight(self.case.lexicon.topic_name(topic))
     }
 
-    /// Returns R, the fit of the topics (-1..=1), and the topics that determine it.
+    /// Returns how well the topics fit the group (-1..=1), and the topics that determine the fit.
     fn topic_fit(&self) -> (f64, Vec<String>) {
         let (lexicon, terms) = (self.case.lexicon, &self.case.lexicon.terms);
         let mut best = self.weighted_topics(&self.case.features);
@@ -121,13 +121,13 @@ impl GroupJudge<'_> {
         (fit, best.iter().map(|(topic, _)| lexicon.topic_name(*topic).to_owned()).collect())
     }
 
-    /// Returns the topics of a post with weight times strength.
+    /// Returns weight times strength of every topic of a post.
     fn weighted_topics(&self, features: &Features) -> Vec<(usize, f64)> {
         let strengths = features.topics.iter().enumerate();
         strengths.map(|(topic, strength)| (topic, self.weight(topic) * strength)).collect()
     }
 
-    /// Returns the topic with the largest weight times strength, the first one on ties.
+    /// Returns the topic with the largest weight times strength, or the first topic on a tie.
     fn leading_topic(&self, features: &Features) -> Option<usize> {
         let mut lead: Option<(usize, f64)> = None;
         for (topic, value) in self.weighted_topics(features) {
@@ -138,7 +138,7 @@ impl GroupJudge<'_> {
         lead.map(|(topic, _)| topic)
     }
 
-    /// T: fit of the tone, -1..=1.
+    /// Returns how well the tone fits the group, -1..=1.
     fn tone_match(&self) -> f64 {
         let (law, features, profile) = (&self.case.lexicon.terms, &self.case.features, self.profile);
         let casual = law.casual * (profile.m - law.casual_neutral) * features.casual;
@@ -148,7 +148,7 @@ impl GroupJudge<'_> {
         (casual + formal + technical - profile.a * features.buzzwords).clamp(-1.0, 1.0)
     }
 
-    /// E: whether the post addresses a current event, -0.6..=1, with that event.
+    /// Returns how well the post addresses a current event, -0.6..=1, and that event.
     fn timing(&self) -> (f64, Vec<String>) {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         if let Some(event) = self.ignored_event() {
@@ -173,7 +173,7 @@ impl GroupJudge<'_> {
         best.map_or((0.0, Vec::new()), |(event, value)| (value, vec![event.id().to_owned()]))
     }
 
-    /// Returns the outage or price increase that a cheerful post ignores.
+    /// Returns the recent outage or price increase that a post about a release, deal or price ignores.
     fn ignored_event(&self) -> Option<LiveEvent> {
         let (features, lexicon) = (&self.case.features, self.case.lexicon);
         let cheerful = ["release", "deal", "price"]
@@ -225,7 +225,7 @@ impl GroupJudge<'_> {
         }
     }
 
-    /// A: taking responsibility if there is a reason to.
+    /// Returns how far the post takes responsibility for current problems. An apology without a problem is negative.
     fn accountability(&self) -> f64 {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
@@ -246,7 +246,7 @@ impl GroupJudge<'_> {
         fitting.map(|claim| claim.name.to_owned()).collect()
     }
 
-    /// C-: the penalty of a false claim.
+    /// Returns the share of the penalty for a false claim: less for a group without subscribers.
     fn false_claim_penalty(&self, contradicted: &[String]) -> f64 {
         let readers = self.case.circumstances.groups[self.group].subscribers;
         match (contradicted.is_empty(), readers > 0) {
@@ -268,12 +268,12 @@ impl GroupJudge<'_> {
         terms.hard_sell * self.case.features.sales_pressure * if welcome { 0.5 } else { 1.0 }
     }
 
-    /// Returns whether the post compares with competitors in numbers, for groups that prefer them.
+    /// Returns whether the post contains numbers and the group prefers technical style.
     fn has_numeric_comparison(&self) -> bool {
         self.profile.t >= self.case.lexicon.terms.technical_taste && self.case.features.numbers > 0
     }
 
-    /// Returns the terms of a reply for the post that it answers.
+    /// Returns the terms for a reply, which depend on the post that the player answers.
     fn reply_terms(&self) -> Vec<ScoreTerm> {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let Some((original, original_post)) = &self.case.original else { return Vec::new() };
@@ -297,7 +297,7 @@ fn term(name: &'static str, value: f64, because: Vec<String>) -> ScoreTerm {
     ScoreTerm { name: name.into(), value, because }
 }
 
-/// Returns a term whose positive value is reduced in a dishonest or offensive post.
+/// Creates a term whose positive value is reduced if the post is dishonest or offensive.
 fn reducible_term(
     name: &'static str,
     value: f64,

@@ -1,4 +1,4 @@
-//! Worked examples and properties of all judgements.
+//! Tests of the judge: worked examples, and properties that every judgement has.
 
 use super::context::{LiveEvent, ReaderGroup};
 use super::text::WordPattern;
@@ -14,7 +14,7 @@ fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
-/// The context of the worked examples before changes.
+/// The context on which all worked examples are based.
 fn default_context() -> JudgeContext {
     let count = |id: &str| match id {
         "S1" => 4000,
@@ -354,7 +354,7 @@ fn events_are_fresh_for_a_week_and_remembered_for_another() {
         let found = timing(&apology, LiveEvent::Outage, age);
         assert!((found - expected).abs() < 1e-12, "day {age}: got {found}, expected {expected}");
     }
-    // A cheerful post ignores an outage as long as that is recent, and a price increase as long as it is remembered.
+    // A cheerful post that ignores an outage is penalized for 7 days; one that ignores a price increase, for 14 days.
     let cheerful = Example { submission: post("New feature launch: brainstorm boards are here."), ..of("g") };
     for age in 0..=14 {
         assert_eq!(timing(&cheerful, LiveEvent::Outage, age) < 0.0, age <= 7, "outage of day {age}");

@@ -1,27 +1,27 @@
 //! Tokenization and word matching for posts.
 
-/// A text in the forms that patterns are matched with.
+/// A text that is prepared for pattern matching.
 #[derive(Debug, Clone)]
 pub struct TokenizedText {
-    /// Lowercase text with plain quotes and dashes.
+    /// The text in lowercase, with ASCII quotes and dashes.
     normalized: String,
-    /// Words and numbers in order.
+    /// Words and numbers of the text, in order.
     tokens: Vec<String>,
 }
 
 /// A pattern of a word list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WordPattern {
-    /// Tokens with this prefix.
+    /// Matches tokens with this prefix.
     Prefix(String),
-    /// A token equal to it.
+    /// Matches this token only.
     Word(String),
-    /// Matches anywhere in the text; its words determine which tokens it covers.
+    /// Matches a phrase anywhere in the text. The patterns of its words determine the tokens that it covers.
     Phrase(String, Vec<WordPattern>),
 }
 
 impl WordPattern {
-    /// Parses a pattern of a list.
+    /// Parses a pattern of a word list.
     pub fn parse(text: &str) -> WordPattern {
         if text.contains(' ') || text.starts_with(['/', '%', '#']) || text.ends_with('%') {
             return WordPattern::phrase(text);
@@ -43,7 +43,7 @@ impl WordPattern {
         WordPattern::Phrase(text.trim_end_matches('*').to_owned(), words.map(entry).collect())
     }
 
-    /// Returns whether the pattern matches a token, ignoring a leading #.
+    /// Returns whether the pattern matches a token. Ignores a leading # of the token.
     fn matches_token(&self, token: &str) -> bool {
         let token = token.trim_start_matches('#');
         match self {
@@ -61,7 +61,7 @@ impl WordPattern {
         }
     }
 
-    /// Returns the pattern as written in a list, without its star.
+    /// Returns the pattern as it is written in a word list, without the final star.
     #[cfg(test)]
     pub fn text(&self) -> &str {
         match self {
@@ -71,7 +71,7 @@ impl WordPattern {
 }
 
 impl TokenizedText {
-    /// Tokenizes a text.
+    /// Tokenizes and normalizes a text.
     pub fn new(text: &str) -> TokenizedText {
         let plain = |character: char| match character {
             '\u{2018}' | '\u{2019}' | '\u{201b}' | '\u{2032}' => '\'',
@@ -84,33 +84,34 @@ impl TokenizedText {
         TokenizedText { normalized: normal, tokens }
     }
 
-    /// Returns words and numbers in order.
+    /// Returns the words and numbers of the text, in order.
     pub fn tokens(&self) -> &[String] {
         &self.tokens
     }
 
-    /// Returns the lowercase text with plain quotes and dashes.
+    /// Returns the text in lowercase, with ASCII quotes and dashes.
     pub fn normalized(&self) -> &str {
         &self.normalized
     }
 
-    /// Returns how many different patterns of a list occur.
+    /// Returns how many patterns of a list occur in the text.
     pub fn count_matches(&self, list: &[WordPattern]) -> u32 {
         list.iter().filter(|entry| entry.occurs_in(self)).count() as u32
     }
 
-    /// Returns whether any pattern of a list occurs.
+    /// Returns whether any pattern of a list occurs in the text.
     pub fn contains_any(&self, list: &[WordPattern]) -> bool {
         list.iter().any(|entry| entry.occurs_in(self))
     }
 
-    /// Returns the number of tokens that are numbers or amounts of money.
+    /// Counts the tokens that are numbers or amounts of money.
     pub fn count_numbers(&self) -> u32 {
         let number = |token: &&String| token.starts_with(|c: char| c.is_ascii_digit() || c == '$');
         self.tokens.iter().filter(number).count() as u32
     }
 
-    /// Returns whether a token of one list is close to a different token of another list.
+    /// Returns whether a token that matches one list is within `positions` tokens of a different token that matches
+    /// the other list.
     pub fn are_near(&self, one: &[WordPattern], other: &[WordPattern], positions: usize) -> bool {
         let places = |list: &[WordPattern]| -> Vec<usize> {
             let of_list = |token: &String| list.iter().any(|entry| entry.matches_token(token));
@@ -120,7 +121,7 @@ impl TokenizedText {
         first.iter().any(|a| second.iter().any(|b| a != b && a.abs_diff(*b) <= positions))
     }
 
-    /// Returns which tokens a list covers: single words, and all words of a phrase that occurs.
+    /// Returns for each token whether a list covers it, as a single word or as part of a phrase that occurs in the text.
     pub fn covered_tokens(&self, list: &[WordPattern]) -> Vec<bool> {
         let mut covered = vec![false; self.tokens.len()];
         for entry in list {
@@ -144,7 +145,7 @@ impl TokenizedText {
     }
 }
 
-/// Returns words (`#?[a-z0-9][a-z0-9'-]*%?`) and amounts of money (`$[0-9][0-9.,]*`).
+/// Splits a text into words (`#?[a-z0-9][a-z0-9'-]*%?`) and amounts of money (`$[0-9][0-9.,]*`).
 fn tokenize(normal: &str) -> Vec<String> {
     let bytes = normal.as_bytes();
     let is_start = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_alphanumeric);
@@ -177,7 +178,7 @@ pub fn is_emoji(character: char) -> bool {
     matches!(character, '\u{1F300}'..='\u{1FAFF}' | '\u{2600}'..='\u{27BF}')
 }
 
-/// Returns the share of adjacent token pairs that two texts have in common, 0..=1.
+/// Returns the share of adjacent token pairs that occur in both texts, 0..=1.
 pub fn pair_overlap(one: &TokenizedText, other: &TokenizedText) -> f64 {
     let pairs = |reading: &TokenizedText| -> std::collections::BTreeSet<(String, String)> {
         reading.tokens.windows(2).map(|pair| (pair[0].clone(), pair[1].clone())).collect()

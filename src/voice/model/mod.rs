@@ -1,17 +1,17 @@
 //! Prompts for language models that word or judge posts, and validation of their responses (docs/interfaces/voice.md).
 //!
-//! This module handles text only. The caller owns the connection, the clock and the record.
+//! This module only builds and parses text. The caller manages the connection, time limits and recording.
 
 mod response;
 pub mod scoring;
 pub mod settings;
 pub mod wording;
 
-/// A prompt for the model.
+/// A prompt for a language model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelPrompt {
-    /// The task.
+    /// Instructions to the model.
     pub task: String,
-    /// The input as JSON.
+    /// Input data of the task, as JSON.
     pub input: String,
 }

@@ -1,14 +1,14 @@
-//! Validation that all language model responses share: a JSON array, and printable texts.
+//! Validation that all language model responses pass: a JSON array of printable texts.
 
 use serde_json::Value;
 use unicode_width::UnicodeWidthChar;
 
 use novamind_base::formatting::escape_control_characters;
 
-/// Maximum zero-width characters, such as accents of decomposed text.
+/// Maximum number of zero-width characters in a text, such as accents of decomposed letters.
 const MAX_COMBINING_MARKS: usize = 20;
 
-/// Parses a response that is a JSON array. A code fence around it is allowed, because models often add one.
+/// Parses a response that is a JSON array. A code fence around the array is allowed, because models often add a fence.
 pub(super) fn parse_array(answer: &str) -> Result<Vec<Value>, String> {
     match serde_json::from_str(strip_code_fence(answer.trim())) {
         Ok(Value::Array(values)) => Ok(values),
@@ -22,7 +22,8 @@ fn strip_code_fence(answer: &str) -> &str {
     inner.map_or(answer, |(_, rest)| rest.trim())
 }
 
-/// Checks that a text can be shown in one line: not empty, no control characters, at most `most_letters` characters.
+/// Checks that a text can be shown on one line: it is not empty, has no control characters, and has at most
+/// `most_letters` characters.
 pub(super) fn check_text(text: &str, most_letters: usize) -> Result<(), String> {
     if text.trim().is_empty() {
         return Err("a text is empty".to_owned());

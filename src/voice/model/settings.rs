@@ -1,18 +1,18 @@
-//! Settings of a language model: endpoint, name and purpose.
+//! Settings of a language model: its endpoint, its name and its tasks.
 
 use serde::{Deserialize, Serialize};
 
 use novamind_base::formatting::escape_control_characters;
 use novamind_world::params::ParameterError;
 
-/// Default maximum wait per week, in seconds.
+/// Default limit on the time that a simulated week waits for the model, in seconds.
 const DEFAULT_SECONDS_PER_WEEK: u32 = 30;
-/// Upper limit of the wait per week, in seconds.
+/// Largest permitted limit on the waiting time per week, in seconds.
 const MAX_SECONDS_PER_WEEK: u32 = 600;
-/// Maximum length of a name, in characters.
+/// Maximum length of a model name, in characters.
 const MAX_NAME_CHARACTERS: usize = 200;
 
-/// A language model as configured in a file.
+/// A language model that is configured in a settings file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelSettings {
@@ -20,16 +20,16 @@ pub struct ModelSettings {
     pub endpoint: String,
     /// Name of the model at the endpoint.
     pub model: String,
-    /// Environment variable with the API key; `None` to send no key. The key itself is never stored.
+    /// Environment variable that contains the API key; `None` for an endpoint without a key. The key itself is never stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_variable: Option<String>,
-    /// Maximum wait per week, in seconds.
+    /// Maximum time that a simulated week waits for the model, in seconds.
     #[serde(default = "seconds_a_week")]
     pub seconds_a_week: u32,
-    /// Whether it judges the player's posts.
+    /// Whether the model judges the player's posts.
     #[serde(default)]
     pub judge: bool,
-    /// Whether it words the posts of others.
+    /// Whether the model rewords posts that the player did not write.
     #[serde(default = "words")]
     pub words: bool,
 }
@@ -42,22 +42,22 @@ fn words() -> bool {
     true
 }
 
-/// The part of the settings that a run records.
+/// The model settings that a run records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelStamp {
-    /// Host of the endpoint, with its port.
+    /// Host and port of the endpoint.
     pub host: String,
     /// Name of the model.
     pub model: String,
-    /// Whether it judges the player's posts.
+    /// Whether the model judges the player's posts.
     pub judge: bool,
-    /// Whether it words the posts of others.
+    /// Whether the model rewords posts that the player did not write.
     pub words: bool,
 }
 
 impl ModelStamp {
-    /// Describes its purpose in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
+    /// Describes the tasks of the model in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
     pub fn describe(&self) -> String {
         let deeds = match (self.words, self.judge) {
             (true, true) => "rewords posts and judges the player's posts",
@@ -76,7 +76,7 @@ impl ModelSettings {
     /// Parses a settings file.
     ///
     /// # Errors
-    /// The first problem, with its line and key.
+    /// The first invalid setting, with its line and key.
     pub fn parse(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
         let settings: ModelSettings =
             toml::from_str(text).map_err(|error| ParameterError::from_toml(source, text, &error))?;
@@ -87,7 +87,7 @@ impl ModelSettings {
     /// Checks all values.
     ///
     /// # Errors
-    /// Key and problem of the first invalid value.
+    /// Key of the first invalid setting and the reason why it is invalid.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
         self.check_endpoint().map_err(|problem| ("endpoint", problem))?;
         let letters = self.model.chars().count();
@@ -99,8 +99,7 @@ impl ModelSettings {
         }
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if self.key_variable.as_ref().is_some_and(|name| name.is_empty() || !name.chars().all(is_letter)) {
-            let problem = "must be the name of the environment variable with the key, for instance \
-                           MODEL_KEY, not the key itself";
+            let problem = "must be the name of the environment variable that contains the key, for instance MODEL_KEY, not the key";
             return Err(("key_variable", problem.to_owned()));
         }
         if !(1..=MAX_SECONDS_PER_WEEK).contains(&self.seconds_a_week) {
@@ -108,7 +107,7 @@ impl ModelSettings {
             return Err(("seconds_a_week", problem));
         }
         if !self.judge && !self.words {
-            return Err(("words", "the model has nothing to do; set words or judge to true".to_owned()));
+            return Err(("words", "the model has no task; set words or judge to true".to_owned()));
         }
         Ok(())
     }
@@ -137,18 +136,18 @@ impl ModelSettings {
         if fits { Ok(()) } else { Err(example()) }
     }
 
-    /// Returns the host of the endpoint with its port.
+    /// Returns the host and port of the endpoint.
     pub fn host(&self) -> &str {
         let rest = self.endpoint.strip_prefix("http://").unwrap_or(&self.endpoint);
         rest.split('/').next().unwrap_or_default()
     }
 
-    /// Returns the URL of requests.
+    /// Returns the URL to which requests are sent.
     pub fn completions_url(&self) -> String {
         format!("{}/chat/completions", self.endpoint.trim_end_matches('/'))
     }
 
-    /// Returns the part of the settings that a run records.
+    /// Returns the settings that a run records.
     pub fn stamp(&self) -> ModelStamp {
         let ModelSettings { model, judge, words, .. } = self.clone();
         ModelStamp { host: self.host().to_owned(), model, judge, words }
@@ -192,7 +191,7 @@ mod tests {
             (COMPLETE_SETTINGS.replace("llama3", " "), 2, "model"),
             (format!("{COMPLETE_SETTINGS}key_variable = \"sk-1234\"\n"), 3, "environment variable"),
             (format!("{COMPLETE_SETTINGS}seconds_a_week = 0\n"), 3, "1 to 600 seconds"),
-            (format!("{COMPLETE_SETTINGS}words = false\n"), 3, "nothing to do"),
+            (format!("{COMPLETE_SETTINGS}words = false\n"), 3, "no task"),
         ] {
             let error = ModelSettings::parse("voice.toml", &text).expect_err(&text).to_string();
             assert!(error.contains(&format!("voice.toml, line {line}")) && error.contains(part), "{error}");

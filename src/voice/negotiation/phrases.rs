@@ -1,16 +1,16 @@
 //! Phrases for messages of enterprises. Names in braces are placeholders.
 
-/// Openings and cores of a situation.
+/// Openings and cores of the messages in one situation.
 pub(super) struct Phrases {
     pub openings: &'static [&'static str],
     pub cores: &'static [&'static str],
 }
 
-/// Closing sentences of a decision style.
+/// Closing sentences for one decision style.
 pub(super) struct Endings {
-    /// During a negotiation.
+    /// Closing sentences during a negotiation.
     pub open: [&'static str; 4],
-    /// After an agreement.
+    /// Closing sentences after an agreement.
     pub after_agreement: [&'static str; 4],
 }
 
@@ -26,7 +26,7 @@ const OFFER_OPENINGS: &[&str] = &[
     "We took the time to calculate your offer through.",
 ];
 
-/// A counter-offer close to the offered price.
+/// Phrases for a counter-offer close to the offered price.
 pub(super) const NEAR: Phrases = Phrases {
     openings: OFFER_OPENINGS,
     cores: &[
@@ -41,7 +41,7 @@ pub(super) const NEAR: Phrases = Phrases {
     ],
 };
 
-/// A counter-offer clearly below the offered price.
+/// Phrases for a counter-offer clearly below the offered price.
 pub(super) const APART: Phrases = Phrases {
     openings: OFFER_OPENINGS,
     cores: &[
@@ -56,7 +56,7 @@ pub(super) const APART: Phrases = Phrases {
     ],
 };
 
-/// A counter-offer far below the offered price.
+/// Phrases for a counter-offer far below the offered price.
 pub(super) const FAR: Phrases = Phrases {
     openings: OFFER_OPENINGS,
     cores: &[
@@ -71,7 +71,7 @@ pub(super) const FAR: Phrases = Phrases {
     ],
 };
 
-/// Agreement.
+/// Phrases for accepting an offer.
 pub(super) const ACCEPTANCE: Phrases = Phrases {
     openings: &[
         "Good news from our side.",
@@ -96,7 +96,7 @@ pub(super) const ACCEPTANCE: Phrases = Phrases {
     ],
 };
 
-/// A subscriber whose price is too high for the quality it gets.
+/// Phrases of a subscriber that threatens to cancel because the price is too high for the quality.
 pub(super) const THREAT: Phrases = Phrases {
     openings: &[
         "We need to talk about our contract.",
@@ -134,7 +134,7 @@ const PLAN_OPENINGS: &[&str] = &[
     "We would like to adjust our subscription.",
 ];
 
-/// A subscriber that requests the price of a higher plan.
+/// Phrases of a subscriber that asks for a price of a higher plan.
 pub(super) const UPGRADE: Phrases = Phrases {
     openings: PLAN_OPENINGS,
     cores: &[
@@ -149,7 +149,7 @@ pub(super) const UPGRADE: Phrases = Phrases {
     ],
 };
 
-/// A subscriber that requests the price of a lower plan.
+/// Phrases of a subscriber that asks for a price of a lower plan.
 pub(super) const DOWNGRADE: Phrases = Phrases {
     openings: PLAN_OPENINGS,
     cores: &[
@@ -164,7 +164,7 @@ pub(super) const DOWNGRADE: Phrases = Phrases {
     ],
 };
 
-/// Long negotiations, for all decision styles.
+/// Closing sentences of long negotiations, for all decision styles.
 pub(super) const LATE_ENDINGS: [&str; 6] = [
     "We have been writing back and forth for a while and would like to come to an end.",
     "Our patience with this round of letters is not endless.",

@@ -15,17 +15,17 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::parse_all(&sources).expect("the bundled grammars are valid")
 });
 
-/// Days after which an author is no longer new, and after which they are a long-term customer.
+/// Days after which an author is no longer a new customer.
 const SETTLED_AFTER_DAYS: u32 = 30;
 const VETERAN_AFTER_DAYS: u32 = 120;
-/// One in this many casual authors writes without capitals.
+/// One author out of this many casual authors writes without capital letters.
 const LOWERCASE_AUTHOR_INTERVAL: u32 = 9;
 
 pub(super) fn draft(context: &Context, choose: Chooser<'_>) -> String {
     GRAMMAR.expand("post", context, choose)
 }
 
-/// Returns whether an author writes without capitals, which is constant for each author.
+/// Returns whether an author writes without capital letters. The result is the same for all posts of the author.
 pub(super) fn writes_in_lowercase(author: &PostAuthor) -> bool {
     SpeechRegister::for_group(Some(author.group)) == SpeechRegister::Casual
         && author.n.is_multiple_of(LOWERCASE_AUTHOR_INTERVAL)
@@ -104,7 +104,7 @@ fn post_form(cause: PostCause, tone: Sentiment) -> &'static str {
     }
 }
 
-/// Returns the grammar's name for the subject of a post.
+/// Returns the rule name that the grammar uses for the subject of a post.
 fn situation(opinion: &Opinion) -> &'static str {
     match opinion.cause {
         PostCause::Overload => "overload",
@@ -170,7 +170,7 @@ pub(super) mod tests {
     ];
     const TONES: [Sentiment; 3] = [Sentiment::Positive, Sentiment::Neutral, Sentiment::Negative];
 
-    /// All possible situations with their tones.
+    /// Returns every combination of opinion and tone that can occur.
     pub(in crate::posts) fn situations() -> Vec<(Opinion, Sentiment)> {
         let mut list = Vec::new();
         for tone in TONES {
@@ -199,7 +199,7 @@ pub(super) mod tests {
         let params = Params::bundled();
         for group in Group::all() {
             for (mut opinion, tone) in situations() {
-                // The minimal context without optional values.
+                // A minimal context, without optional values.
                 (opinion.plan, opinion.price, opinion.waiting_days, opinion.downtime_minutes) =
                     (None, 0.0, 0, 0);
                 let context = context(&author(group), &opinion, tone, &params);

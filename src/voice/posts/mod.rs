@@ -1,8 +1,8 @@
 //! Wording of posts and comments (docs/mechanics/market/social/texts.md).
 //!
-//! Facts contain the reason for a post; grammars turn it into text. A post is true for its author and
-//! contains only what a person could know: causes and opinions, prices and plans, never hidden numbers. The
-//! wording uses its own random stream and does not affect the world.
+//! Facts contain the reason for a post, and grammars turn the reason into text. A post contains only what its author
+//! can know: causes, opinions, prices and plans, but no hidden numbers. The wording uses a separate random stream and
+//! does not affect the world.
 
 mod comments;
 mod customers;
@@ -20,15 +20,14 @@ use novamind_world::events::{Post, PostSubject};
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
-/// Writes posts in order and remembers recent ones to avoid repetition.
+/// Writes posts in order and remembers recent posts to avoid repetition.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct PostWriter {
     recent: RecentPosts,
 }
 
 impl PostWriter {
-    /// Returns the text of a post; for comments, `judgement` is the reaction of the comment's group to the
-    /// player's post.
+    /// Returns the text of a post. For a comment, `judgement` is the reaction of the commenting group to the player's post.
     pub fn write(
         &mut self,
         post: &Post,
@@ -60,7 +59,7 @@ impl PostWriter {
             (PostSubject::Comment { group, effect, .. }, _) => {
                 self.recent.pick_freshest(|| comments::write_comment(group, effect, judgement, &mut choose))
             }
-            // An opinion always has an author.
+            // Cannot occur: an opinion always has an author.
             (PostSubject::Opinion(_), None) => String::new(),
         }
     }

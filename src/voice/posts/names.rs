@@ -1,4 +1,4 @@
-//! Names of profiles for some customers of the initial groups.
+//! Profile names of customers in the groups that are known from the start.
 
 use novamind_world::events::PostAuthor;
 use novamind_world::random::{Part, Streams};

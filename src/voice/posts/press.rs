@@ -1,4 +1,4 @@
-//! Posts of the market observer: readings of the economy, its current state, and competitor events.
+//! Posts of the market observer about PMI readings, the economy and competitors.
 
 use std::sync::LazyLock;
 
@@ -10,7 +10,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::parse(include_str!("../../../assets/voice/press.toml")).expect("the bundled grammars are valid")
 });
 
-/// Points of view on the economy, in the order of their numbers.
+/// Rule names of the points of view on the economy, indexed by view number.
 const ECONOMY_VIEWS: [&str; 11] = [
     "startup_chief",
     "sales",
@@ -25,11 +25,11 @@ const ECONOMY_VIEWS: [&str; 11] = [
     "journalist",
 ];
 
-/// Points of view on competitors, in the order of their numbers.
+/// Rule names of the points of view on competitors, indexed by view number.
 const COMPETITOR_VIEWS: [&str; 7] =
     ["analyst", "journalist", "watcher", "insider", "investor", "reviewer", "evaluator"];
 
-/// Returns the common context of press posts; most values are empty.
+/// Returns a context for press posts in which most values are empty.
 fn context(way: &str, view: &str) -> Context {
     let empty = ["trend", "seen", "pmi", "change", "name", "severity", "estimate"];
     let context = Context::default().with("way", way).with("view", view);
@@ -44,7 +44,7 @@ fn trend_direction(trend: Trend) -> &'static str {
     }
 }
 
-/// Writes a post about a published reading: value and change with one decimal.
+/// Writes a post about a published PMI reading. Value and change have one decimal.
 pub(super) fn write_reading_post(reading: &Reading, choose: Chooser<'_>) -> String {
     let change = match reading.change {
         up if up > 0.0 => format!("up {up:.1} points"),
@@ -58,7 +58,7 @@ pub(super) fn write_reading_post(reading: &Reading, choose: Chooser<'_>) -> Stri
     GRAMMAR.expand("reading", &context, choose)
 }
 
-/// Writes a post about the economy; every second post names today's index.
+/// Writes a post about the economy. Every second post names today's PMI.
 pub(super) fn write_economy_post(trend: Trend, pmi: f64, view: u8, choose: Chooser<'_>) -> String {
     let view = ECONOMY_VIEWS[usize::from(view) % ECONOMY_VIEWS.len()];
     let with_number = choose(2) == 0;
@@ -71,7 +71,7 @@ pub(super) fn write_economy_post(trend: Trend, pmi: f64, view: u8, choose: Choos
     GRAMMAR.expand("economy", &context, choose)
 }
 
-/// Writes a post about a competitor event: its name, and the author's estimate with four decimals.
+/// Writes a post about a competitor event, with the event's name and the author's estimate to four decimals.
 pub(super) fn write_competitor_post(
     name: &str,
     view: u8,

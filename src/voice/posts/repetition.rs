@@ -4,20 +4,20 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Number of posts within which no text is repeated.
+/// Number of consecutive posts in which no text should occur twice.
 pub const REMEMBERED_POSTS: usize = 60;
-/// Number of posts within which two should not start with the same words.
+/// Number of consecutive posts that should all start with different words.
 const REMEMBERED_OPENINGS: usize = 15;
-/// Number of drafts compared for each post.
+/// Number of drafts that are compared for each post.
 const DRAFTS_PER_POST: usize = 24;
-/// Maximum number of drafts tried to find a text that is not repeated.
+/// Maximum number of drafts that are generated to avoid a repeated text.
 const MAX_DRAFTS: usize = 400;
 
-/// Recent texts, oldest first.
+/// Texts of recent posts, oldest first.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct RecentPosts(VecDeque<RecentText>);
 
-/// A lowercase text, split once because it is compared with hundreds of drafts.
+/// A lowercase text, already split because it is compared with hundreds of drafts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct RecentText {
     text: String,
@@ -35,8 +35,8 @@ impl RecentText {
 }
 
 impl RecentPosts {
-    /// Picks the draft with the least repetition and remembers it. A text of the last 60 posts is repeated
-    /// only if hundreds of drafts contain nothing else.
+    /// Picks the draft that repeats recent posts least, and remembers it. Repeats a text of the last 60 posts only if
+    /// none of hundreds of drafts is new.
     pub fn pick_freshest(&mut self, mut draft: impl FnMut() -> String) -> String {
         let mut best: Option<(usize, String)> = None;
         for number in 0..MAX_DRAFTS {
@@ -62,7 +62,8 @@ impl RecentPosts {
         self.0.push_back(RecentText::new(text));
     }
 
-    /// Returns how much of a text repeats recent posts: sentences, the opening, or, with the largest weight, all of it.
+    /// Returns how much a text repeats recent posts. Counts equal sentences, an equal opening and, with the largest
+    /// weight, an equal text.
     fn staleness(&self, text: &str) -> usize {
         let text = text.to_lowercase();
         if self.0.iter().any(|other| other.text == text) {
@@ -82,7 +83,7 @@ fn sentences(text: &str) -> impl Iterator<Item = &str> {
     text.split(['.', '!', '?', ':']).map(str::trim).filter(|sentence| sentence.len() > 3)
 }
 
-/// Returns the first three words.
+/// Returns the first three words of a text.
 fn opening(text: &str) -> impl Iterator<Item = &str> {
     text.split_whitespace().take(3)
 }

@@ -1,4 +1,4 @@
-//! Tests of a long feed: no repetition and no mechanically detectable errors.
+//! Tests that a long feed has no repetition and no mechanically detectable errors.
 
 use super::customers::tests::{author, situations};
 use super::*;
@@ -7,7 +7,7 @@ use novamind_world::identifiers::Group;
 
 const NO_ENGAGEMENT: Engagement = Engagement { likes: 0, shares: 0, virality: 0.0 };
 
-/// A long feed over all situations and groups.
+/// Generates a long feed that covers all situations and groups.
 fn feed() -> Vec<(Post, String)> {
     let (params, streams) = (Params::bundled(), Streams::new(11));
     let mut writer = PostWriter::default();
@@ -97,7 +97,7 @@ fn companies_speak_as_we_and_people_as_i() {
                 assert!(!says(word), "{word} in {text}");
             }
         } else if author.group.id() != "D_S04" {
-            // Authors at agencies sometimes write for their team.
+            // Authors at agencies sometimes write "we" for their team.
             assert!(!says("we") && !says("we're"), "{text}");
         }
     }

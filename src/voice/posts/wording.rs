@@ -1,27 +1,27 @@
-//! Numbers and profiles in colloquial words.
+//! Colloquial wording of numbers and customer profiles.
 
 use novamind_base::formatting::{cents, dollars};
 use novamind_world::events::PostAuthor;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
-/// Language register of a group.
+/// Style in which the members of a group write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeechRegister {
-    /// Among friends.
+    /// Casual style, as among friends.
     Casual,
-    /// Plainly.
+    /// Plain style.
     Plain,
-    /// With professional precision.
+    /// Precise professional style.
     Expert,
-    /// Among engineers.
+    /// Technical style, as among engineers.
     Technical,
-    /// On behalf of an enterprise.
+    /// Corporate style, on behalf of an enterprise.
     Corporate,
 }
 
 impl SpeechRegister {
-    /// Returns the register of a group; plain for the press and unknown authors.
+    /// Returns the register of a group, or `Plain` for authors without a group.
     pub fn for_group(group: Option<Group>) -> SpeechRegister {
         let Some(group) = group else { return SpeechRegister::Plain };
         match group.id() {
@@ -33,7 +33,7 @@ impl SpeechRegister {
         }
     }
 
-    /// Identifier in the grammars.
+    /// Returns the name of the register in the grammars.
     pub fn id(self) -> &'static str {
         match self {
             SpeechRegister::Casual => "casual",
@@ -56,7 +56,7 @@ fn count_in_words(count: u32, unit: &str) -> String {
     format!("{number} {unit}{plural}")
 }
 
-/// Returns a colloquial time span in days, weeks or months: `three weeks`.
+/// Returns a time span in colloquial words, in days, weeks or months: `three weeks`.
 pub fn time_span(days: u32) -> String {
     match days {
         0 | 1 => "one day".to_owned(),
@@ -67,7 +67,7 @@ pub fn time_span(days: u32) -> String {
     }
 }
 
-/// Returns the length of an outage, or `None` without an outage.
+/// Returns the duration of an outage in colloquial words, or `None` for 0 minutes.
 pub fn outage_span(minutes: u32) -> Option<String> {
     match minutes {
         0 => None,
@@ -78,7 +78,7 @@ pub fn outage_span(minutes: u32) -> Option<String> {
     }
 }
 
-/// Returns an approximate number of seats, because enterprises do not state it exactly in public.
+/// Returns an approximate number of seats in words, because enterprises do not publish the exact number.
 pub fn approximate_seats(seats: u32) -> &'static str {
     match seats {
         0..60 => "a few dozen seats",
@@ -90,7 +90,7 @@ pub fn approximate_seats(seats: u32) -> &'static str {
     }
 }
 
-/// Formats a price without unnecessary cents; `None` for 0.
+/// Formats a price without unnecessary cents. Returns `None` for 0.
 pub fn price(amount: f64) -> Option<String> {
     match amount {
         _ if amount < 0.005 => None,
@@ -99,17 +99,17 @@ pub fn price(amount: f64) -> Option<String> {
     }
 }
 
-/// Returns the role of an author.
+/// Returns the job role of an author in words.
 pub fn role(author: &PostAuthor, params: &Params) -> String {
     label_words(&params.personas.group[author.group.index()].role, author.persona.0[1])
 }
 
-/// Returns the industry of an author.
+/// Returns the industry of an author in words.
 pub fn trade(author: &PostAuthor, params: &Params) -> String {
     label_words(&params.personas.group[author.group.index()].industry, author.persona.0[0])
 }
 
-/// Returns whether an author has technical skill.
+/// Returns whether an author's profile has a high technical skill.
 pub fn is_skilled(author: &PostAuthor, params: &Params) -> bool {
     let axis = if author.group.is_enterprise() {
         (&params.personas.enterprise.tech_savvy, author.persona.0[2])
@@ -119,7 +119,7 @@ pub fn is_skilled(author: &PostAuthor, params: &Params) -> bool {
     ["advanced", "expert"].contains(&label_words(axis.0, axis.1).as_str())
 }
 
-/// Returns whether an individual has long experience.
+/// Returns whether an individual's profile has long work experience.
 pub fn is_senior(author: &PostAuthor, params: &Params) -> bool {
     let levels = &params.personas.individual.experience_levels;
     !author.group.is_enterprise()

@@ -1,4 +1,4 @@
-//! Restores values from canonical bytes. Invalid bytes result in `None`, never in a panic.
+//! Restores values from canonical bytes. For invalid bytes, the functions return `None` and never panic.
 
 use indexmap::IndexMap;
 
@@ -22,7 +22,7 @@ impl<'a> CanonicalReader<'a> {
         Some(taken)
     }
 
-    /// Reads the next value.
+    /// Reads the next value, or returns `None` if its bytes are invalid.
     pub fn read<T: Restore>(&mut self) -> Option<T> {
         T::restore(self)
     }
@@ -33,13 +33,13 @@ impl<'a> CanonicalReader<'a> {
     }
 }
 
-/// A part of the state that can be restored from its canonical bytes.
+/// A value that can be restored from its canonical bytes.
 pub trait Restore: Sized {
-    /// Reads the next value. Returns `None` if the bytes are invalid.
+    /// Reads a value of this type. Returns `None` if the bytes are invalid.
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self>;
 }
 
-/// Restores a value from all of `bytes`. Returns `None` if any are left over.
+/// Restores a value from all of `bytes`. Returns `None` if the bytes are invalid or some bytes remain.
 #[cfg(test)]
 pub fn restore_all<T: Restore>(bytes: &[u8]) -> Option<T> {
     let mut reader = CanonicalReader::new(bytes);
@@ -75,7 +75,8 @@ impl Restore for bool {
     }
 }
 
-/// Reads the length of a list or text. Each element takes at least one byte, so a larger length is invalid.
+/// Reads the length of a list or text. Each element takes at least one byte, so a length above the number of remaining
+/// bytes is invalid.
 fn read_length(reader: &mut CanonicalReader<'_>) -> Option<usize> {
     let length = usize::try_from(reader.read::<u64>()?).ok()?;
     (length <= reader.remaining_bytes.len()).then_some(length)

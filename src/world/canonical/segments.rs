@@ -1,7 +1,7 @@
 //! Hashes a large value on several threads.
 //!
-//! BLAKE3 is a tree over parts of its input, so each thread collects and hashes its own bytes while they are
-//! in its cache. The result equals the hash of all bytes in sequence.
+//! BLAKE3 hashes a tree of input chunks. Each thread therefore collects and hashes a separate part of the bytes while
+//! the part is in its cache. The result equals the hash of all bytes in sequence.
 
 use std::ops::Range;
 
@@ -10,11 +10,11 @@ use rayon::prelude::*;
 
 use super::CanonicalHasher;
 
-/// Bytes of one subtree of the hash: a power of two that fits into the cache of a core.
+/// Input bytes of one subtree of the hash: a power of two that fits into the cache of a processor core.
 const SUBTREE_BYTES: usize = 1 << 20;
 
-/// Subtrees that one thread hashes in a row to reuse its buffer. Smaller inputs use fewer, so that a second
-/// thread has work.
+/// Number of subtrees that one thread hashes in sequence to reuse its buffer. The number is lower for small inputs, so
+/// that two threads can share the work.
 const SUBTREES_PER_TASK: usize = 4;
 
 /// A sequence of canonical bytes with a known length.
@@ -24,16 +24,16 @@ pub struct HashSegment<'a> {
 }
 
 impl<'a> HashSegment<'a> {
-    /// Creates a segment of `length` bytes that `feed` writes.
+    /// Creates a segment whose `length` bytes are written by `feed`.
     pub fn new(length: usize, feed: impl Fn(&mut CanonicalHasher) + Sync + 'a) -> HashSegment<'a> {
         HashSegment { length, feed: Box::new(feed) }
     }
 }
 
-/// Returns the hash of the bytes of all `stretches` in order.
+/// Returns the hash of the concatenated bytes of `stretches`.
 ///
 /// # Panics
-/// If a segment feeds a different number of bytes than its length.
+/// If a segment feeds more or fewer bytes than its declared length.
 pub fn hash_segments(stretches: &[HashSegment<'_>]) -> blake3::Hash {
     let mut total = 0;
     let begins: Vec<usize> = stretches
@@ -80,7 +80,7 @@ pub fn hash_segments(stretches: &[HashSegment<'_>]) -> blake3::Hash {
     merge_subtrees_root(&merge_subtrees(left), &merge_subtrees(right), Mode::Hash)
 }
 
-/// Returns the chaining value of a tree that is not the whole input.
+/// Returns the chaining value of a tree that covers only a part of the input.
 fn merge_subtrees(subtrees: &[ChainingValue]) -> ChainingValue {
     match subtrees {
         [single] => *single,
@@ -91,7 +91,7 @@ fn merge_subtrees(subtrees: &[ChainingValue]) -> ChainingValue {
     }
 }
 
-/// Splits at the largest power of two that leaves at least one subtree on the right.
+/// Splits the subtrees at the largest power of two that leaves at least one subtree on the right.
 fn split_tree(subtrees: &[ChainingValue]) -> (&[ChainingValue], &[ChainingValue]) {
     subtrees.split_at(subtrees.len().next_power_of_two() / 2)
 }

@@ -1,34 +1,34 @@
-//! The first decision: which plan a lead picks, whether an individual accepts it, and whether an enterprise
-//! requests an offer at all (docs/mechanics/customers/choice.md).
+//! The first decision of a customer: which plan a lead picks, whether an individual accepts the plan, and whether an
+//! enterprise requests an offer (docs/mechanics/customers/choice.md).
 
 use super::curve::{Curve, required_quality};
 use crate::identifiers::{ByPlan, Plan};
 use crate::params::Params;
 use crate::quality::quota_factor;
 
-/// A plan as offered to the leads of a group today, before individual demand and discounts.
+/// A plan that is offered to the leads of a group today, before individual demand and discounts.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanOffer {
-    /// List price, dollars a month.
+    /// List price, dollars per month.
     pub price: f64,
-    /// Delivered quality, minus the service penalty if the fidelity setting asks for it.
+    /// Delivered quality, less the service penalty if the fidelity parameter requires it.
     pub quality: f64,
-    /// Quota, units.
+    /// Quota of the plan, units per day.
     pub quota: f64,
 }
 
-/// A lead's choice among the plans.
+/// The plan that a lead picks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanChoice {
     /// The plan with the largest surplus, or A if no surplus is positive.
     pub plan: Plan,
-    /// Its price after the lead promotion, dollars a month.
+    /// Price of the plan after the first-bill discount, dollars per month.
     pub price: f64,
-    /// Its quality as the lead perceives it, before noise.
+    /// Quality of the plan that the lead perceives, before noise.
     pub quality: f64,
 }
 
-/// Returns a plan with the lead's discounted price and the quality that its quota leaves.
+/// Returns a plan with its discounted price and its quality after the quota factor.
 pub fn evaluate_offer(
     offer: &PlanOffer,
     plan: Plan,
@@ -40,9 +40,9 @@ pub fn evaluate_offer(
     PlanChoice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
 }
 
-/// Picks the plan with the largest surplus above 0 (ties: the earlier plan), or A if there is none.
+/// Picks the plan with the largest positive surplus, or plan A if no surplus is positive. On a tie, the earlier plan wins.
 ///
-/// Quotas are compared with `demand`. The curve already includes the market's drift once.
+/// Quotas are compared with `demand`. `curve` must already include the market's drift.
 pub fn choose_plan(
     offers: &ByPlan<PlanOffer>,
     discount: f64,
@@ -54,7 +54,7 @@ pub fn choose_plan(
     let mut best = (params.participation.lead_min_satisfaction_exclusive, None);
     for plan in Plan::ALL {
         let choice = candidate(plan);
-        // No price requires less than the minimum of the curve, so most plans need no further evaluation.
+        // The required quality is never below the minimum of the curve, so most plans need no further evaluation.
         let most = choice.quality - curve.q_min.min(curve.q_max);
         if choice.price > curve.c_max || most <= best.0 {
             continue;
@@ -67,13 +67,13 @@ pub fn choose_plan(
     best.1.unwrap_or_else(|| candidate(Plan::A))
 }
 
-/// Returns whether an individual accepts its choice: the price is within the budget, and quality times noise
-/// is at least the required quality.
+/// Returns whether an individual accepts the picked plan: the price is within the budget, and quality times noise is
+/// at least the required quality.
 pub fn is_accepted(choice: &PlanChoice, noise: f64, curve: &Curve, params: &Params) -> bool {
     choice.price <= curve.c_max && choice.quality * noise >= required_quality(choice.price, curve, params)
 }
 
-/// Returns whether any plan is good enough for an enterprise at price 0, without noise.
+/// Returns whether any plan has sufficient quality for an enterprise at price 0, without noise.
 pub fn passes_quality_gate(offers: &ByPlan<PlanOffer>, demand: f64, curve: &Curve, params: &Params) -> bool {
     let required = required_quality(0.0, curve, params);
     offers.iter().any(|offer| offer.quality * quota_factor(offer.quota, demand, &params.quality) >= required)

@@ -1,15 +1,15 @@
 //! Active subscribers in columns, split into blocks by running customer number.
 //!
-//! A block holds the active customers `first ..= first + CUSTOMERS_PER_BLOCK - 1` of one group, in the order of their
-//! numbers. Sweeps process whole blocks on any thread. Each customer has a fixed position in the random
-//! stream of its block, so one customer's draws never affect another's (docs/mechanics/randomness.md#blocks).
+//! A block contains the active customers `first ..= first + CUSTOMERS_PER_BLOCK - 1` of one group, in ascending order
+//! of their numbers. A sweep processes each block on one thread. Each customer has a fixed position in the random
+//! stream of its block, so the draws of one customer never affect another customer (docs/mechanics/randomness.md#blocks).
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::identifiers::Plan;
 
 use super::curve::Curve;
 
-/// Customer numbers per block.
+/// Number of customer numbers per block.
 pub const CUSTOMERS_PER_BLOCK: u32 = 1024;
 
 macro_rules! columns {
@@ -33,33 +33,33 @@ macro_rules! columns {
                 $Block { $($column: Vec::with_capacity(rows),)* }
             }
 
-            /// Appends a row.
+            /// Appends a row to the block.
             pub fn push(&mut self, row: $Row) {
                 $(self.$column.push(row.$column);)*
             }
 
-            /// Appends rows.
+            /// Appends rows to the block.
             pub fn extend(&mut self, rows: &[$Row]) {
                 $(self.$column.extend(rows.iter().map(|row| row.$column));)*
             }
 
-            /// Inserts a row at a position.
+            /// Inserts a row at a position of the block.
             pub fn insert(&mut self, at: usize, row: $Row) {
                 $(self.$column.insert(at, row.$column);)*
             }
 
-            /// Returns the row at a position.
+            /// Returns the row at a position of the block.
             pub fn row(&self, at: usize) -> $Row {
                 $Row { $($column: self.$column[at],)* }
             }
 
-            /// Returns the number of canonical bytes.
+            /// Returns the number of canonical bytes of the block.
             pub fn canonical_length(&self) -> usize {
                 // A column value has as many canonical bytes as it occupies in memory.
                 0 $(+ size_of::<u64>() + self.$column.len() * size_of::<$kind>())*
             }
 
-            /// Removes the rows at these ascending positions; the others keep their order.
+            /// Removes the rows at the ascending positions `gone`. The remaining rows keep their order.
             pub fn remove(&mut self, gone: &[usize]) {
                 if !gone.is_empty() {
                     $(drop_positions(&mut self.$column, gone);)*
@@ -68,7 +68,7 @@ macro_rules! columns {
         }
 
         impl $Row {
-            /// Returns the columns in which `other` differs: name, own value, other value.
+            /// Returns the columns in which the rows differ: name, value of `self`, value of `other`.
             pub fn differing(&self, other: &$Row) -> Vec<(&'static str, String, String)> {
                 let mut found = Vec::new();
                 $(if self.$column != other.$column {
@@ -112,61 +112,61 @@ macro_rules! columns {
 columns! {
     /// The active subscribers of a range of customer numbers, one vector per column.
     block Block,
-    /// One active subscriber.
+    /// The row of one active subscriber.
     row Subscriber {
-        /// Running number within the group, from 1.
+        /// Running number of the customer within the group, from 1.
         n: u32,
-        /// Customer number.
+        /// Customer number of the subscriber.
         customer: u32,
-        /// Subscription number.
+        /// Number of the subscription.
         subscription: u32,
-        /// Plan.
+        /// Plan of the subscription.
         plan: Plan,
-        /// Billed on days with this remainder modulo 30.
+        /// Billing day modulo 30: the subscriber is billed on days with this remainder.
         billing_day: u8,
-        /// Whether the first bill was issued.
+        /// Whether the subscriber has received the first bill.
         billed_once: bool,
-        /// Day the subscription started.
+        /// Day on which the subscription started.
         start_day: u32,
         /// Steepness of the lower half of the curve, including individual drift.
         steepness_left: f64,
-        /// Steepness of the upper half of the curve.
+        /// Steepness of the upper half of the curve, which does not drift.
         steepness_right: f64,
-        /// Budget including individual drift, dollars a month.
+        /// Budget including individual drift, dollars per month.
         c_max: f64,
         /// Minimum quality including individual drift.
         q_min: f64,
         /// Maximum quality including individual drift.
         q_max: f64,
-        /// Mean demand, units a day and seat.
+        /// Mean demand, units per day and seat.
         usage_demand: f64,
-        /// Quality lost to ads at full strength.
+        /// Quality loss from in-app advertising at full strength.
         ads_quality_sensitivity: f64,
-        /// Revenue from ads at full strength, dollars a day and seat.
+        /// Ad revenue at full strength, dollars per day and seat.
         ads_return_sensitivity: f64,
-        /// Seats. They drift for enterprises; only whole seats count.
+        /// Number of seats, with a fraction: seats of enterprises drift, and only whole seats count.
         seats: f64,
-        /// Price before discounts, dollars a month and seat.
+        /// Price before discounts, dollars per month and seat.
         listed_price: f64,
-        /// Discount in force, dollars a month and seat.
+        /// Current discount, dollars per month and seat.
         promotion: f64,
-        /// Price in force, dollars a month and seat.
+        /// Current effective price, dollars per month and seat.
         effective_price: f64,
-        /// Budget stored with the last bill, dollars a month.
+        /// Budget that was stored with the last bill, dollars per month.
         effective_c_max: f64,
-        /// Usage of this billing period, units a day for the whole account.
+        /// Usage rate in this billing period, units per day for the whole account.
         usage_rate: f64,
         /// Units used in this billing period.
         period_usage: u64,
-        /// Satisfaction, unbounded.
+        /// Satisfaction of the subscriber; not bounded.
         satisfaction: f64,
-        /// Relationship, 0..=1.
+        /// Relationship with the company, 0..=1.
         relationship: f64,
-        /// Days an issue has been open, 0 without one.
+        /// Days that the open issue has been open, or 0 without an open issue.
         open_issue_days: u32,
-        /// Number of the open issue, 0 without one.
+        /// Number of the open issue, or 0 without an open issue.
         issue: u32,
-        /// Quality required at the price in force, before the market's expectations are added.
+        /// Required quality at the current price, without the market's expectations.
         required: f64,
     }
 }
@@ -182,18 +182,18 @@ fn drop_positions<T: Copy>(column: &mut Vec<T>, gone: &[usize]) {
 }
 
 impl Block {
-    /// Returns the number of active subscribers.
+    /// Returns the number of active subscribers in the block.
     #[inline]
     pub fn len(&self) -> usize {
         self.n.len()
     }
 
-    /// Returns whether there are no active subscribers.
+    /// Returns whether the block has no active subscribers.
     pub fn is_empty(&self) -> bool {
         self.n.is_empty()
     }
 
-    /// Returns how many subscribers have an open issue.
+    /// Returns how many subscribers of the block have an open issue.
     pub fn open_issues(&self) -> u32 {
         self.open_issue_days.iter().filter(|days| **days > 0).count() as u32
     }
@@ -215,10 +215,10 @@ impl Block {
         }
     }
 
-    /// Returns the positions of subscribers who are billed on days with this remainder.
+    /// Returns the positions of subscribers whose billing day modulo 30 is `billing_day`.
     pub fn due_positions(&self, billing_day: u8) -> Vec<usize> {
-        // Customers who arrived on the same day are adjacent, so most blocks have none due and a search
-        // detects that quickly.
+        // Customers who arrived on the same day are adjacent. Most blocks therefore have no due subscribers, and a
+        // search detects such blocks quickly.
         if !self.billing_day.contains(&billing_day) {
             return Vec::new();
         }
@@ -226,21 +226,21 @@ impl Block {
         days.filter(|(_, day)| **day == billing_day).map(|(at, _)| at).collect()
     }
 
-    /// Returns the position of a row in the random words of its block.
+    /// Returns the position of a row's random word in the stream of its block.
     #[inline]
     pub fn word_position(&self, at: usize) -> usize {
         word_position_in_block(self.n[at])
     }
 }
 
-/// Returns the position of a running number in the random words of its block.
+/// Returns the position of a customer's random word in the stream of its block. `n` is the running number of the customer.
 #[inline]
 pub fn word_position_in_block(n: u32) -> usize {
     ((n - 1) % CUSTOMERS_PER_BLOCK) as usize
 }
 
-/// Adds up several columns, each in order. Each addition depends on the previous one, so interleaving columns
-/// hides the latency.
+/// Returns the sums of several columns, each added in order. Interleaving the columns hides the latency of the
+/// dependent additions.
 pub fn sum_columns<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] {
     let common = columns.iter().map(|column| column.len()).min().unwrap_or(0);
     let heads = columns.map(|column| &column[..common]);

@@ -1,4 +1,4 @@
-//! The participation curve: how much quality a customer requires at a price
+//! The participation curve: the quality that a customer requires at each price
 //! (docs/mechanics/customers/participation.md).
 
 use crate::params::{Params, Participation, RequiredQuality};
@@ -10,16 +10,17 @@ pub struct Curve {
     pub steepness_left: f64,
     /// Steepness of the upper half, 0.5..=7.
     pub steepness_right: f64,
-    /// Budget, dollars a month (and seat).
+    /// Budget, dollars per month, for enterprises also per seat.
     pub c_max: f64,
     /// Quality required at a price near 0.
     pub q_min: f64,
-    /// Quality required at the budget and above it.
+    /// Quality required at prices of the budget or more.
     pub q_max: f64,
 }
 
 impl Curve {
-    /// Returns the curve with expectations and budget moved by the market: q + dq, max(floor, c + dc).
+    /// Returns the curve after market drift: adds `dq` to both quality bounds and `dc` to the budget, which stays at
+    /// least `c_max_floor`.
     pub fn with_drift(self, dq: f64, dc: f64, c_max_floor: f64) -> Curve {
         Curve {
             q_min: self.q_min + dq,
@@ -29,22 +30,23 @@ impl Curve {
         }
     }
 
-    /// Returns the curve with another budget.
+    /// Returns the curve with a different budget.
     pub fn with_budget(self, c_max: f64) -> Curve {
         Curve { c_max, ..self }
     }
 }
 
-/// The logistic function with a clamped argument.
+/// Returns the logistic function of a clamped argument.
 #[inline]
 pub fn sigmoid(z: f64, participation: &Participation) -> f64 {
     1.0 / (1.0 + libm::exp(-z.clamp(participation.sigmoid_input_min, participation.sigmoid_input_max)))
 }
 
-/// Returns the quality required at a price of at least 0, in dollars a month: req(C; sL, sR, c, q_min, q_max).
+/// Returns the required quality at a price of at least 0, in dollars per month.
 ///
-/// Above the budget it is q_max. Below the budget, the released form has two logistic halves with a jump at
-/// half the budget. The form of the paper (`required_quality = "blended"`) blends both sigmoids.
+/// Above the budget, the required quality is q_max. Below the budget, the formula of the released simulator has two
+/// logistic halves with a jump at half the budget. The formula of the paper (`required_quality = "blended"`) blends
+/// both halves.
 #[inline]
 pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
     let form = &params.participation;
@@ -75,7 +77,7 @@ pub fn required_quality(price: f64, curve: &Curve, params: &Params) -> f64 {
 pub(crate) mod tests {
     use super::*;
 
-    /// Reference customer X: steepness, budget and qualities of a typical individual.
+    /// Participation curve of the reference customer X, a typical individual.
     pub(crate) const X: Curve =
         Curve { steepness_left: 1.2, steepness_right: 2.8, c_max: 50.0, q_min: 0.1, q_max: 0.55 };
 

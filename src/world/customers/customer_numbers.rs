@@ -1,30 +1,30 @@
 //! Mapping between customer numbers and groups.
 //!
-//! Customers are numbered in order of arrival over all groups. Random draws are keyed by group and running
-//! number within the group. Two companies with the same seed therefore have the same customers under
-//! different numbers once their numbers of leads differ.
+//! Customers of all groups are numbered in order of arrival. Random draws depend on the group and the running number
+//! within the group. If two runs with the same seed have different numbers of leads, they therefore contain the same
+//! customers under different customer numbers.
 
 use crate::canonical::canonical;
 use crate::identifiers::Group;
 
-/// The assigned numbers in order of the days.
+/// The customer numbers that have been assigned, in order of arrival.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CustomerNumbers {
     given: Vec<ArrivalRun>,
 }
 
-/// Customers of one group that arrived on one day, with consecutive numbers.
+/// Customers of one group who arrived on one day and have consecutive numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArrivalRun {
-    /// Day of arrival.
+    /// Day on which the customers arrived.
     pub day: u32,
-    /// Their group.
+    /// Group of the customers.
     pub group: Group,
-    /// Customer number of the first one.
+    /// Customer number of the first customer.
     pub first_customer: u32,
-    /// Running number of the first one within the group.
+    /// Running number of the first customer within the group.
     pub first_n: u32,
-    /// Number of customers.
+    /// Number of customers in the arrival run.
     pub count: u32,
 }
 
@@ -34,12 +34,12 @@ canonical! {
 }
 
 impl ArrivalRun {
-    /// Returns the running numbers within the group, with customer numbers.
+    /// Returns the running number and the customer number of every customer.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         (self.first_n..self.first_n + self.count).zip(self.first_customer..)
     }
 
-    /// Splits the run into parts of at most `most` customers.
+    /// Splits the arrival run into parts of at most `most` customers.
     pub fn split(self, most: u32) -> impl Iterator<Item = ArrivalRun> {
         (0..self.count).step_by(most as usize).map(move |from| ArrivalRun {
             first_customer: self.first_customer + from,
@@ -51,14 +51,14 @@ impl ArrivalRun {
 }
 
 impl CustomerNumbers {
-    /// Appends a run of consecutive customers.
+    /// Appends an arrival run with the next customer numbers.
     pub(super) fn add(&mut self, run: ArrivalRun) {
         if run.count > 0 {
             self.given.push(run);
         }
     }
 
-    /// Returns group and running number of a customer, or `None` if the number was never assigned.
+    /// Returns the group and the running number of a customer, or `None` if the number was never assigned.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
         let (run, offset) = self.locate(customer)?;
         Some((run.group, run.first_n + offset))
@@ -69,7 +69,7 @@ impl CustomerNumbers {
         self.locate(customer).map(|(run, _)| run.day)
     }
 
-    /// Returns the number of the customer with running number `n` in a group, or `None` if it has not arrived.
+    /// Returns the number of the customer with running number `n` in a group, or `None` if the customer has not arrived.
     pub fn customer_number(&self, group: Group, n: u32) -> Option<u32> {
         let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
         let run = self.given.iter().rev().find(holds)?;

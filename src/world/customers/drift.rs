@@ -1,4 +1,4 @@
-//! Preference drift: changes of expectations and budgets, for groups and for each subscriber
+//! Preference drift: changes in the expectations and budgets of groups and individual subscribers
 //! (docs/mechanics/market/drift.md).
 
 use crate::canonical::canonical;
@@ -8,14 +8,14 @@ use crate::fault::Fault;
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{Drift, IndividualDrift, Params};
 
-/// Accumulated change of expectations and budgets since day 0.
+/// Accumulated changes in expectations and budgets since day 0.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DriftTotals {
     /// Quality added to the expectations of all groups.
     pub global_quality: f64,
-    /// Quality added to a group's expectations.
+    /// Quality added to the expectations of each group.
     pub quality: ByGroup<f64>,
-    /// Dollars a month added to a group's budgets.
+    /// Dollars per month added to the budgets of each group.
     pub c_max: ByGroup<f64>,
 }
 
@@ -24,23 +24,23 @@ canonical! {
     Expectation { quality, c_max }
 }
 
-/// The change that is added to a customer's curve when it is read.
+/// The market drift that is added to a customer's curve when the curve is read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Expectation {
-    /// Added to both quality bounds.
+    /// Quality added to both quality bounds of the curve.
     pub quality: f64,
-    /// Added to the budget, dollars a month.
+    /// Dollars per month added to the budget.
     pub c_max: f64,
 }
 
 impl DriftTotals {
-    /// Returns the change of the curves of a group's customers.
+    /// Returns the market drift of a group's curves.
     pub fn expectation(&self, group: Group) -> Expectation {
         Expectation { quality: self.global_quality + self.quality[group], c_max: self.c_max[group] }
     }
 }
 
-/// Returns the growth of a daily rate over one application of drift: (1 + r)^30 - 1.
+/// Returns the growth at a daily rate over the 30 days of one drift application: (1 + r)^30 - 1.
 pub fn compound_rate(rate: f64, drift: &Drift) -> f64 {
     libm::pow(1.0 + rate, f64::from(drift.days_per_application)) - 1.0
 }
@@ -56,20 +56,20 @@ pub fn next_drift_day(after: u32, drift: &Drift) -> u32 {
     next(after.max(drift.drift_grace_period_days))
 }
 
-/// Returns the change of all groups' expectations by one application.
+/// Returns the quality that one drift application adds to the expectations of all groups.
 pub fn global_drift_step(drift: &Drift) -> f64 {
     f64::from(drift.days_per_application) * drift.global_q_bias_drift
 }
 
-/// Returns the change of a group's expectations and budgets by one application.
+/// Returns the amounts that one drift application adds to a group's expectations and budgets.
 pub fn group_drift_step(group: Group, params: &Params) -> Expectation {
     let (group_drift, days) =
         (&params.group(group).group_drift_per_day, f64::from(params.drift.days_per_application));
     Expectation { quality: days * group_drift.q_bias_drift, c_max: days * group_drift.c_max_drift }
 }
 
-/// Changes the group totals and each active subscriber's curve and seats. `seat_multiplier` is yesterday's
-/// macro multiplier of seats. Returns whether drift was applied.
+/// Applies drift to the group totals and to every active subscriber's curve and seats, if today is a drift day.
+/// `seat_multiplier` is yesterday's macroeconomic multiplier of seats. Returns whether drift was applied.
 pub fn apply_drift(
     day: u32,
     totals: &mut DriftTotals,

@@ -15,45 +15,45 @@ use super::identifiers::{ByGroup, Group};
 use columns::{Block, CUSTOMERS_PER_BLOCK, Subscriber};
 use customer_numbers::{ArrivalRun, CustomerNumbers};
 
-/// The first real customer. Number 1 is the market observer, the author of posts that no customer wrote.
+/// Number of the first real customer. Number 1 is the market observer, the author of posts that no customer wrote.
 pub const FIRST_CUSTOMER: u32 = 2;
 
-/// How blocks are distributed among threads. Waking a thread costs as much as processing some thousand customers.
+/// How blocks are distributed among threads. Waking a thread costs as much time as processing several thousand customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum WorkSplit {
-    /// A few blocks per task: customers who arrived on the same day are billed on the same day, so the work
-    /// of a day is concentrated in a few adjacent blocks.
+    /// A few blocks per task, because the work of a day is concentrated in a few adjacent blocks: customers who
+    /// arrived on the same day are billed on the same day.
     Small,
-    /// Many blocks per task, for work that is cheap for every customer.
+    /// Many blocks per task, for work that takes little time per customer.
     Large,
 }
 
-/// Fewer blocks than this are processed on one thread.
+/// Minimum number of blocks that are processed on several threads.
 const MIN_PARALLEL_BLOCKS: usize = 8;
-/// Maximum blocks of a small task.
+/// Maximum number of blocks per task with [`WorkSplit::Small`].
 const MAX_SMALL_SPLIT_BLOCKS: usize = 2;
-/// Minimum blocks of a large task.
+/// Minimum number of blocks per task with [`WorkSplit::Large`].
 const MIN_LARGE_SPLIT_BLOCKS: usize = 24;
 
-/// All customers of a run: active ones as columns; of the others, only their numbers.
+/// All customers of a run. Active customers are stored in columns; of other customers, only the numbers are stored.
 #[derive(Debug, Clone)]
 pub struct Customers {
-    /// By group.
+    /// Customers of each group.
     pub groups: ByGroup<GroupCustomers>,
-    /// Number of the next customer.
+    /// Number that the next customer will get.
     pub next_customer: u32,
-    /// Number of the next subscription.
+    /// Number that the next subscription will get.
     pub next_subscription: u32,
-    /// Customer numbers by day of arrival.
+    /// Mapping between customer numbers, groups and days of arrival.
     pub numbers: CustomerNumbers,
 }
 
-/// Customers of one group.
+/// The customers of one group.
 #[derive(Debug, Clone, Default)]
 pub struct GroupCustomers {
-    /// Number of customers ever generated.
+    /// Number of customers generated since day 0.
     pub created: u32,
-    /// Block k holds the active customers with running numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
+    /// Blocks of active customers. Block k contains the running numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
     pub blocks: Vec<Block>,
 }
 
@@ -74,12 +74,12 @@ impl Default for Customers {
 }
 
 impl GroupCustomers {
-    /// Returns the number of active subscriptions.
+    /// Returns the number of active subscriptions in the group.
     pub fn active_count(&self) -> u32 {
         self.blocks.iter().map(|block| block.len() as u32).sum()
     }
 
-    /// Returns the block of a running number and creates it if necessary.
+    /// Returns the block for a running number. Creates the block if necessary.
     fn block_for(&mut self, n: u32) -> &mut Block {
         let block = block_number(n);
         if self.blocks.len() <= block {
@@ -94,7 +94,7 @@ impl GroupCustomers {
         block
     }
 
-    /// Appends active subscribers with ascending running numbers, larger than all existing ones.
+    /// Appends active subscribers. Their running numbers must be ascending and larger than all existing running numbers.
     pub fn append_subscribers(&mut self, rows: &[Subscriber]) {
         for rows in rows.chunk_by(|one, next| block_number(one.n) == block_number(next.n)) {
             let block = self.block_for(rows[0].n);
@@ -103,7 +103,7 @@ impl GroupCustomers {
         }
     }
 
-    /// Inserts an active subscriber at the position of its running number.
+    /// Inserts an active subscriber in the order of running numbers.
     pub fn activate(&mut self, row: Subscriber) {
         let block = self.block_for(row.n);
         match block.n.binary_search(&row.n) {
@@ -125,7 +125,7 @@ impl GroupCustomers {
         self.subscriber_position(n).map(|(block, at)| self.blocks[block].row(at))
     }
 
-    /// Removes an active subscriber and returns it.
+    /// Removes the active subscriber with this running number and returns its row.
     pub fn deactivate(&mut self, n: u32) -> Option<Subscriber> {
         let (block, at) = self.subscriber_position(n)?;
         let row = self.blocks[block].row(at);
@@ -135,7 +135,7 @@ impl GroupCustomers {
 }
 
 impl Customers {
-    /// Returns active subscriptions by group; an enterprise account counts once.
+    /// Returns the number of active subscriptions of each group. An enterprise counts once, whatever its seats.
     pub fn active_by_group(&self) -> ByGroup<u32> {
         ByGroup::from_fn(|group| self.groups[group].active_count())
     }
@@ -156,20 +156,20 @@ impl Customers {
         run
     }
 
-    /// Returns group and running number of a customer, or `None` if the number was never assigned.
+    /// Returns the group and the running number of a customer, or `None` if the number was never assigned.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
         self.numbers.find(customer)
     }
 
-    /// Processes all non-empty blocks, on several threads if there are many. Results are in group and block
-    /// order regardless of the number of threads.
+    /// Processes all non-empty blocks, on several threads if there are many blocks. Results are in group and block
+    /// order for any number of threads.
     pub fn sweep<R: Send>(&mut self, work: impl Fn(Group, u32, &mut Block) -> R + Sync) -> Vec<R> {
         run_in_parallel(self.nonempty_blocks_mut(), WorkSplit::Small, |(group, at, block)| {
             work(group, at, block)
         })
     }
 
-    /// Processes all non-empty blocks like [`Customers::sweep`], each with the matching result of an earlier sweep.
+    /// Processes all non-empty blocks like [`Customers::sweep`]. Each block receives its result of an earlier sweep.
     pub fn sweep_with<T: Send, R: Send>(
         &mut self,
         found: Vec<T>,
@@ -181,7 +181,7 @@ impl Customers {
         run_in_parallel(jobs, WorkSplit::Small, |((group, at, block), item)| work(group, at, block, item))
     }
 
-    /// Processes all non-empty blocks like [`Customers::sweep`], for work that is cheap per block.
+    /// Processes all non-empty blocks like [`Customers::sweep`], for work that takes little time per block.
     pub fn sweep_light<R: Send>(&mut self, work: impl Fn(Group, &mut Block) -> R + Sync) -> Vec<R> {
         run_in_parallel(self.nonempty_blocks_mut(), WorkSplit::Large, |(group, _, block)| work(group, block))
     }
@@ -197,12 +197,14 @@ impl Customers {
         jobs
     }
 
-    /// Reads all non-empty blocks, on several threads if there are many. Results are in group and block order.
+    /// Calls `look` for all non-empty blocks, on several threads if there are many blocks. Returns the results in
+    /// group and block order.
     pub fn map_blocks<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
         run_in_parallel(self.blocks().collect(), WorkSplit::Large, |(group, block)| look(group, block))
     }
 
-    /// Returns the hash of the canonical bytes, computed on several threads because customers are most of the state.
+    /// Returns the hash of the customers' canonical bytes. The hash is computed on several threads, because customers
+    /// make up most of the state.
     pub fn hash(&self) -> blake3::Hash {
         let Customers { groups, next_customer, next_subscription, numbers } = self;
         let mut stretches = Vec::new();
@@ -233,7 +235,7 @@ impl Customers {
     }
 }
 
-/// Runs one job per block, on several threads if there are many. Results keep the order of the jobs.
+/// Runs one job per block, on several threads if there are many blocks. Results keep the order of the jobs.
 fn run_in_parallel<J: Send, R: Send>(
     jobs: Vec<J>,
     shares: WorkSplit,

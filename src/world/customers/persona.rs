@@ -1,4 +1,4 @@
-//! Profile attributes of a customer as list positions. The text is created when a row is written
+//! Profile attributes of a customer, stored as positions in word lists. The words are looked up when a row is written
 //! (docs/mechanics/customers/personas.md).
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
@@ -26,7 +26,7 @@ impl Restore for PersonaPicks {
 }
 
 impl PersonaPicks {
-    /// Draws one position per axis.
+    /// Draws one list position for each profile attribute.
     pub fn draw(group: Group, params: &Params, stream: &mut Stream) -> PersonaPicks {
         let group_persona = &params.personas.group[group.index()];
         let axes = if group.is_enterprise() {

@@ -1,8 +1,9 @@
-//! Traits of a new customer, drawn from the stream of (group, n); see docs/mechanics/customers/generation.md.
+//! Traits of a new customer, drawn from the random stream of its group and running number
+//! (docs/mechanics/customers/generation.md).
 //!
-//! The n-th customer of a group has the same traits in every run with the same seed; only accumulated drift
-//! is added afterwards. The position of every draw in the stream is fixed. Attributes without effect
-//! (patience, negotiation rate, and the lock-in penalty while contracts last a month) are not drawn.
+//! The n-th customer of a group has the same traits in every run with the same seed, before drift is added. The
+//! position of every draw in the stream is fixed. Attributes without effect are not drawn: patience, negotiation rate,
+//! and the lock-in penalty, because contracts last one month.
 
 use super::curve::Curve;
 use super::persona::PersonaPicks;
@@ -10,22 +11,22 @@ use crate::identifiers::Group;
 use crate::params::{GroupParams, Params};
 use crate::random::{Part, Stream, Streams};
 
-/// Traits as drawn, before any drift.
+/// Traits of a new customer, before any drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Traits {
-    /// Participation curve.
+    /// Participation curve of the customer.
     pub curve: Curve,
-    /// Mean demand, units a day (and seat).
+    /// Mean demand, units per day, for enterprises also per seat.
     pub usage_demand: f64,
-    /// Quality lost to ads at full strength.
+    /// Quality loss from in-app advertising at full strength.
     pub ads_quality_sensitivity: f64,
-    /// Revenue from ads at full strength, dollars a day and seat.
+    /// Ad revenue at full strength, dollars per day and seat.
     pub ads_return_sensitivity: f64,
-    /// Seats; 1 for individuals.
+    /// Number of seats; 1 for individuals.
     pub seats: f64,
     /// Negotiation traits of an enterprise; `None` for individuals.
     pub negotiator: Option<Negotiator>,
-    /// Profile attributes.
+    /// Profile attributes of the customer.
     pub persona: PersonaPicks,
 }
 
@@ -36,19 +37,19 @@ pub struct Negotiator {
     pub reply_delay_mean: f64,
     /// Standard deviation of the reply delay, in days.
     pub reply_delay_std: f64,
-    /// First bid as a share of the highest acceptable price, 0.5..=0.95.
+    /// First asked price as a share of the highest acceptable price, 0.5..=0.95.
     pub initial_offer_factor: f64,
-    /// Maximum number of turns, at least 2.
+    /// Maximum number of turns that the enterprise accepts, at least 2.
     pub max_negotiation_turns: u32,
 }
 
-/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macro multiplier of that name.
+/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macroeconomic multiplier of deal velocity.
 pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
     let stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
     draw_traits_from_stream(stream, group, deal_velocity, params)
 }
 
-/// Draws traits from the stream of a customer.
+/// Draws a customer's traits from the customer's random stream.
 pub fn draw_traits_from_stream(
     mut stream: Stream,
     group: Group,

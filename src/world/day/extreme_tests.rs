@@ -1,4 +1,4 @@
-//! Tests every parameter at the limits of its range: a day can be simulated, or a size limit is reported.
+//! Tests extreme values of every parameter: either a day can be simulated, or a size limit is reported.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -10,7 +10,7 @@ use super::wiring_tests::busy_settings;
 use super::*;
 use crate::params::keys;
 
-/// Values to test. Values out of range are rejected.
+/// Values that every parameter is set to. Parameters reject values out of their range.
 const TESTED_VALUES: [f64; 5] = [0.0, -1.0, 1_000.0, 4e9, 1e300];
 
 fn company(params: &Params, streams: &Streams) -> World {
@@ -23,7 +23,7 @@ fn company(params: &Params, streams: &Streams) -> World {
     world
 }
 
-/// Returns whether a similar key is tested instead: those of other groups, tiers and levels.
+/// Returns whether a key is skipped because the same key of another group, tier or level is tested.
 fn is_redundant_key(key: &str) -> bool {
     let of_group = |part: &str| Group::parse(part).is_some_and(|group| !["S1", "E1"].contains(&group.id()));
     let of_step = |part: &str| part.parse::<u32>().is_ok_and(|number| number > 1);

@@ -1,4 +1,4 @@
-//! Size limits for the next day. Parameters and budgets can produce more customers than a machine can hold.
+//! Size limits for the next day. With extreme parameters and budgets, the customers would exceed the memory of a computer.
 
 use crate::events::Facts;
 use crate::identifiers::Group;
@@ -8,25 +8,25 @@ use crate::params::Params;
 use crate::random::Streams;
 use crate::state::World;
 
-/// Maximum expected leads per day.
+/// Maximum number of expected leads per day.
 pub const MAX_LEADS_PER_DAY: u32 = 1_000_000;
-/// Maximum individual and enterprise subscribers, including those of the next day.
+/// Maximum number of subscribers, including the leads of the next day. An enterprise counts once.
 pub const MAX_CUSTOMERS: u32 = 5_000_000;
-/// Maximum customer numbers, including those of lost leads.
+/// Highest customer number. Lost leads use numbers too.
 const MAX_CUSTOMER_NUMBERS: u32 = u32::MAX / 2;
 
 /// A limit that the next day would exceed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExceededLimit {
-    /// More than [`MAX_LEADS_PER_DAY`] leads are expected, or their number is not a number.
+    /// More than [`MAX_LEADS_PER_DAY`] leads are expected, or the expected number is NaN.
     Leads,
-    /// Subscribers and leads together could exceed [`MAX_CUSTOMERS`].
+    /// The sum of subscribers and expected leads exceeds [`MAX_CUSTOMERS`].
     Customers,
-    /// The remaining customer numbers do not suffice for the leads.
+    /// The leads need more customer numbers than remain.
     Numbers,
 }
 
-/// Returns the limit that the next day would exceed, or `None` if it can be simulated.
+/// Returns the limit that the next day would exceed, or `None` if the day can be simulated.
 pub fn exceeded_limit_on_next_day(
     world: &World,
     params: &Params,
@@ -45,8 +45,7 @@ pub fn exceeded_limit_on_next_day(
     }
 }
 
-/// Returns the expected leads of the next day, assuming no cancellations, posts or reputation changes before
-/// they arrive.
+/// Returns the expected number of leads of the next day. Ignores cancellations, posts and reputation changes on that day.
 fn expected_leads(world: &World, params: &Params, streams: &Streams) -> f64 {
     let day = world.day + 1;
     let mut market = world.market.clone();

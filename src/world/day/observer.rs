@@ -1,4 +1,4 @@
-//! Observation of a day during its simulation. Observers cannot change it, so an observed day has the same result.
+//! Observation of a day during its simulation. Observers cannot change the world, so an observed day has the same result.
 
 use crate::context::DayContext;
 use crate::customers::Customers;
@@ -15,18 +15,18 @@ use crate::reputation::{ReputationContribution, ReputationWrite};
 use crate::retention::renewal::RenewalContext;
 use crate::state::World;
 
-/// An observer of the simulation of a day. Blocks are passed on any thread and in any order.
+/// An observer of a day's simulation. The methods with a block are called on any thread and in any order.
 pub trait DayObserver: Send + Sync {
-    /// Called at the start of the day with the world and the values fixed for the day.
+    /// Called at the start of the day, with the world and the values that are fixed for the day.
     fn on_morning(&self, _world: &World, _morning: &Morning, _params: &Params) {}
 
     /// Called before the satisfaction of a block is updated.
     fn before_satisfaction(&self, _group: Group, _block: &Block, _day: &DayContext<'_>) {}
 
-    /// Called before the subscribers of a block decide: issues are settled and satisfaction is updated.
+    /// Called before the subscribers of a block decide, after issues are settled and satisfaction is updated.
     fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
 
-    /// Called before enterprises are lost, reply, or open threads.
+    /// Called before the negotiations of the day, in which enterprises reply, open threads and are lost.
     fn before_negotiations(
         &self,
         _enterprise: &Enterprise,
@@ -35,7 +35,7 @@ pub trait DayObserver: Send + Sync {
     ) {
     }
 
-    /// Called after the last change of reputations today, by the subscribers' contributions.
+    /// Called after the last reputation change of the day, which applies the subscribers' contributions.
     fn on_reputation_settled(
         &self,
         _moods: &ByGroup<ReputationContribution>,
@@ -60,10 +60,10 @@ pub trait DayObserver: Send + Sync {
     /// own contributions, or spillover.
     fn on_reputation_change(&self, _write: &ReputationWrite<'_>) {}
 
-    /// Called with the figures of the day before it ends.
+    /// Called shortly before the end of the day, with the figures of the day.
     fn on_day_figures(&self, _figures: &DayFigures) {}
 
-    /// Called at the end of the day with the final world and facts.
+    /// Called at the end of the day, with the final world and facts.
     fn on_day_end(&self, _world: &World, _params: &Params, _facts: &Facts) {}
 }
 

@@ -1,5 +1,6 @@
-//! Tests what one step of a day passes to the next: outages to issues, satisfaction, decisions and reputation; the
-//! economy to leads, budgets and seats; the calendar to leads and usage; and each figure to its field.
+//! Tests of the values that one step of a day passes to later steps. Outages affect issues, satisfaction, decisions
+//! and reputation. The economy affects leads, budgets and seats. The calendar affects leads and usage. Every figure is
+//! stored in its field.
 
 use super::*;
 use crate::customers::columns::Subscriber;
@@ -10,7 +11,7 @@ use crate::params::{MacroBeta, ServicePenalty};
 use crate::quota::Quota;
 use crate::test_kit::subscriber;
 
-/// Uneven settings with which customers of several groups arrive, stay, open issues and leave.
+/// Applies varied settings with which customers of several groups arrive, stay, open issues and cancel.
 pub(super) fn busy_settings(world: &mut World) {
     let core = &mut world.settings.core;
     core.prices = ByPlan([9.0, 16.0, 31.0]);
@@ -47,7 +48,7 @@ impl TestRun {
         step_day(&mut self.world, &self.params, &self.streams, &mut self.facts)
     }
 
-    /// Simulates `days` days, then one more with parameters changed for that day only.
+    /// Simulates `days` days, changes the parameters, and simulates one more day.
     fn day_after(
         days: u32,
         params: &Params,
@@ -87,14 +88,14 @@ fn outage_affects_issues_satisfaction_and_reputation() {
     assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
     assert_eq!(calm.total_usage, down.total_usage, "all other conditions are equal");
 
-    // Customers who open an issue anyway also do so during an outage, and many more do.
+    // All customers who open an issue without an outage also open an issue with an outage, and so do many others.
     let callers = |play: &TestRun| -> Vec<u32> {
         play.facts.issues_opened.iter().map(|issue| issue.customer).collect()
     };
     let (few, many) = (callers(&quiet), callers(&broken));
     assert!(few.iter().all(|customer| many.contains(customer)) && many.len() > 2 * few.len());
 
-    // Existing subscribers are less satisfied; none gains.
+    // Almost all existing subscribers are less satisfied, and none is more satisfied.
     let there = |play: &TestRun| -> Vec<Subscriber> {
         play.rows().into_iter().filter(|row| row.start_day < 41).collect()
     };
@@ -123,7 +124,7 @@ fn outage_increases_churn_only_if_the_penalty_applies_everywhere() {
     let left = |penalty, certain| -> u32 {
         let mut params = Params::bundled();
         params.fidelity.service_penalty = penalty;
-        // A penalty large enough to affect decisions.
+        // Use a penalty that is large enough to affect decisions.
         params.quality.service_outage_weight = 0.5;
         let (play, figures, _) =
             TestRun::day_after(44, &params, |params| set_outage_probability(params, certain));
@@ -141,7 +142,7 @@ fn overload_increases_churn_on_the_same_day() {
     let left = |capacity_units: u32| {
         let mut params = Params::bundled();
         params.fidelity.service_penalty = ServicePenalty::Everywhere;
-        // A penalty large enough to affect decisions.
+        // Use a penalty that is large enough to affect decisions.
         params.quality.service_overload_weight = 0.5;
         let (_, figures, _) = TestRun::day_after(44, &params, |params| {
             set_outage_probability(params, false);
@@ -184,7 +185,7 @@ fn calendar_factors_apply_by_day() {
     assert!((0.49..0.6).contains(&half), "some are limited by their quota: {half}");
 }
 
-/// Parameters with the economy at half its neutral index and no reactions except those that `change` sets.
+/// Returns parameters with a PMI of half its neutral value and only the macroeconomic reactions that `change` sets.
 fn params_with_macro_reaction(change: impl Fn(&mut MacroBeta)) -> Params {
     let mut params = Params::bundled();
     let economy = &mut params.economy;
@@ -203,7 +204,7 @@ fn params_with_macro_reaction(change: impl Fn(&mut MacroBeta)) -> Params {
     params
 }
 
-/// Adds a subscriber with 500 seats that has no thread.
+/// Adds an enterprise subscriber with 500 seats and no thread. Returns its group.
 fn add_subscriber_with_500_seats(world: &mut World) -> Group {
     let group = Group::parse("E1").expect("a group");
     let customer = world.customers.next_customer;
@@ -214,12 +215,12 @@ fn add_subscriber_with_500_seats(world: &mut World) -> Group {
     group
 }
 
-/// Returns the lead factor of the economy, the number of cancellations for price or quality, and the seats.
+/// Returns the economy's lead factor, the number of cancellations for price or quality, and the number of seats.
 fn measure_effects(params: Params) -> (f64, usize, f64) {
     let mut play = TestRun::new(params);
     let group = add_subscriber_with_500_seats(&mut play.world);
     let (mut factor, mut gave_up) = (0.0, 0);
-    // Seats drift on day 90, using the economy of the day before.
+    // On day 90, seats drift with the economy of day 89.
     for _ in 0..90 {
         factor = play.simulate_day().1.leads[Group::at(0).expect("S1")].economy;
         let price = |ending: &&SubscriptionEnded| matches!(ending.cause, EndCause::Price | EndCause::Quality);
@@ -249,7 +250,7 @@ fn day_figures_match_the_facts() {
     let mut sums = DayFigures::default();
     for day in 1..=95 {
         if day == 50 {
-            // Some subscribers now prefer another plan.
+            // With the new prices, some subscribers prefer a different plan.
             play.world.settings.core.prices = ByPlan([15.0, 13.0, 22.0]);
         }
         if day == 70 {

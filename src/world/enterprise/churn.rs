@@ -12,51 +12,51 @@ use crate::reputation::{ReputationCause, event_damage};
 
 /// An enterprise subscriber whose thread died today and who may post about it.
 ///
-/// Threads that reappear report the loss again every day.
+/// A thread that reappears reports the same loss again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LostEnterprise {
     /// Customer number of the enterprise.
     pub customer: u32,
-    /// Its group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// Running number within its group.
+    /// Running number of the enterprise within its group.
     pub n: u32,
-    /// Whole seats.
+    /// Number of whole seats of the enterprise.
     pub seats: u32,
-    /// Days as a subscriber; `None` if the subscription ended earlier.
+    /// Days since the subscription started; `None` if the subscription ended earlier.
     pub days_subscribed: Option<u32>,
-    /// How the thread began.
+    /// Kind of the thread, which is the reason why it was opened.
     pub kind: ThreadKind,
-    /// How the thread died.
+    /// Side whose silence ended the thread.
     pub failure: ThreadFailure,
 }
 
 /// The side whose silence ended a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ThreadFailure {
-    /// The enterprise fell silent.
+    /// The enterprise ended the thread without a reply.
     Silence,
-    /// The player did not answer.
+    /// The player did not answer before the deadline.
     Timeout,
 }
 
-/// Inputs of the churn reason.
+/// Values that determine why an enterprise left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChurnFactors {
-    /// Days that the enterprise's issue has been open, 0 without one.
+    /// Days that the enterprise's issue has been open, or 0 without an open issue.
     pub issue_days: u32,
-    /// Shared quality of the plan without targeted development: today's if the enterprise fell silent, this
-    /// morning's if the player did not answer.
+    /// Shared quality of the plan, without targeted development. After silence of the enterprise, today's value; after
+    /// a timeout, the value of this morning.
     pub shared_quality: f64,
-    /// Relationship bonus.
+    /// Quality bonus from the relationship.
     pub relationship_bonus: f64,
-    /// Demand that is compared with the quota, units.
+    /// Demand of the enterprise that is compared with the quota, units.
     pub demand: f64,
-    /// Quota of its plan, units.
+    /// Quota of the enterprise's plan, units.
     pub quota: f64,
 }
 
-/// Returns why an enterprise left: the first reason that applies.
+/// Returns the first reason that explains why an enterprise left.
 pub fn churn_reason(blame: ThreadFailure, grounds: &ChurnFactors, params: &Params) -> EndCause {
     let sales = &params.enterprise;
     let poor = match blame {
@@ -79,8 +79,8 @@ pub fn churn_reason(blame: ThreadFailure, grounds: &ChurnFactors, params: &Param
 }
 
 impl NegotiationStep<'_> {
-    /// Ends the subscription of the thread's customer. Reputation is damaged even if the subscription already
-    /// ended, so threads that reappear damage it every day.
+    /// Ends the subscription of the thread's customer. Damages the reputation even if the subscription already ended,
+    /// so a thread that reappears damages the reputation every day.
     pub(super) fn lose_subscriber(&mut self, thread: usize, blame: ThreadFailure, relationship_delta: f64) {
         let thread_state = &self.enterprise.threads[thread];
         let (customer, group, kind, number) =
@@ -123,7 +123,7 @@ impl NegotiationStep<'_> {
             customer: company.customer,
             group: company.group,
             seats: row.seats as u32,
-            // After a timeout the customer leaves today, but the recorded end is the end of the agreed month.
+            // After a timeout, the enterprise leaves today, but the recorded last day is the end of the agreed month.
             day: match blame {
                 ThreadFailure::Silence => today,
                 ThreadFailure::Timeout => company.contract_end_day.max(today),
@@ -191,7 +191,7 @@ mod tests {
             assert_eq!(churn_reason(ThreadFailure::Silence, &grounds, &params), reason, "{grounds:?}");
         }
         for (shared, reason) in [(0.1499, EndCause::QualityChange), (0.16, EndCause::PriceSensitivity)] {
-            // Relationship and quota do not count after a timeout.
+            // After a timeout, relationship and quota are not considered as reasons.
             let grounds = grounds(0, shared, 0.0, 5000.0);
             assert_eq!(churn_reason(ThreadFailure::Timeout, &grounds, &params), reason, "{grounds:?}");
         }

@@ -9,35 +9,35 @@ use crate::identifiers::Group;
 use crate::params::{EnterpriseParams as Sales, Params};
 use crate::random::{Part, Streams};
 
-/// An enterprise that has requested an offer and is still tracked.
+/// An enterprise that requested an offer and whose state is still tracked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Company {
-    /// Customer number.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// Group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// Running number within the group.
+    /// Running number of the enterprise within its group.
     pub n: u32,
-    /// Subscription number.
+    /// Subscription number of the enterprise.
     pub subscription: u32,
-    /// Negotiation traits.
+    /// Negotiation traits of the enterprise.
     pub negotiator: Negotiator,
-    /// Profile attributes.
+    /// Profile attributes of the enterprise.
     pub persona: PersonaPicks,
     /// Last day of the most recently agreed month; 0 before the first deal.
     pub contract_end_day: u32,
-    /// Its current status.
+    /// Current status of the enterprise.
     pub standing: EnterpriseStatus,
 }
 
-/// Status of an enterprise.
+/// Status of an enterprise: lead, subscriber or lost.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EnterpriseStatus {
-    /// It negotiates a first deal; the row that it will have as a subscriber.
+    /// A lead that negotiates its first deal, with the row that it will have as a subscriber.
     Lead(Subscriber),
-    /// It is a subscriber; its row is in the columns.
+    /// A subscriber, whose row is in the columns.
     Subscriber,
-    /// It was lost; its last row, kept while one of its threads still triggers.
+    /// A lost enterprise with its last row, which is kept while one of its threads can still trigger.
     Lost(Subscriber),
 }
 
@@ -68,7 +68,7 @@ impl Restore for EnterpriseStatus {
 }
 
 impl Company {
-    /// Returns its row, from its status or from the columns.
+    /// Returns the row of the enterprise, from its status or from the columns.
     pub fn row(&self, customers: &Customers) -> Option<Subscriber> {
         match self.standing {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => Some(row),
@@ -76,12 +76,12 @@ impl Company {
         }
     }
 
-    /// Returns whether it has an active subscription.
+    /// Returns whether the enterprise has an active subscription.
     pub fn is_subscriber(&self) -> bool {
         self.standing == EnterpriseStatus::Subscriber
     }
 
-    /// Sets its relationship in its status or in the columns.
+    /// Sets the relationship of the enterprise, in its status or in the columns.
     pub fn set_relationship(&mut self, relationship: f64, customers: &mut Customers) {
         match &mut self.standing {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.relationship = relationship,
@@ -94,7 +94,8 @@ impl Company {
         }
     }
 
-    /// Returns the factor by which it misjudges quality in its first negotiation, constant for each enterprise.
+    /// Returns the factor by which the enterprise misjudges quality in its first negotiation. The factor is constant
+    /// for each enterprise.
     pub fn first_impression_factor(&self, params: &Params, streams: &Streams) -> f64 {
         let quality = &params.quality;
         streams

@@ -1,4 +1,5 @@
-//! How an enterprise responds to offerings: accept the best, make a counter-offer, or fall silent.
+//! How an enterprise responds to offerings: it accepts the best offering, makes a counter-offer, or ends the thread
+//! without a reply.
 
 use crate::customers::curve::{Curve, required_quality};
 use crate::events::Offering;
@@ -6,37 +7,37 @@ use crate::identifiers::ByPlan;
 use crate::params::Params;
 use novamind_base::formatting::round_to;
 
-/// The response of an enterprise.
+/// The response of an enterprise to offerings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OfferResponse {
     /// Accepts the offering at this position.
     Accept(usize),
-    /// Names a price for the plan of the offering at this position, dollars a month and seat.
+    /// Asks a price for the plan of the offering at this position, dollars per month and seat.
     Counter(usize, f64),
-    /// Falls silent for good.
+    /// Never replies again.
     Silence,
 }
 
 /// The values with which an enterprise evaluates offerings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfferEvaluator {
-    /// Its curve, including all market drift.
+    /// Curve of the enterprise, including all market drift.
     pub curve: Curve,
     /// Perceived quality of each plan.
     pub quality: ByPlan<f64>,
-    /// First bid as a share of the highest acceptable price.
+    /// First asked price as a share of the highest acceptable price.
     pub initial_offer_factor: f64,
-    /// Maximum number of turns.
+    /// Maximum number of turns that the enterprise accepts.
     pub max_turns: u32,
 }
 
-/// Returns the quality in excess of what the price requires.
+/// Returns the quality less the quality that is required at the price.
 pub fn surplus(quality: f64, price: f64, curve: &Curve, params: &Params) -> f64 {
     quality - required_quality(price, curve, params)
 }
 
-/// Returns the highest price for which a quality suffices, by bisection of 0..=c_max, or 0 if it does not
-/// even suffice for price 0.
+/// Returns the highest price at which the quality is sufficient, by bisection of 0..=c_max. Returns 0 if the quality
+/// is not sufficient at any price.
 pub fn highest_price(quality: f64, curve: &Curve, params: &Params) -> f64 {
     if quality < required_quality(0.0, curve, params) {
         return 0.0;
@@ -53,8 +54,8 @@ pub fn highest_price(quality: f64, curve: &Curve, params: &Params) -> f64 {
     low
 }
 
-/// Returns the price of a counter-offer after this many turns, rounded to cents. It starts at the first bid
-/// and closes a share of the gap to the highest price with each turn.
+/// Returns the price of a counter-offer after this many turns, rounded to cents. The price starts at the first asked
+/// price and closes a share of the gap to the highest price with each turn.
 pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params: &Params) -> f64 {
     let sales = &params.enterprise;
     let mut bid = initial_offer_factor * highest;
@@ -65,7 +66,7 @@ pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params
 }
 
 impl OfferEvaluator {
-    /// Returns the response to offerings if the last turn of the thread has this number.
+    /// Returns the response to offerings. `turn` is the number of the thread's last turn.
     pub fn respond(&self, offerings: &[Offering], turn: u32, params: &Params) -> OfferResponse {
         if turn >= self.max_turns {
             return OfferResponse::Silence;
@@ -86,7 +87,7 @@ impl OfferEvaluator {
         if price > 0.0 { OfferResponse::Counter(at, price) } else { OfferResponse::Silence }
     }
 
-    /// Returns position and surplus of the best suitable offering, the first one on ties.
+    /// Returns position and surplus of the best suitable offering, or of the first such offering on a tie.
     fn best_offering(
         &self,
         offerings: &[Offering],
@@ -109,7 +110,7 @@ pub(super) mod tests {
     use super::*;
     use crate::identifiers::Plan;
 
-    /// The reference enterprise K of `docs/mechanics/enterprise/evaluation.md#check-values`.
+    /// Participation curve of the reference enterprise K of `docs/mechanics/enterprise/evaluation.md#check-values`.
     pub(in crate::enterprise) const K: Curve =
         Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
 
@@ -231,10 +232,10 @@ pub(super) mod tests {
         let mut params = Params::bundled();
         params.fidelity.deal_price_ceiling = true;
         let offer_evaluator = evaluator(0.9, 0.96, 1.1);
-        // The expensive offering has the largest surplus, but the affordable one is accepted.
+        // The expensive offering has the largest surplus, but the enterprise accepts the affordable offering.
         let mixed = offers(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
         assert_eq!(offer_evaluator.respond(&mixed, 1, &params), OfferResponse::Accept(1));
-        // If no offering is affordable, the best of all determines the plan of the counter-offer.
+        // If no offering is affordable, the offering with the largest surplus determines the plan of the counter-offer.
         let dear = offers(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
         let OfferResponse::Counter(1, price) = offer_evaluator.respond(&dear, 1, &params) else {
             panic!("a counter-offer")

@@ -1,6 +1,6 @@
-//! Messages that the player sends to enterprises between two weeks.
+//! Messages that the player sends to enterprises on a decision day.
 //!
-//! Messages and their random draws are resolved ([`Enterprise::resolve_offers`]) before anything changes
+//! Messages and their random draws are resolved ([`Enterprise::resolve_offers`]) before the state changes
 //! ([`Enterprise::send_offers`], [`Enterprise::reject_threads`]).
 
 use std::collections::BTreeMap;
@@ -13,48 +13,48 @@ use crate::events::{EndCause, Facts, Offering, Sender, ThreadKind, TurnContent};
 use crate::params::{EnterpriseParams as Sales, Params};
 use crate::random::{Part, Streams};
 
-/// Offerings for one enterprise.
+/// Offerings that the player sends to one enterprise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OfferDraft {
-    /// Customer number.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// One to three offerings.
+    /// The offerings of the message, one to three.
     pub offerings: Vec<Offering>,
 }
 
 /// An offer with its thread and its reply day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OfferMessage {
-    /// Customer number.
+    /// Customer number of the enterprise.
     pub customer: u32,
-    /// Number of the thread: the open one, or a new one.
+    /// Number of the open thread, or of the new thread that the message starts.
     pub thread: u32,
-    /// Whether the message starts the thread.
+    /// Whether the message starts a new thread.
     pub starts_thread: bool,
-    /// Number of its turn in the thread.
+    /// Number of the message's turn in the thread.
     pub turn: u32,
-    /// The offerings.
+    /// Offerings of the message.
     pub offerings: Vec<Offering>,
-    /// Relationship after a late answer; `None` if it does not change.
+    /// Relationship after a late answer; `None` if the relationship does not change.
     pub relationship: Option<f64>,
     /// Day on which the enterprise replies.
     pub reply_day: u32,
 }
 
-/// Returns the days until an enterprise replies, from the mean, the standard deviation and a standard normal
-/// draw: rounded half to even, at least one.
+/// Returns the days until an enterprise replies, from the mean, the standard deviation and a standard normal draw `z`.
+/// The result is rounded half to even and is at least 1.
 pub fn reply_delay(mean: f64, std: f64, z: f64, sales: &Sales) -> u32 {
     (mean + std * z).round_ties_even().max(f64::from(sales.reply_delay_min_days)) as u32
 }
 
-/// Returns the change of the relationship for an answer after this many days; never positive.
+/// Returns the change of the relationship if the player answers after `days` days. The change is never positive.
 pub fn late_penalty(days: u32, sales: &Sales) -> f64 {
     sales.late_reply_relationship_delta_per_day * f64::from(days.saturating_sub(sales.late_reply_free_days))
 }
 
 impl Enterprise {
-    /// Finds the thread of each proposal and draws the reply day. Proposals to enterprises that neither have
-    /// an open thread nor subscribe are dropped.
+    /// Finds the thread of each offer and draws the reply day. Drops offers to enterprises that have no open thread
+    /// and no subscription.
     pub fn resolve_offers(
         &self,
         proposals: &[OfferDraft],
@@ -103,7 +103,7 @@ impl Enterprise {
         messages
     }
 
-    /// Sends messages that were resolved for this state. Enterprises reply only to the newest turn of a thread.
+    /// Sends messages that were resolved for the current state. Enterprises reply only to the newest turn of a thread.
     pub fn send_offers(
         &mut self,
         messages: &[OfferMessage],
@@ -132,7 +132,7 @@ impl Enterprise {
         }
     }
 
-    /// Ends open threads by number. Leads are lost; subscribers stay.
+    /// Ends the open threads with these numbers. Leads are lost; subscribers stay.
     pub fn reject_threads(&mut self, threads: &[u32], day: u32, facts: &mut Facts) {
         for number in threads {
             let Some(thread) = self.thread_position(*number).filter(|at| self.threads[*at].is_open()) else {
@@ -155,8 +155,7 @@ impl Enterprise {
     }
 }
 
-/// Returns the days since the customer's newest turn, or `None` if lateness does not count: the player wrote
-/// last, or the customer has not written yet.
+/// Returns the days since the customer's newest turn. Returns `None` if the player wrote last or the customer has not written.
 pub fn late_days(thread: &Thread, day: u32) -> Option<u32> {
     if thread.last().sender == Sender::Agent {
         return None;

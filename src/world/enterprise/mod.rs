@@ -1,8 +1,8 @@
 //! Enterprises: leads that request an offer, subscribers that threaten to leave or request another plan, and
 //! their threads (`docs/mechanics/enterprise/README.md`).
 //!
-//! Start with [`Enterprise::step`], the enterprise part of a day. Messages that the player sends between two
-//! weeks are in [`messages`].
+//! [`Enterprise::step`] simulates the enterprises on one day. Module [`messages`] sends the messages of the player on
+//! a decision day.
 
 pub mod churn;
 mod enterprise_customer;
@@ -36,17 +36,17 @@ use super::product::Product;
 use crate::customers::drift::DriftTotals;
 use crate::reputation::{OnReputationWrite, ReputationBook};
 
-/// Negotiations with enterprises.
+/// State of the negotiations with enterprises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Enterprise {
-    /// Number of the next thread.
+    /// Number that the next thread will get.
     pub next_thread: u32,
-    /// Number of the next turn, over all threads.
+    /// Number that the next turn will get. Turns of all threads are numbered together.
     pub next_message: u32,
-    /// Threads that are open or can still trigger, in ascending order of their numbers.
+    /// Threads that are open or can still trigger, in ascending order of thread number.
     pub threads: Vec<Thread>,
-    /// Leads and subscribers, and lost enterprises whose threads can still trigger, in ascending order of
-    /// their numbers.
+    /// Enterprises that are leads, subscribers, or lost with a thread that can still trigger, in ascending order of
+    /// customer number.
     pub companies: Vec<Company>,
 }
 
@@ -58,9 +58,9 @@ impl Default for Enterprise {
     }
 }
 
-/// Shared inputs of the negotiations of a day.
+/// Inputs that all negotiations of a day share.
 pub struct NegotiationContext<'a> {
-    /// The day.
+    /// Context of the day.
     pub day: &'a DayContext<'a>,
     /// The product, including today's improvements.
     pub product: &'a Product,
@@ -68,19 +68,19 @@ pub struct NegotiationContext<'a> {
     pub drift: &'a DriftTotals,
 }
 
-/// Results that later steps of the day need.
+/// Results of the negotiations that later steps of the day need.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EnterpriseDayResult {
-    /// Customers who pay nothing today because their threat to leave was open this morning.
+    /// Customer numbers of enterprises that pay nothing today, because their threat to cancel was open this morning.
     pub suspended: BTreeSet<u32>,
-    /// Subscribers whose threads died, as candidates for posts.
+    /// Subscribers whose threads died. They are candidates for posts.
     pub lost: Vec<LostEnterprise>,
-    /// Seats of enterprises that signed today.
+    /// Seats of enterprises that became subscribers today.
     pub new_seats: u32,
 }
 
 impl Enterprise {
-    /// Opens the thread of a new lead: one turn by the system, and a notification that does not name the enterprise.
+    /// Opens the thread of a new lead with one turn by the system. Adds a notification that does not name the enterprise.
     pub fn open_lead_thread(&mut self, day: u32, company: Company, facts: &mut Facts) {
         let seats = match &company.standing {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.seats as u32,
@@ -92,8 +92,8 @@ impl Enterprise {
         facts.notices.push(Notice::EnterpriseLead);
     }
 
-    /// Runs the negotiations of a day, based on the threads of this morning: timeouts, due replies, then new
-    /// threads of subscribers without one.
+    /// Runs the negotiations of a day, based on the threads of this morning: timeouts, due replies, then new threads
+    /// of subscribers without a thread.
     pub fn step(
         &mut self,
         customers: &mut Customers,
@@ -125,12 +125,12 @@ impl Enterprise {
         result
     }
 
-    /// Returns an enterprise by its customer number.
+    /// Returns the enterprise with this customer number.
     pub fn company(&self, customer: u32) -> Option<&Company> {
         self.enterprise_position(customer).map(|at| &self.companies[at])
     }
 
-    /// Returns the open threads by enterprise.
+    /// Returns an index of the open threads by enterprise.
     pub fn open_threads(&self) -> OpenThreads<'_> {
         OpenThreads::from_threads(&self.threads)
     }
@@ -139,7 +139,7 @@ impl Enterprise {
         self.companies.binary_search_by_key(&customer, |company| company.customer).ok()
     }
 
-    /// Returns this morning's threads that are not closed, each with its active turn.
+    /// Returns the threads that are not closed, each with its active turn.
     fn active_threads(&self, reappearing: bool) -> Vec<ActiveThread> {
         let live = |(at, thread): (usize, &Thread)| {
             let turn = thread.active_turn(reappearing)?;
@@ -215,7 +215,7 @@ impl Enterprise {
         });
     }
 
-    /// Removes finished threads, and lost enterprises without a thread.
+    /// Removes finished threads, and lost enterprises that have no thread left.
     fn remove_finished(&mut self, is_over: impl Fn(&Thread) -> bool) {
         self.threads.retain(|thread| !is_over(thread));
         let still: BTreeSet<u32> = self.threads.iter().map(|thread| thread.customer).collect();
@@ -224,22 +224,22 @@ impl Enterprise {
     }
 }
 
-/// A thread of this morning and its active turn.
+/// A thread that was active this morning, and its active turn.
 #[derive(Debug, Clone, Copy)]
 struct ActiveThread {
-    /// Index into the threads.
+    /// Index of the thread in [`Enterprise::threads`].
     thread: usize,
     sender: Sender,
     day: u32,
     reply_day: Option<u32>,
 }
 
-/// State of the negotiations of one day.
+/// State that the negotiations of one day change.
 struct NegotiationStep<'a> {
     enterprise: &'a mut Enterprise,
     customers: &'a mut Customers,
     reputation: &'a mut ReputationBook,
-    /// Called after each change of a reputation.
+    /// Function that is called after each reputation change.
     told: &'a mut OnReputationWrite<'a>,
     day: &'a DayContext<'a>,
     talks: &'a NegotiationContext<'a>,
@@ -275,7 +275,7 @@ impl NegotiationStep<'_> {
         company.and_then(|company| company.row(self.customers)).map_or(1, |row| row.seats as u32)
     }
 
-    /// Appends a turn of today with the next number to a thread.
+    /// Appends a turn to a thread, with today as its day and the next turn number.
     fn append_turn_today(&mut self, thread: usize, sender: Sender, seats: u32, content: TurnContent) {
         let number = self.enterprise.threads[thread].last().number + 1;
         let today = self.today();

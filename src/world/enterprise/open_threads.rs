@@ -1,17 +1,17 @@
-//! An index of open threads by enterprise, for calls that name many enterprises. Few of their threads are open.
+//! An index of open threads by enterprise, for tool calls that name many enterprises. Only few threads are open.
 
 use std::collections::BTreeMap;
 
 use super::Thread;
 
-/// The open threads of a state by enterprise.
+/// Index of the open threads of all enterprises.
 pub struct OpenThreads<'a> {
-    /// Threads of each enterprise, sorted by newest turn.
+    /// Open threads of each enterprise, sorted by newest turn.
     by_customer: BTreeMap<u32, Vec<&'a Thread>>,
 }
 
 impl<'a> OpenThreads<'a> {
-    /// Indexes the open threads of a list.
+    /// Creates an index of the open threads in a list.
     pub(super) fn from_threads(threads: &'a [Thread]) -> OpenThreads<'a> {
         let mut by_customer: BTreeMap<u32, Vec<&Thread>> = BTreeMap::new();
         for thread in threads.iter().filter(|thread| thread.is_open()) {
@@ -23,12 +23,12 @@ impl<'a> OpenThreads<'a> {
         OpenThreads { by_customer }
     }
 
-    /// Returns the enterprise's thread with the newest turn.
+    /// Returns the enterprise's open thread with the newest turn.
     pub fn newest(&self, customer: u32) -> Option<&'a Thread> {
         self.by_customer.get(&customer)?.last().copied()
     }
 
-    /// Removes and returns the enterprise's thread with the newest turn.
+    /// Removes the enterprise's open thread with the newest turn from the index and returns it.
     pub fn pop_newest(&mut self, customer: u32) -> Option<&'a Thread> {
         self.by_customer.get_mut(&customer)?.pop()
     }

@@ -1,4 +1,4 @@
-//! How threads end: with a deal, by silence of the enterprise, or by timeout.
+//! Ends of threads: a deal, an enterprise that stops replying, or a timeout.
 
 use super::churn::ThreadFailure;
 use super::enterprise_customer::adjust_relationship;
@@ -14,7 +14,7 @@ use crate::retention::refresh_required;
 use crate::retention::renewal::{ongoing_discount, row_terms};
 
 impl NegotiationStep<'_> {
-    /// Accepts an offering; the deal takes effect today.
+    /// Accepts an offering of the player. The deal takes effect today.
     pub(super) fn accept_offering(&mut self, thread: usize, offering: Offering) {
         let seats = self.thread_seats(thread);
         self.append_turn_today(thread, Sender::Customer, seats, TurnContent::Acceptance(offering));
@@ -24,7 +24,7 @@ impl NegotiationStep<'_> {
         self.facts.notices.push(Notice::DealWon { price: offering.price });
     }
 
-    /// Puts a deal into force if the enterprise is still a lead or subscriber.
+    /// Applies a deal if the enterprise is still a lead or a subscriber.
     fn close_deal(&mut self, thread: usize, offering: Offering, seats: u32) {
         let thread_state = &self.enterprise.threads[thread];
         let (customer, kind) = (thread_state.customer, thread_state.kind);
@@ -60,7 +60,7 @@ impl NegotiationStep<'_> {
         self.facts.changes.extend(changed);
     }
 
-    /// Turns a lead into a subscriber, billed on the day of the month on which it arrived.
+    /// Turns a lead into a subscriber. The billing day follows from the day of arrival.
     fn activate_lead(&mut self, customer: u32, lead: Subscriber, offering: Offering) -> Option<TermsChanged> {
         let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
@@ -85,7 +85,7 @@ impl NegotiationStep<'_> {
         self.refresh_terms(customer)
     }
 
-    /// Changes the terms of a subscriber; budget, tenure and billing day stay.
+    /// Changes plan and price of a subscriber. Budget, tenure and billing day stay the same.
     fn change_terms(&mut self, customer: u32, offering: Offering) -> Option<TermsChanged> {
         let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
@@ -115,7 +115,7 @@ impl NegotiationStep<'_> {
         self.enterprise.company(customer).expect("an enterprise with a thread is kept").group
     }
 
-    /// Ends a thread because the enterprise falls silent. No turn is added; the newest one is marked dead.
+    /// Ends a thread because the enterprise does not reply. Adds no turn, and marks the newest turn dead.
     pub(super) fn end_by_silence(&mut self, thread: usize) {
         let thread_state = &mut self.enterprise.threads[thread];
         thread_state.last_mut().dead = true;
@@ -133,7 +133,7 @@ impl NegotiationStep<'_> {
         self.lose_subscriber(thread, ThreadFailure::Silence, delta);
     }
 
-    /// Ends a thread because the player did not answer for too long.
+    /// Ends a thread because the player did not answer before the deadline.
     pub(super) fn end_by_timeout(&mut self, thread: usize, days: u32) {
         let thread_state = &mut self.enterprise.threads[thread];
         let (customer, kind) = (thread_state.customer, thread_state.kind);
@@ -154,7 +154,7 @@ impl NegotiationStep<'_> {
         }
     }
 
-    /// Marks the lead of a thread as lost unless it already is.
+    /// Marks the lead of a thread as lost, unless the lead is already lost.
     fn lose_lead(&mut self, thread: usize, cause: EndCause) {
         let (today, customer) = (self.today(), self.enterprise.threads[thread].customer);
         if let Some(ending) = self.enterprise.mark_lead_lost(customer, today, cause) {
@@ -164,7 +164,7 @@ impl NegotiationStep<'_> {
 }
 
 impl super::Enterprise {
-    /// Marks a lead as lost. Returns `None` if it is not a lead.
+    /// Marks a lead as lost. Returns `None` if the enterprise is not a lead.
     pub(super) fn mark_lead_lost(
         &mut self,
         customer: u32,

@@ -1,4 +1,4 @@
-//! Quality as enterprises perceive it in negotiations and every day (`docs/mechanics/enterprise/quality.md`).
+//! Quality that enterprises perceive, in negotiations and in the daily evaluation (`docs/mechanics/enterprise/quality.md`).
 
 use super::NegotiationContext;
 use crate::customers::columns::Subscriber;
@@ -11,8 +11,8 @@ use crate::quality::{
 };
 
 impl NegotiationContext<'_> {
-    /// Returns the quality of each plan in a negotiation, before a lead's first impression: today's product,
-    /// no tenure, no weekday. Quotas count only for active subscriptions.
+    /// Returns the quality of each plan in a negotiation, before the first-impression factor of a lead. Uses today's
+    /// product, without tenure and weekday. Quotas count only if the subscription is `active`.
     pub(super) fn negotiation_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
         let product = self.product.quality(group, self.day.params);
         let quality = &self.day.params.quality;
@@ -26,7 +26,8 @@ impl NegotiationContext<'_> {
         })
     }
 
-    /// Returns the quality of each plan for a subscriber: this morning's product, tenure and weekday, without bounds.
+    /// Returns the quality of each plan in the daily evaluation of a subscriber. Uses the product of this morning,
+    /// tenure and weekday; the result is not bounded.
     pub(super) fn subscriber_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
         let demand = quota_demand(row.usage_rate * self.day.morning.weekday, row.usage_rate, self.day.params);
         let tenure = self.day.tenure.bonus(self.day.day().saturating_sub(row.start_day));
@@ -60,14 +61,14 @@ impl NegotiationContext<'_> {
         perceived_quality(experience, self.day.params.fidelity.perceived_quality)
     }
 
-    /// Returns the curve in a negotiation, including all market drift.
+    /// Returns the curve of an enterprise in a negotiation, including all market drift.
     pub(super) fn negotiation_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.drift.expectation(group);
         let floor = self.day.params.quality.read_time_c_max_min;
         row_curve(row).with_drift(expectation.quality, expectation.c_max, floor)
     }
 
-    /// Returns the curve for daily evaluation, including the market drift of this morning.
+    /// Returns the curve of an enterprise in the daily evaluation, including the market drift up to this morning.
     pub(super) fn subscriber_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.day.morning.expectations[group];
         let floor = self.day.params.quality.read_time_c_max_min;

@@ -1,4 +1,4 @@
-//! Replies that are due today.
+//! Replies of enterprises that are due today.
 
 use super::evaluation::{OfferEvaluator, OfferResponse};
 use super::{ActiveThread, Enterprise, NegotiationContext, NegotiationStep, Thread};
@@ -6,7 +6,7 @@ use crate::customers::Customers;
 use crate::customers::columns::Subscriber;
 use crate::events::{Notice, Offering, Sender, ThreadKind, TurnContent};
 
-/// A decided reply that has not been sent.
+/// A reply that an enterprise has decided on but not sent.
 struct DueReply {
     thread: usize,
     answer: OfferResponse,
@@ -14,7 +14,7 @@ struct DueReply {
 }
 
 impl Enterprise {
-    /// Returns the evaluator for a thread as of today, or `None` if the enterprise is no longer tracked.
+    /// Returns today's evaluator for the enterprise of a thread, or `None` if the enterprise is no longer tracked.
     pub fn offer_evaluator(
         &self,
         thread: &Thread,
@@ -25,7 +25,7 @@ impl Enterprise {
         self.offer_evaluator_for_row(thread, &row, talks)
     }
 
-    /// Like [`Enterprise::offer_evaluator`], with a given row of the enterprise.
+    /// Returns the evaluator like [`Enterprise::offer_evaluator`], but for a given row of the enterprise.
     pub fn offer_evaluator_for_row(
         &self,
         thread: &Thread,
@@ -48,7 +48,7 @@ impl Enterprise {
 }
 
 impl NegotiationStep<'_> {
-    /// Sends due replies. All are decided from the state before the first one.
+    /// Sends the due replies. All replies are decided from the state before the first reply.
     pub(super) fn receive_replies(&mut self, view: &[ActiveThread]) {
         let today = self.today();
         let due = view.iter().filter(|live| live.sender == Sender::Agent && live.reply_day == Some(today));

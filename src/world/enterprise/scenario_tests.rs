@@ -1,4 +1,4 @@
-//! Scenario tests of threads from their first turn to their end.
+//! Tests that follow threads from their first turn to their end.
 
 use super::test_kit::NegotiationKit;
 use super::{EnterpriseDayResult, EnterpriseStatus};
@@ -8,10 +8,10 @@ use crate::events::{
 };
 use crate::identifiers::Plan;
 
-/// A lead of day 0 that replies after `delay` days and takes at most `turns` turns.
+/// Returns a kit with a lead of day 0 that replies after `delay` days and accepts at most `turns` turns.
 fn lead(delay: f64, turns: u32) -> NegotiationKit {
     let mut kit = NegotiationKit::new(0);
-    // Without first impression, perceived quality equals offered quality.
+    // Without a first-impression factor, perceived quality equals offered quality.
     kit.params.quality.initial_decision_noise_min = 1.0;
     kit.params.quality.initial_decision_noise_max = 1.0;
     let company = kit.company(delay, turns);
@@ -108,7 +108,7 @@ fn dead_threads_do_not_reappear_if_disabled() {
     assert!(kit.facts.notices.is_empty());
 }
 
-/// A subscriber whose price is too high from day 4 on.
+/// Returns a kit with a subscriber whose price is too high from day 4 on.
 fn kit_with_unhappy_subscriber() -> NegotiationKit {
     let mut kit = NegotiationKit::new(3);
     kit.subscribe(6, |row| (row.listed_price, row.relationship) = (59.0, 0.6));
@@ -128,7 +128,7 @@ fn unanswered_threat_loses_the_subscriber() {
     kit.enterprise.reject_threads(&[thread], 4, &mut kit.facts);
     assert_eq!(turns(&kit), [(Sender::Agent, 2)]);
     assert!(kit.facts.endings.is_empty() && kit.enterprise.open_threads().newest(2).is_none());
-    // The next day it starts again, and the player does not answer.
+    // On the next day the enterprise opens a new thread, and the player does not answer.
     let opened = kit.run_day(5);
     assert!(opened.suspended.is_empty(), "a thread suspends from the day after");
     assert_eq!(kit.enterprise.threads[0].kind, ThreadKind::ChurnPrevention);
@@ -146,7 +146,7 @@ fn unanswered_threat_loses_the_subscriber() {
     let relationship = company.row(&kit.customers).expect("a row").relationship;
     assert!((relationship - 0.3).abs() < 1e-12, "{relationship}");
     assert_eq!((lost.lost[0].days_subscribed, lost.lost[0].seats), (Some(9), 100));
-    // Only the reputation changes when the thread triggers again each day.
+    // When the thread triggers again on later days, only the reputation changes.
     let mut before = kit.reputation.get(kit.group);
     assert!(before < reputation);
     for day in 13..=16 {
@@ -201,14 +201,14 @@ fn failed_renegotiation_loses_the_customer() {
     let messages = kit.send_offer(&[(Plan::A, 58.0)]);
     assert_eq!((messages[0].starts_thread, messages[0].turn, messages[0].reply_day), (true, 0, 7));
     assert_eq!((kit.facts.turns[0].seats, kit.facts.turns[0].kind), (100, ThreadKind::Renegotiation));
-    // A product below the minimum quality at every price.
+    // The quality of the product is below the required quality at every price.
     kit.product.shared_bonus = 0.1;
     kit.morning.product.0.iter_mut().for_each(|product| *product = 0.3);
     let runs = run_days(&mut kit, 5..=7);
     assert!(runs[2].lost[0].kind == ThreadKind::Renegotiation);
     assert_eq!(kit.facts.endings[0].cause, EndCause::QualityChange);
     assert_eq!(kit.facts.endings[0].day, 7);
-    // Its first offer was its last turn, so the thread does not reappear.
+    // The thread has only one turn, which is dead, so the thread does not reappear.
     assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
     assert!(kit.run_day(20).lost.is_empty());
 }
@@ -225,7 +225,8 @@ fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
     kit.send_offer(&[(Plan::B, 59.0)]);
     kit.send_offer(&[(Plan::B, 20.0)]);
     run_days(&mut kit, 1..=3);
-    // Turn 2 of 2: silence, whatever is offered. The reply to the first message is still due and is silence too.
+    // At turn 2 of 2 the enterprise never replies, whatever the offer. The reply to the first message is due too, and
+    // the enterprise does not send it.
     assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
 }
 
@@ -235,7 +236,7 @@ fn late_reply_lowers_relationship_once() {
     kit.send_offer(&[(Plan::B, 59.0)]);
     run_days(&mut kit, 1..=7);
     let messages = kit.send_offer(&[(Plan::B, 44.0)]);
-    // The counter-offer arrived on day 3: four days, three of them late.
+    // The counter-offer arrived on day 3. The player answers after four days, of which three are late.
     let relationship = messages[0].relationship.expect("a late answer");
     assert!((relationship - 0.44).abs() < 1e-12, "{relationship}");
     assert_eq!(

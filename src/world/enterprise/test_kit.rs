@@ -1,4 +1,4 @@
-//! A negotiation day with simple values; tests change what they need.
+//! A negotiation day with simple values for tests, which can change each value.
 
 use super::evaluation::tests::K;
 use super::{Company, Enterprise, EnterpriseDayResult, EnterpriseStatus, NegotiationContext};
@@ -18,7 +18,7 @@ use crate::reputation::ReputationBook;
 use crate::settings::Settings;
 use crate::test_kit::{plain_enterprise, subscriber};
 
-/// Tiers 3, 4, 5, wide quotas, product quality 0.8 for all groups, no other customers.
+/// A state with model tiers 3, 4 and 5, large quotas, product quality 0.8 for all groups, and no other customers.
 pub(super) struct NegotiationKit {
     pub params: Params,
     pub streams: Streams,
@@ -55,7 +55,7 @@ impl NegotiationKit {
         kit
     }
 
-    /// Starts a day with the current product.
+    /// Starts a day with the current quality of the product.
     pub fn start_day(&mut self, day: u32) {
         let quality = self.product.quality(self.group, &self.params);
         let prices = ByPlan([1e6; 3]);
@@ -70,7 +70,7 @@ impl NegotiationKit {
         self.facts.start_day(day);
     }
 
-    /// The row of the reference enterprise K: customer 2, first of its group, 100 seats.
+    /// Returns the row of the reference enterprise K, which is customer 2, the first of its group, with 100 seats.
     pub fn row(&self) -> Subscriber {
         Subscriber {
             customer: 2,
@@ -91,7 +91,7 @@ impl NegotiationKit {
         }
     }
 
-    /// The reference enterprise K, which replies after `delay` days.
+    /// Returns the reference enterprise K, which replies after `delay` days.
     pub fn company(&self, delay: f64, max_turns: u32) -> Company {
         let negotiator = Negotiator {
             reply_delay_mean: delay,
@@ -101,7 +101,7 @@ impl NegotiationKit {
         Company { negotiator, ..plain_enterprise(self.group, 1, 2, EnterpriseStatus::Lead(self.row())) }
     }
 
-    /// Makes K a subscriber since day 3 with these terms and a contract until day 33.
+    /// Makes enterprise K a subscriber since day 3 with a contract until day 33. `change` edits its row.
     pub fn subscribe(&mut self, max_turns: u32, change: impl Fn(&mut Subscriber)) {
         let mut row = Subscriber {
             start_day: 3,
@@ -129,7 +129,7 @@ impl NegotiationKit {
         })
     }
 
-    /// Runs the enterprise part of a day; afterwards, the facts are those of that day only.
+    /// Runs the enterprise step of a day. Afterwards, the facts contain only that day.
     pub fn run_day(&mut self, day: u32) -> EnterpriseDayResult {
         self.start_day(day);
         let mut enterprise = std::mem::take(&mut self.enterprise);
@@ -144,7 +144,7 @@ impl NegotiationKit {
         result
     }
 
-    /// Sends one offer to K on the current day.
+    /// Sends an offer to enterprise K on the current day.
     pub fn send_offer(
         &mut self,
         offerings: &[(crate::identifiers::Plan, f64)],

@@ -1,44 +1,44 @@
-//! Threads: their turns and which turn determines what happens next.
+//! Threads, their turns, and the turn that determines the next step.
 
 use crate::canonical::canonical;
 use crate::events::{Offering, Sender, ThreadKind};
 use crate::identifiers::Group;
 
-/// A negotiation with one enterprise. Closed threads are removed at once, dead ones when they can no longer trigger.
+/// A negotiation with one enterprise. A closed thread is removed immediately, a dead thread when it can no longer trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thread {
-    /// Running number, from 1.
+    /// Number of the thread, from 1.
     pub number: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
-    /// Its group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// How it started.
+    /// Reason why the thread was opened.
     pub kind: ThreadKind,
-    /// Its turns; never empty.
+    /// Turns of the thread; never empty.
     pub turns: Vec<Turn>,
-    /// Accepted or rejected.
+    /// Whether an offer was accepted or the player rejected the thread.
     pub closed: bool,
 }
 
 /// The part of a turn that affects the negotiation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
-    /// Running number over all threads.
+    /// Number of the turn among the turns of all threads.
     pub message: u32,
-    /// Number within the thread; the turns of one call may share one.
+    /// Number of the turn within the thread. Turns of the same tool call can have the same number.
     pub number: u32,
     /// Sender of the turn.
     pub sender: Sender,
-    /// Day.
+    /// Day of the turn.
     pub day: u32,
-    /// Offerings of the player.
+    /// Offerings that the player sent in this turn.
     pub offerings: Vec<Offering>,
-    /// Price that the enterprise named, dollars a month and seat.
+    /// Asked price of the enterprise, dollars per month and seat.
     pub asked: Option<f64>,
-    /// Day on which the enterprise replies.
+    /// Day on which the enterprise replies to this turn.
     pub reply_day: Option<u32>,
-    /// Whether the thread died with this turn as its last.
+    /// Whether the thread died when this turn was its last turn.
     pub dead: bool,
 }
 
@@ -48,28 +48,28 @@ canonical! {
 }
 
 impl Thread {
-    /// Returns the newest turn.
+    /// Returns the newest turn of the thread.
     pub fn last(&self) -> &Turn {
         self.turns.last().expect("a thread has a first turn")
     }
 
-    /// Returns the newest turn for marking.
+    /// Returns a mutable reference to the newest turn.
     pub fn last_mut(&mut self) -> &mut Turn {
         self.turns.last_mut().expect("a thread has a first turn")
     }
 
-    /// Returns whether both sides can still write.
+    /// Returns whether the thread is neither closed nor dead.
     pub fn is_open(&self) -> bool {
         !self.closed && !self.last().dead
     }
 
-    /// Returns whether the player should write next.
+    /// Returns whether the thread is open and waits for a message of the player.
     pub fn awaits_player(&self) -> bool {
         self.is_open() && self.last().sender != Sender::Agent
     }
 
-    /// Returns the newest turn that is not dead, which determines the daily step. Only the last turn is
-    /// marked dead, so a dead thread reappears with an older turn unless `reappearing` is false
+    /// Returns the newest turn that is not dead. This turn determines the next step of the thread. Only the last turn
+    /// is marked dead, so a dead thread reappears with an older turn, unless `reappearing` is false
     /// (`docs/mechanics/enterprise/thread.md#dead-threads-that-reappear`).
     pub fn active_turn(&self, reappearing: bool) -> Option<&Turn> {
         if self.closed || (!reappearing && self.last().dead) {
@@ -78,7 +78,7 @@ impl Thread {
         self.turns.iter().rev().find(|turn| !turn.dead)
     }
 
-    /// Returns the player's newest offerings.
+    /// Returns the offerings in the player's newest turn.
     pub fn last_offerings(&self) -> &[Offering] {
         let offer = self.turns.iter().rev().find(|turn| turn.sender == Sender::Agent);
         offer.map_or(&[], |turn| &turn.offerings)
@@ -95,12 +95,13 @@ impl Thread {
         customer.map(|turn| turn.day).max()
     }
 
-    /// Returns the price that the enterprise named last.
+    /// Returns the asked price: the last price that the enterprise named.
     pub fn last_asked_price(&self) -> Option<f64> {
         self.turns.iter().rev().find_map(|turn| turn.asked)
     }
 
-    /// Returns whether the thread has no further effect after a day: it is closed, or dead and cannot trigger again.
+    /// Returns whether the thread has no effect after `day`, because it is closed or because it is dead and cannot
+    /// trigger again.
     pub(super) fn is_finished(&self, day: u32, reappearing: bool) -> bool {
         if self.closed {
             return true;

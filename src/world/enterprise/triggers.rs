@@ -1,4 +1,4 @@
-//! Threads that subscribers open: a threat to leave, or a request for another plan.
+//! Threads that subscribers open: a threat to cancel, or a request for a different plan.
 
 use std::collections::BTreeSet;
 
@@ -10,22 +10,22 @@ use crate::identifiers::{Group, Plan};
 use crate::params::EnterpriseParams as Sales;
 use crate::random::Part;
 
-/// The reason for which a subscriber opens a thread.
+/// The request with which a subscriber opens a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum SubscriberRequest {
-    /// It threatens to leave.
+    /// A threat to cancel the subscription.
     Leave,
-    /// It asks for another plan.
+    /// A request for a different plan.
     Switch { from: Plan, to: Plan },
 }
 
-/// Returns the gain in surplus as a share of the current surplus.
+/// Returns the gain in surplus from a different plan as a share of the present surplus.
 pub fn improvement(best: f64, present: f64, sales: &Sales) -> f64 {
     (best - present) / present.abs().max(sales.plan_change_improvement_denominator_min)
 }
 
 impl NegotiationStep<'_> {
-    /// Opens threads for subscribers that had none this morning.
+    /// Opens threads for subscribers that had no thread this morning.
     pub(super) fn open_subscriber_threads(&mut self, busy: &BTreeSet<u32>) {
         let mut wishes: Vec<(u32, u32, SubscriberRequest)> = Vec::new();
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use crate::identifiers::ByPlan;
 
-    /// Quality and surplus of the subscriber's current plan.
+    /// Returns quality and surplus of the subscriber's current plan.
     fn present(kit: &NegotiationKit, row: &Subscriber) -> (f64, f64) {
         kit.with_negotiation(|day| {
             let (quality, curve) =
@@ -199,7 +199,7 @@ mod tests {
             assert!((own_here - here).abs() < 1e-10 && (own_there - there).abs() < 1e-10);
             assert!((improvement(own_there, own_here, &sales) - gain).abs() < 1e-8);
         }
-        // A list price with too little gain makes no random draw.
+        // No random draw is made if the gain in surplus is too small.
         kit.morning.core.prices = ByPlan([22.0, 500.0, 500.0]);
         let row = on_b(&kit, 36.0);
         assert!((surplus_on(&kit, &row, Plan::A, 22.0) - 0.0500675475).abs() < 1e-10);

@@ -17,22 +17,22 @@ pub struct ServiceDay {
     pub total_usage: u64,
     /// Usage above capacity as a share of capacity, 0 if capacity sufficed.
     pub overload: f64,
-    /// Whether there was an outage.
+    /// Whether the service had an outage.
     pub outage: bool,
     /// Downtime in minutes: 0, 10, 30 or 90.
     pub downtime_minutes: u32,
-    /// Latency in milliseconds.
+    /// 95th percentile of the latency, in milliseconds.
     pub p95_ms: f64,
     /// Share of failed requests, 0..=1.
     pub error_rate: f64,
-    /// Capacity tier in force.
+    /// Capacity tier of the day.
     pub capacity_tier: u8,
-    /// Units a day of that tier.
+    /// Capacity of the tier, units per day.
     pub capacity_units: u32,
 }
 
 impl ServiceDay {
-    /// Returns a day without load or problems.
+    /// Returns the service health of a day without usage or problems.
     pub fn without_load() -> ServiceDay {
         ServiceDay {
             total_usage: 0,
@@ -47,12 +47,12 @@ impl ServiceDay {
     }
 }
 
-/// An R&D project that started or finished.
+/// The start or completion of an R&D project.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ResearchChange {
-    /// Paid for and started.
+    /// A project that was paid for and started.
     Started(Project),
-    /// Finished today.
+    /// A project that was completed today.
     Completed(Project),
 }
 
@@ -78,79 +78,79 @@ impl Restore for ResearchChange {
 /// A notification for the inbox; the `voice` crate writes its text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Notice {
-    /// An enterprise requests an offer.
+    /// Request of an enterprise for an offer.
     EnterpriseLead,
-    /// A lead was lost because the player did not answer for this many days.
+    /// Loss of a lead because the player did not answer before the deadline.
     LeadLostByTimeout {
-        /// Days since its last turn.
+        /// Days since the last turn of the thread.
         days: u32,
     },
-    /// A lead that was lost before is reported again, every day, because its thread keeps triggering.
+    /// Repeated report of a lost lead, every day, because the lead's thread still triggers.
     LeadLossRepeated {
-        /// Days since the active turn of the thread.
+        /// Days since the active turn of the lead's thread.
         days: u32,
         /// Customer number of the enterprise.
         customer: u32,
-        /// Why it was lost.
+        /// Reason why the lead was lost.
         cause: LossCause,
         /// Day of the unanswered message.
         message_day: u32,
     },
-    /// An enterprise that requested an offer fell silent.
+    /// End of a lead's thread because the enterprise did not reply.
     LeadSilent,
-    /// An enterprise made a counter-offer.
+    /// Counter-offer of an enterprise.
     CounterOffer {
         /// Customer number of the enterprise.
         customer: u32,
     },
-    /// A customer threatens to leave.
+    /// Threat of a subscribed enterprise to cancel.
     ChurnThreat {
         /// Customer number of the enterprise.
         customer: u32,
     },
-    /// A customer requests another plan.
+    /// Request of a subscribed enterprise for a different plan.
     PlanChangeRequest {
         /// Customer number of the enterprise.
         customer: u32,
-        /// Whether the requested plan is higher.
+        /// Whether the requested plan is higher than the current plan.
         upgrade: bool,
     },
-    /// A deal was closed at this price, dollars a month and seat.
+    /// Deal with an enterprise.
     DealWon {
-        /// Price.
+        /// Agreed price, dollars per month and seat.
         price: f64,
     },
-    /// An R&D project is finished.
+    /// Completion of an R&D project.
     ResearchComplete {
-        /// Tier, 1..=20.
+        /// Tier of the project, 1..=20.
         tier: u8,
         /// Number of the project within the tier, from 1.
         number: u32,
     },
-    /// A reading of the economy was published.
+    /// Publication of a PMI reading.
     EconomyUpdate(Reading),
-    /// Market research discovered a group.
+    /// Discovery of a group by market research.
     GroupFound {
-        /// The group.
+        /// The discovered group.
         group: Group,
-        /// Number of the attempt, from 1.
+        /// Number of the market research attempt, from 1.
         attempt: u32,
     },
-    /// A study of a group is finished.
+    /// Completion of a market study.
     StudyComplete {
-        /// The study.
+        /// The completed study.
         study: Study,
-        /// Largest relative error of its estimates.
+        /// Largest relative error of the study's estimates.
         noise: f64,
     },
-    /// A post of the player was seen and judged.
+    /// Public reaction to a post of the player.
     OwnPostSeen(Reaction),
 }
 
-/// Why a lead was lost.
+/// Reason why a lead was lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LossCause {
-    /// The enterprise did not answer the player's offer.
+    /// The enterprise did not reply to the player's offer.
     Silence,
     /// The player did not answer the enterprise's message.
     Unanswered,
@@ -161,16 +161,16 @@ pub enum LossCause {
 pub struct Reaction {
     /// Number of the post.
     pub post: u32,
-    /// How often it was seen.
+    /// Number of views of the post.
     pub views: u64,
-    /// Mean reaction of the groups that judged it, -1..=1.
+    /// Mean reaction of the groups that judged the post, -1..=1.
     pub mean: f64,
-    /// The strongest reactions, in descending order.
+    /// The groups with the strongest reactions, in descending order of strength.
     pub strongest: [Option<(Group, f64)>; 3],
 }
 
 impl Notice {
-    /// Type as stored in tables.
+    /// Returns the notice type that tables store.
     pub fn kind(&self) -> &'static str {
         match self {
             Notice::EnterpriseLead
@@ -194,7 +194,7 @@ impl Canonical for Notice {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
             Notice::EnterpriseLead => 0u8.feed(hasher),
-            // Trajectories do not distinguish the two causes.
+            // Trajectories do not distinguish a first report from a repeated one.
             Notice::LeadLostByTimeout { days } | Notice::LeadLossRepeated { days, .. } => {
                 (1u8, days).feed(hasher)
             }

@@ -1,4 +1,4 @@
-//! Facts about customers: arrival, terms, usage, departure.
+//! Facts about customers: arrivals, subscription terms, usage, issues and cancellations.
 
 use crate::canonical::{canonical, canonical_codes};
 use crate::customers::persona::PersonaPicks;
@@ -20,28 +20,28 @@ canonical_codes! {
     EndCause { Involuntary, Quality, Price, LeadTimeout, LeadSilent, LeadRejected, ExtendedIssue, QualityChange, QuotaChange, PriceSensitivity }
 }
 
-/// How a customer found the company.
+/// The way in which a customer found the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Source {
-    /// Paid feeds.
+    /// Paid feeds of social networks.
     SocialMedia,
-    /// Paid search.
+    /// Paid search results.
     SearchAds,
-    /// The business network.
+    /// Ads on the business network.
     Linkedin,
-    /// Articles and guides.
+    /// Articles and guides by the company.
     ContentMarketing,
-    /// Rewarded recommendations.
+    /// Recommendations that the company rewards.
     ReferralProgram,
     /// Word of mouth.
     Network,
-    /// Without a channel; reserved, does not occur.
+    /// No channel. Reserved; does not occur.
     Organic,
 }
 
 impl Source {
-    /// All sources: the channels in channel order, then the two unpaid ones.
+    /// All sources: the paid channels in channel order, then the two unpaid sources.
     pub const ALL: [Source; 7] = [
         Source::SocialMedia,
         Source::SearchAds,
@@ -52,17 +52,17 @@ impl Source {
         Source::Organic,
     ];
 
-    /// Returns the source of a channel.
+    /// Returns the source that corresponds to a channel.
     pub fn from_channel(channel: Channel) -> Source {
         Source::ALL[channel.index()]
     }
 
-    /// Returns the channel of a paid source.
+    /// Returns the channel of a paid source, or `None` for an unpaid source.
     pub fn channel(self) -> Option<Channel> {
         Channel::at(self as usize)
     }
 
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the source in tables.
     pub fn id(self) -> &'static str {
         match self.channel() {
             Some(channel) => channel.id(),
@@ -72,116 +72,116 @@ impl Source {
     }
 }
 
-/// Leads of one paid pair of channel and group.
+/// Leads of one group that arrived through one paid channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelLeads {
-    /// Channel.
+    /// The paid channel.
     pub channel: Channel,
-    /// Group.
+    /// The group that was advertised to.
     pub group: Group,
-    /// Leads of the group that came through the channel.
+    /// Number of leads of the group that arrived through the channel.
     pub leads: u32,
-    /// Dollars spent.
+    /// Dollars spent on the channel for the group.
     pub spend: f64,
 }
 
-/// A new customer.
+/// A customer who arrived today.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrival {
-    /// Customer number.
+    /// Customer number of the new customer.
     pub customer: u32,
-    /// Group.
+    /// Group of the customer.
     pub group: Group,
-    /// Running number within the group.
+    /// Running number of the customer within the group.
     pub n: u32,
-    /// How it found the company.
+    /// The way in which the customer found the company.
     pub source: Source,
-    /// Profile attributes.
+    /// Profile attributes of the customer.
     pub persona: PersonaPicks,
-    /// Mean demand, for the usage label of the profile.
+    /// Mean demand, from which the usage label of the profile is derived.
     pub usage_demand: f64,
-    /// Budget, for the budget label of the profile.
+    /// Budget, from which the budget label of the profile is derived.
     pub c_max: f64,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: u32,
 }
 
-/// A new subscription record.
+/// A new subscription row, for subscribers and for leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SubscriptionOpened {
     /// Subscription number.
     pub subscription: u32,
-    /// Customer number.
+    /// Customer number of the subscriber or lead.
     pub customer: u32,
-    /// Plan; `None` while an enterprise negotiates.
+    /// Plan of the subscription; `None` while an enterprise negotiates.
     pub plan: Option<Plan>,
-    /// Subscribed, lost or lead.
+    /// Status of the subscription: subscribed, lost or lead.
     pub status: SubscriptionStatus,
-    /// Dollars a month before discounts.
+    /// Price before discounts, dollars per month.
     pub listed_price: f64,
-    /// Discount, dollars a month.
+    /// Discount, dollars per month.
     pub promotion: f64,
-    /// Dollars a month.
+    /// Effective price, dollars per month.
     pub effective_price: f64,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: u32,
 }
 
-/// Status of a subscription.
+/// Status of a subscription row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum SubscriptionStatus {
-    /// An enterprise that negotiates.
+    /// Negotiation of an enterprise lead.
     Lead,
-    /// Active.
+    /// Active subscription.
     Subscribed,
-    /// Ended by the customer.
+    /// Subscription that has ended.
     Cancelled,
-    /// Never became a customer.
+    /// Lead that did not subscribe.
     Lost,
 }
 
 impl SubscriptionStatus {
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the status in tables.
     pub fn id(self) -> &'static str {
         ["lead", "subscribed", "cancelled", "lost"][self as usize]
     }
 }
 
-/// Terms of a subscription after a bill, a plan switch or a deal.
+/// New terms of a subscription, after a bill, a plan switch or a deal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TermsChanged {
     /// Subscription number.
     pub subscription: u32,
     /// Customer number.
     pub customer: u32,
-    /// Plan.
+    /// Plan of the subscription.
     pub plan: Plan,
-    /// Dollars a month and seat before discounts.
+    /// Price before discounts, dollars per month and seat.
     pub listed_price: f64,
-    /// Discount, dollars a month and seat.
+    /// Discount, dollars per month and seat.
     pub promotion: f64,
-    /// Dollars a month and seat.
+    /// Effective price, dollars per month and seat.
     pub effective_price: f64,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: u32,
-    /// Whether the first bill was issued.
+    /// Whether the subscriber has received the first bill.
     pub billed_once: bool,
 }
 
-/// Why a subscription ended.
+/// Reason why a subscription or a lead ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum EndCause {
-    /// A payment failed permanently.
+    /// Permanent failure of a payment.
     Involuntary,
-    /// No plan was acceptable, and satisfaction was negative.
+    /// The individual found no acceptable plan, and satisfaction was negative.
     Quality,
-    /// No plan was acceptable at its price.
+    /// The individual found no acceptable plan, and satisfaction was not negative.
     Price,
-    /// An enterprise lead waited too long for an answer.
+    /// An enterprise lead did not receive an answer before the deadline.
     LeadTimeout,
-    /// An enterprise lead fell silent.
+    /// An enterprise lead stopped replying.
     LeadSilent,
     /// The player rejected an enterprise lead.
     LeadRejected,
@@ -189,60 +189,60 @@ pub enum EndCause {
     ExtendedIssue,
     /// An enterprise left because of low quality.
     QualityChange,
-    /// An enterprise left because it needs more than its quota.
+    /// An enterprise left because its quota was too small.
     QuotaChange,
     /// An enterprise left because of the price.
     PriceSensitivity,
 }
 
-/// A subscription ended.
+/// The end of a subscription or a lead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SubscriptionEnded {
     /// Subscription number.
     pub subscription: u32,
     /// Customer number.
     pub customer: u32,
-    /// The customer's group.
+    /// Group of the customer.
     pub group: Group,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: u32,
-    /// Recorded end day.
+    /// Recorded last day of the subscription.
     pub day: u32,
-    /// Cancelled or lost.
+    /// New status of the subscription: cancelled or lost.
     pub status: SubscriptionStatus,
-    /// The cause, known only to the simulator.
+    /// Cause of the end, which is hidden from the player.
     pub cause: EndCause,
 }
 
-/// Usage of consecutive customers of one group, in ascending order of their numbers.
+/// Usage of several customers of one group, in ascending order of customer number.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct UsageRows {
-    /// Customer numbers.
+    /// Numbers of the customers.
     pub customers: Vec<u32>,
-    /// Units used by each.
+    /// Units that each customer used.
     pub units: Vec<u32>,
 }
 
-/// A new support issue.
+/// A support issue that was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct IssueOpened {
-    /// Running number of the issue.
+    /// Number of the issue.
     pub issue: u32,
-    /// Number of the customer.
+    /// Number of the customer who opened the issue.
     pub customer: u32,
-    /// The customer's group.
+    /// Group of the customer.
     pub group: Group,
 }
 
-/// Ad revenue of one subscriber.
+/// Ad revenue from one subscriber.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AdsRevenueRow {
     /// Number of the customer who saw the ads.
     pub customer: u32,
-    /// The customer's group.
+    /// Group of the customer.
     pub group: Group,
-    /// Effective strength, 0..=1.
+    /// Effective strength of in-app advertising, 0..=1.
     pub strength: f64,
-    /// Dollars.
+    /// Ad revenue from the customer, dollars.
     pub revenue: f64,
 }

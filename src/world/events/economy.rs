@@ -1,4 +1,4 @@
-//! Published readings of the economy.
+//! Readings of the PMI that are published to the player.
 
 use serde::Serialize;
 
@@ -11,40 +11,40 @@ canonical_codes! {
     Phase { Peak, Declining, Trough, Recovering }
 }
 
-/// A reading of the index.
+/// A monthly reading of the PMI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// Last of the days whose values the reading averages.
+    /// Last day of the period whose daily values the reading averages.
     pub measured_day: u32,
-    /// Average, one decimal.
+    /// Average PMI, rounded to one decimal.
     pub value: f64,
-    /// Change since the previous reading, one decimal.
+    /// Change since the previous reading, rounded to one decimal.
     pub change: f64,
-    /// Label of the value.
+    /// Trend label of the value.
     pub trend: Trend,
-    /// Position in the cycle.
+    /// Position of the reading in the economic cycle.
     pub phase: Phase,
 }
 
-/// Label of a reading.
+/// Trend label of a PMI value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
 pub enum Trend {
-    /// 58 and above.
+    /// PMI of 58 or more.
     StrongExpansion,
-    /// 52 and above.
+    /// PMI of 52 or more, below 58.
     Expansion,
-    /// 48 and above.
+    /// PMI of 48 or more, below 52.
     Neutral,
-    /// 42 and above.
+    /// PMI of 42 or more, below 48.
     Contraction,
-    /// Below.
+    /// PMI below 42.
     SevereContraction,
 }
 
 impl Trend {
-    /// Returns the label of an index value.
+    /// Returns the trend label of a PMI value.
     pub fn from_index(pmi: f64, economy: &MacroEconomy) -> Trend {
         match pmi {
             _ if pmi >= economy.trend_strong_expansion_min => Trend::StrongExpansion,
@@ -55,24 +55,24 @@ impl Trend {
         }
     }
 
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the trend in tables.
     pub fn id(self) -> &'static str {
         ["strong_expansion", "expansion", "neutral", "contraction", "severe_contraction"][self as usize]
     }
 }
 
-/// Position of a reading in the cycle.
+/// Position of a reading in the economic cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
 pub enum Phase {
-    /// High and no longer rising.
+    /// A high PMI that is no longer rising.
     Peak,
-    /// Falling.
+    /// A falling PMI.
     Declining,
-    /// Low and not falling.
+    /// A low PMI that is not falling.
     Trough,
-    /// Rising, or level in the middle.
+    /// A PMI that is neither low nor falling, and not at its peak.
     Recovering,
 }
 
@@ -90,7 +90,7 @@ impl Phase {
         }
     }
 
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the phase in tables.
     pub fn id(self) -> &'static str {
         ["peak", "declining", "trough", "recovering"][self as usize]
     }

@@ -1,52 +1,52 @@
-//! Figures of one day.
+//! Daily figures of the company.
 
 use crate::identifiers::{ByGroup, ByPlan};
 
-/// Figures of a day (`docs/mechanics/day.md#figures-of-a-day`).
+/// Figures of the company on one day (`docs/mechanics/day.md#figures-of-a-day`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DayFigures {
-    /// Day.
+    /// Number of the day.
     pub day: u32,
-    /// Units used.
+    /// Units used by all customers.
     pub total_usage: u64,
-    /// The same by group and by the plan they were used on.
+    /// Units used, by group and plan.
     pub usage: ByGroup<ByPlan<u64>>,
-    /// Usage above capacity.
+    /// Usage above capacity, as a share of capacity.
     pub overload: f64,
-    /// Whether there was an outage.
+    /// Whether the service had an outage.
     pub outage: bool,
-    /// Minutes of downtime.
+    /// Downtime of the service, in minutes.
     pub downtime_minutes: u32,
-    /// Latency in milliseconds.
+    /// 95th percentile of the latency, in milliseconds.
     pub p95_ms: f64,
     /// Share of failed requests.
     pub error_rate: f64,
-    /// All leads, including lost ones.
+    /// Number of leads, including lost leads.
     pub new_leads: u32,
-    /// Leads of individuals.
+    /// Number of individual leads.
     pub new_individual_leads: u32,
-    /// Leads of enterprises that opened a thread.
+    /// Number of enterprise leads that opened a thread.
     pub new_enterprise_leads: u32,
-    /// Individuals who signed up.
+    /// Number of individuals who signed up.
     pub new_individual_subscribers: u32,
-    /// Seats of enterprises that signed today.
+    /// Seats of enterprises that became subscribers today.
     pub new_enterprise_seats: u32,
-    /// Cancellations of individuals, including involuntary ones.
+    /// Number of individual cancellations, including failed payments.
     pub cancellations: u32,
-    /// Switches to a more expensive plan.
+    /// Number of switches to a higher-priced plan.
     pub upgrades: u32,
-    /// Switches to a cheaper plan.
+    /// Number of switches to a lower-priced plan.
     pub downgrades: u32,
     /// Payments of subscribers, dollars.
     pub payments_received: f64,
-    /// Running costs: capacity, compute, operations, development, advertising; dollars.
+    /// Running costs in dollars: capacity, compute, operations, development and advertising.
     pub total_costs: f64,
     /// Cash at the end of the day, dollars.
     pub cash: f64,
     /// Monthly recurring revenue at the end of the day, dollars.
     pub mrr: f64,
-    /// Active subscriptions of individuals.
+    /// Number of active individual subscriptions.
     pub individual_subscribers: u32,
-    /// Seats of active enterprises.
+    /// Seats of all subscribed enterprises.
     pub enterprise_seats: u32,
 }

@@ -1,7 +1,7 @@
-//! Facts of a day: what happened, as plain data for recording.
+//! Facts of a day: plain data about its events, for recording.
 //!
-//! Mechanisms append facts; `database` turns them into rows and `voice` turns some of them into text. A fact
-//! holds codes and numbers, never text (except for posts of the player), and the world never reads it. Lists
+//! Mechanisms append facts; `database` turns them into rows and `voice` turns some of them into text. A fact contains
+//! codes and numbers but no text, except for the text of the player's posts. The simulation never reads facts. Lists
 //! are in the order of the events.
 
 mod company;
@@ -32,26 +32,26 @@ use super::canonical::canonical;
 use super::identifiers::Group;
 use super::settings::SettingsChange;
 
-/// Everything that happened on one day or in the tool calls after it.
+/// All facts about one day, or about the tool calls after that day.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Facts {
-    /// The day all facts belong to.
+    /// Day of all facts.
     pub day: u32,
-    /// Changed settings, complete after the change.
+    /// Changed families of settings, with all their new values.
     pub settings: Vec<SettingsChange>,
-    /// Usage of every active subscription, in pieces.
+    /// Usage of all active subscriptions, in several parts.
     pub usage: Vec<UsageRows>,
-    /// Service health.
+    /// Service health of the day.
     pub service: Option<ServiceDay>,
-    /// R&D projects that started or finished.
+    /// R&D projects that were started or completed.
     pub research: Vec<ResearchChange>,
     /// Attempts to discover a group.
     pub attempts: Vec<Attempt>,
-    /// Groups with changed knowledge, and their new knowledge.
+    /// Groups about which the player's knowledge changed, with the new knowledge.
     pub knowledge: Vec<(Group, Knowledge)>,
-    /// Readings of the economy that were published.
+    /// PMI readings that were published.
     pub readings: Vec<Reading>,
-    /// Issues that were solved, by number.
+    /// Numbers of the issues that were resolved.
     pub issues_resolved: Vec<u32>,
     /// Whether open issues aged by one day.
     pub issues_aged: bool,
@@ -59,7 +59,7 @@ pub struct Facts {
     pub issues_opened: Vec<IssueOpened>,
     /// Subscriptions that ended.
     pub endings: Vec<SubscriptionEnded>,
-    /// Subscriptions with changed terms; the last entry of a subscription applies.
+    /// Subscriptions with changed terms. The last change of a subscription applies.
     pub changes: Vec<TermsChanged>,
     /// Turns of enterprise threads.
     pub turns: Vec<ThreadTurn>,
@@ -67,23 +67,23 @@ pub struct Facts {
     pub deals: Vec<DealClosed>,
     /// Leads by paid channel and group.
     pub channel_leads: Vec<ChannelLeads>,
-    /// New customers.
+    /// Customers who arrived.
     pub arrivals: Vec<Arrival>,
-    /// New subscriptions, in the order of their numbers.
+    /// New subscriptions, in the order of subscription numbers.
     pub openings: Vec<SubscriptionOpened>,
     /// Payments of subscribers.
     pub payments: Vec<Payment>,
-    /// Other movements of cash.
+    /// Cash movements other than payments of subscribers.
     pub ledger: Vec<LedgerEntry>,
     /// Subscribers who earned ad revenue.
     pub ads_revenue: Vec<AdsRevenueRow>,
-    /// Posts of others, in ascending order of their numbers.
+    /// Posts that the player did not write, in ascending order of post number.
     pub posts: Vec<Post>,
     /// Posts of the player.
     pub own_posts: Vec<OwnPostMade>,
     /// Posts of the player that were seen and judged.
     pub own_posts_seen: Vec<OwnPostSeen>,
-    /// Notifications.
+    /// Notifications for the inbox.
     pub notices: Vec<Notice>,
 }
 
@@ -96,7 +96,7 @@ canonical! {
 }
 
 impl Facts {
-    /// Clears all facts and starts a day; allocated memory is kept.
+    /// Clears all facts and sets the day. Keeps the allocated memory.
     pub fn start_day(&mut self, day: u32) {
         let Facts {
             day: own_day,

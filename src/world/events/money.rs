@@ -1,4 +1,4 @@
-//! Facts about cash.
+//! Facts about payments and other cash movements.
 
 use super::research::Study;
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
@@ -19,7 +19,7 @@ canonical_codes! {
 pub struct Payment {
     /// Number of the customer who paid.
     pub customer: u32,
-    /// Dollars.
+    /// Amount of the payment, dollars.
     pub amount: f64,
 }
 
@@ -27,34 +27,34 @@ pub struct Payment {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Category {
-    /// Initial funding.
+    /// Initial funding of the company.
     InitialFunding,
-    /// Cost of a lead.
+    /// Acquisition cost of leads.
     LeadAcquisitionCost,
     /// Payment of a subscriber.
     SubscriptionPayment,
-    /// Capacity of the day.
+    /// Daily cost of capacity.
     Capacity,
-    /// Compute of the day.
+    /// Daily cost of compute.
     Compute,
-    /// Operations of the day.
+    /// Daily spending on operations.
     Operations,
-    /// Development of the day.
+    /// Daily spending on development.
     Development,
-    /// Advertising of the day.
+    /// Daily spending on advertising.
     Advertising,
-    /// In-app ads of the day.
+    /// Daily revenue from in-app advertising.
     AdRevenue,
-    /// An attempt to discover a group.
+    /// Price of an attempt to discover a group.
     MarketResearch,
-    /// A study of a group.
+    /// Price of a market study.
     GroupResearch,
-    /// An R&D project.
+    /// Price of an R&D project.
     ResearchProject,
 }
 
 impl Category {
-    /// All categories.
+    /// All categories of cash movements.
     pub const ALL: [Category; 12] = [
         Category::InitialFunding,
         Category::LeadAcquisitionCost,
@@ -70,7 +70,7 @@ impl Category {
         Category::ResearchProject,
     ];
 
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the category in tables.
     pub fn id(self) -> &'static str {
         match self {
             Category::InitialFunding => "initial_funding",
@@ -92,26 +92,26 @@ impl Category {
 /// A cash movement other than a payment of a subscriber or a lead cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LedgerEntry {
-    /// Category.
+    /// Category of the cash movement.
     pub category: Category,
-    /// Dollars; costs are negative.
+    /// Amount in dollars. Costs are negative.
     pub amount: f64,
-    /// Content of the note.
+    /// Note on the cash movement.
     pub note: LedgerNote,
 }
 
-/// Content of the note of a cash movement.
+/// Note on a cash movement, as data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LedgerNote {
-    /// The general text of the category.
+    /// The default note of the category.
     General,
-    /// The part targeted at groups, plans or customers.
+    /// Spending that targets groups, plans or customers.
     Targeted,
-    /// Ad revenue from this many active subscribers.
+    /// Number of active subscribers that ad revenue refers to.
     Subscribers(u32),
-    /// An R&D project: tier and number.
+    /// Tier and number of an R&D project.
     Project(u8, u32),
-    /// A study of a group.
+    /// A market study.
     Study(Study),
 }
 

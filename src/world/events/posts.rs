@@ -1,4 +1,4 @@
-//! Facts about posts as codes and numbers; the `voice` crate writes the text.
+//! Facts about posts, as codes and numbers. The `voice` crate writes the text.
 
 use super::economy::{Reading, Trend};
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical, canonical_codes};
@@ -21,18 +21,18 @@ canonical_codes! {
     Severity { Minor, Moderate, Major, Transformative }
 }
 
-/// A post by anyone except the player.
+/// A post that the player did not write.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Post {
-    /// Running number.
+    /// Number of the post.
     pub post: u32,
-    /// The author, or `None` for the market observer.
+    /// Author of the post, or `None` for the market observer.
     pub author: Option<PostAuthor>,
-    /// Its tone.
+    /// Tone of the post.
     pub sentiment: Sentiment,
-    /// Engagement, hidden from the player.
+    /// Engagement of the post, hidden from the player.
     pub engagement: Engagement,
-    /// The subject.
+    /// Subject of the post.
     pub matter: PostSubject,
 }
 
@@ -40,37 +40,37 @@ pub struct Post {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Sentiment {
-    /// Praise.
+    /// Positive tone, such as praise.
     Positive,
-    /// Neither positive nor negative.
+    /// Neutral tone.
     Neutral,
-    /// Complaint.
+    /// Negative tone, such as a complaint.
     Negative,
 }
 
-/// Engagement of a post; hidden, and without effect on the world.
+/// Engagement of a post. It is hidden and has no effect on the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Engagement {
-    /// Likes.
+    /// Number of likes.
     pub likes: u32,
-    /// Shares.
+    /// Number of shares.
     pub shares: u32,
-    /// 0..=1.
+    /// Virality score, 0..=1.
     pub virality: f64,
 }
 
-/// A customer as an author.
+/// A customer who writes a post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PostAuthor {
-    /// Customer number.
+    /// Customer number of the author.
     pub customer: u32,
-    /// Group.
+    /// Group of the customer.
     pub group: Group,
-    /// Running number within the group.
+    /// Running number of the customer within the group.
     pub n: u32,
-    /// Profile attributes.
+    /// Profile attributes of the customer.
     pub persona: PersonaPicks,
-    /// Whole seats of an enterprise, 0 for individuals.
+    /// Whole seats of an enterprise; 0 for individuals.
     pub company: u32,
 }
 
@@ -79,35 +79,35 @@ pub struct PostAuthor {
 pub enum PostSubject {
     /// A customer's experience with the product.
     Opinion(Opinion),
-    /// A reading of the economy was published.
+    /// The publication of a PMI reading.
     Reading(Reading),
-    /// The state of the economy.
+    /// The current state of the economy.
     Economy {
-        /// Label of today's index.
+        /// Trend label of today's PMI.
         trend: Trend,
-        /// Today's index.
+        /// Today's PMI.
         pmi: f64,
-        /// Number of the point of view.
+        /// Number of the author's point of view.
         perspective: u8,
     },
-    /// An event of a competitor.
+    /// A competitor event.
     CompetitorEvent {
         /// Number of the competitor.
         name: u8,
-        /// Number of the point of view.
+        /// Number of the author's point of view.
         perspective: u8,
-        /// Estimated severity.
+        /// Severity of the event that the press estimates.
         severity: Severity,
-        /// Estimated gain in quality.
+        /// Gain in the competitor's quality that the press estimates.
         estimate: f64,
     },
     /// A comment on a post of the player.
     Comment {
-        /// The player's post.
+        /// Number of the player's post.
         own_post: u32,
-        /// Group that the comment speaks for.
+        /// Group whose reaction the comment expresses.
         group: Group,
-        /// Reaction of that group to the post, -1..=1.
+        /// Reaction of the group to the post, -1..=1.
         effect: f64,
     },
 }
@@ -155,50 +155,50 @@ impl Restore for PostSubject {
 /// The experience that a customer writes about.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Opinion {
-    /// Why the post is written.
+    /// Reason why the customer writes the post.
     pub cause: PostCause,
-    /// Problems of this customer today.
+    /// Problems that the customer has today.
     pub troubles: Troubles,
     /// The theme that matters most to the customer.
     pub theme: Theme,
-    /// Days subscribed.
+    /// Days since the subscription started.
     pub days_subscribed: u32,
-    /// Plan; `None` after an enterprise is lost.
+    /// Plan of the customer; `None` for a lost enterprise.
     pub plan: Option<Plan>,
-    /// Price in force, dollars a month and seat.
+    /// Current price, dollars per month and seat.
     pub price: f64,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: u32,
-    /// Days an issue of this customer has been open.
+    /// Days that the customer's issue has been open.
     pub waiting_days: u32,
-    /// Minutes the service was down today.
+    /// Downtime of the service today, in minutes.
     pub downtime_minutes: u32,
 }
 
-/// The reason for a post, the first that applies.
+/// The reason for a post. If several reasons apply, the first one is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostCause {
-    /// The service was slow.
+    /// The service was slow because of overload.
     Overload,
     /// The service was down.
     Outage,
-    /// A support issue is open.
+    /// A support issue of the customer is open.
     Issue,
-    /// The quota did not cover the demand.
+    /// The quota was below the customer's demand.
     Quota,
-    /// Satisfaction rose.
+    /// The customer's satisfaction rose.
     Improved,
-    /// Satisfaction fell.
+    /// The customer's satisfaction fell.
     Declined,
-    /// No particular reason.
+    /// The customer has no particular reason.
     General,
-    /// No plan was worth its price.
+    /// The customer cancelled because no plan was worth its price.
     Cancelled,
-    /// An enterprise left after a negotiation.
+    /// The enterprise left after a negotiation.
     Lost {
-        /// How the negotiation started.
+        /// Kind of the negotiation's thread.
         thread: ThreadKind,
-        /// Whether the player did not answer; otherwise the enterprise fell silent.
+        /// Whether the player did not answer. Otherwise, the enterprise did not reply.
         unanswered: bool,
     },
 }
@@ -243,28 +243,28 @@ impl Restore for PostCause {
     }
 }
 
-/// Problems of a customer today.
+/// Problems that a customer has today.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Troubles {
-    /// The service was slow.
+    /// Whether the service was slow.
     pub overload: bool,
-    /// The service was down.
+    /// Whether the service was down.
     pub outage: bool,
-    /// A support issue is open.
+    /// Whether a support issue of the customer is open.
     pub issue: bool,
-    /// The quota did not cover the demand.
+    /// Whether the quota was below the demand.
     pub quota: bool,
 }
 
 impl Troubles {
-    /// Returns the number of problems.
+    /// Returns the number of problems that are present.
     #[inline]
     pub fn count(&self) -> u32 {
         [self.overload, self.outage, self.issue, self.quota].into_iter().map(u32::from).sum()
     }
 }
 
-/// What matters to a customer: what an unhappy one lacks, or what a happy one values.
+/// The aspect of the product that a dissatisfied customer criticizes or a satisfied customer praises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Theme {
@@ -278,9 +278,9 @@ pub enum Theme {
     Service,
     /// Treatment by support.
     Support,
-    /// The quota.
+    /// The usage quota.
     Limits,
-    /// Ads inside the product.
+    /// In-app advertising.
     Ads,
     /// Recent improvements.
     Progress,
@@ -288,14 +288,14 @@ pub enum Theme {
     Habit,
 }
 
-/// A post of the player.
+/// A post that the player published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnPostMade {
-    /// Running number.
+    /// Number of the post.
     pub post: u32,
-    /// Its text.
+    /// Text of the post.
     pub content: String,
-    /// Number of the post that it replies to.
+    /// Number of the post to which the player replies.
     pub reply_to: Option<u32>,
 }
 
@@ -304,27 +304,27 @@ pub struct OwnPostMade {
 pub struct OwnPostSeen {
     /// Number of the post.
     pub post: u32,
-    /// How often it was seen.
+    /// Number of views of the post.
     pub views: u64,
-    /// Numbers of the comments.
+    /// Numbers of the comments on the post.
     pub comments: Vec<u32>,
 }
 
-/// Severity of an event as the press sees it.
+/// Severity of a competitor event that the press reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Below 0.03.
+    /// Gain in quality below 0.03.
     Minor,
-    /// Below 0.10.
+    /// Gain in quality from 0.03, below 0.10.
     Moderate,
-    /// Below 0.20.
+    /// Gain in quality from 0.10, below 0.20.
     Major,
-    /// Above.
+    /// Gain in quality of 0.20 or more.
     Transformative,
 }
 
 impl Severity {
-    /// Identifier as used in posts and tables.
+    /// Returns the identifier of the severity in posts and tables.
     pub fn id(self) -> &'static str {
         ["minor", "moderate", "major", "transformative"][self as usize]
     }

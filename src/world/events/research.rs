@@ -1,22 +1,22 @@
-//! Facts about research: R&D projects, studies of groups, attempts to discover one.
+//! Facts about research: R&D projects, market studies, and attempts to discover a group.
 
 use crate::canonical::canonical;
 use crate::identifiers::Group;
 
-/// One R&D project.
+/// An R&D project.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Project {
-    /// Tier, 1..=20.
+    /// Tier of the project, 1..=20.
     pub tier: u8,
     /// Number of the project within its tier, from 1.
     pub number: u32,
-    /// Day of the start.
+    /// Day on which the project was started.
     pub started_day: u32,
-    /// First day on which it is complete.
+    /// Day on which the project is completed.
     pub due_day: u32,
-    /// Quality it adds.
+    /// Quality that the project adds.
     pub boost: f64,
-    /// Day on which it was completed.
+    /// Day on which the project was completed; `None` for a project in progress.
     pub completed_day: Option<u32>,
 }
 
@@ -25,42 +25,42 @@ canonical! {
 }
 
 impl Project {
-    /// Identifier as stored in tables, for instance t3_1.
+    /// Returns the identifier of the project in tables, for instance `t3_1`.
     pub fn id(&self) -> String {
         format!("t{}_{}", self.tier, self.number)
     }
 }
 
-/// A study in progress.
+/// A market study in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Study {
-    /// Group.
+    /// The studied group.
     pub group: Group,
-    /// Target level, 2..=5.
+    /// Study level that the study reaches, 2..=5.
     pub target: u8,
-    /// Level of the group when the study was ordered.
+    /// Study level of the group when the study was bought.
     pub before: u8,
-    /// First day on which it is complete.
+    /// Day on which the study is completed.
     pub due_day: u32,
 }
 
 canonical! { Study { group, target, before, due_day } }
 
 impl Study {
-    /// Returns whether the study refreshes the values without raising the level.
+    /// Returns whether the study refreshes the estimates without raising the study level.
     pub fn is_refresh(&self) -> bool {
         self.target == self.before
     }
 }
 
-/// One attempt to discover a group.
+/// A paid attempt to discover a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attempt {
     /// Number of earlier attempts, including failed ones.
     pub earlier: u32,
-    /// Dollars paid.
+    /// Price of the attempt, dollars.
     pub cost: f64,
-    /// The group that was discovered.
+    /// The discovered group, or `None` if the attempt failed.
     pub found: Option<Group>,
 }
 
@@ -69,28 +69,28 @@ canonical! { Attempt { earlier, cost, found } }
 /// The player's knowledge of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knowledge {
-    /// Study level, 0 while undiscovered.
+    /// Study level of the group; 0 before its discovery.
     pub level: u8,
-    /// Day of discovery.
+    /// Day on which the group was discovered.
     pub discovered_day: Option<u32>,
-    /// Last day on which the level rose.
+    /// Last day on which the study level rose.
     pub last_research_day: Option<u32>,
-    /// Values that estimates are based on, once the group is known.
+    /// True values on which estimates are based; `None` for an unknown group.
     pub snapshot: Option<Snapshot>,
 }
 
 canonical! { Knowledge { level, discovered_day, last_research_day, snapshot } }
 
-/// The drifting values of a group on a day. They are hidden; estimates are based on them.
+/// The true values of a group on a day, on which estimates are based. Hidden from the player.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Snapshot {
-    /// Day.
+    /// Day of the snapshot.
     pub day: u32,
-    /// Mean budget, dollars a month.
+    /// Mean budget, dollars per month.
     pub c_max: f64,
-    /// Mean minimum quality.
+    /// Mean minimum quality in the group.
     pub q_min: f64,
-    /// Customers or accounts in the market.
+    /// Size of the group's market, in individuals or enterprises.
     pub market_cap: f64,
 }
 

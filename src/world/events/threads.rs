@@ -14,31 +14,31 @@ canonical_codes! {
     Sender { System, Customer, Agent }
 }
 
-/// How an enterprise thread started.
+/// Reason why a thread was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum ThreadKind {
-    /// An enterprise requests an offer.
+    /// An enterprise lead requests an offer.
     NewLead,
-    /// A customer requests the price of another plan.
+    /// A subscribed enterprise asks for a price of a different plan.
     PlanChange,
-    /// A customer threatens to leave.
+    /// A subscribed enterprise threatens to cancel.
     ChurnPrevention,
-    /// The player offers a customer other terms.
+    /// The player offers new terms to a subscribed enterprise.
     Renegotiation,
 }
 
 impl ThreadKind {
-    /// All kinds.
+    /// All kinds of threads.
     pub const ALL: [ThreadKind; 4] =
         [ThreadKind::NewLead, ThreadKind::PlanChange, ThreadKind::ChurnPrevention, ThreadKind::Renegotiation];
 
-    /// Returns the kind with this identifier; case-sensitive.
+    /// Returns the kind with this identifier, which is case-sensitive.
     pub fn parse(id: &str) -> Option<ThreadKind> {
         ThreadKind::ALL.into_iter().find(|kind| kind.id() == id)
     }
 
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the kind in tables.
     pub fn id(self) -> &'static str {
         match self {
             ThreadKind::NewLead => "new_lead",
@@ -53,7 +53,7 @@ impl ThreadKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Sender {
-    /// The system: opening and closing turns.
+    /// The system, which adds opening and closing turns.
     System,
     /// The enterprise.
     Customer,
@@ -62,7 +62,7 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Identifier as stored in tables.
+    /// Returns the identifier of the sender in tables.
     pub fn id(self) -> &'static str {
         match self {
             Sender::System => "system",
@@ -72,43 +72,43 @@ impl Sender {
     }
 }
 
-/// A plan at a price.
+/// A plan that is offered at a price.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Offering {
-    /// Plan.
+    /// The offered plan.
     pub plan: Plan,
-    /// Dollars a month and seat.
+    /// Price, dollars per month and seat.
     pub price: f64,
 }
 
 /// The content of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TurnContent {
-    /// Nothing: the turn only opens a thread.
+    /// No content. The turn only opens a thread.
     Opening,
-    /// The player's offerings, one to three.
+    /// One to three offerings of the player.
     Offer(Vec<Offering>),
-    /// The player ends the thread.
+    /// Rejection by the player, which ends the thread.
     Rejection,
-    /// A customer's price is too high for the quality it gets.
+    /// Threat to cancel, because the price is too high for the quality.
     Threat,
-    /// A customer requests the price of another plan.
+    /// Request for a price of a different plan.
     PlanChangeRequest {
-        /// The current plan.
+        /// Plan that the enterprise subscribes to.
         from: Plan,
-        /// The requested plan.
+        /// Plan that the enterprise requests.
         to: Plan,
     },
-    /// An enterprise names the price it would pay.
+    /// Counter-offer with the price that the enterprise asks.
     Counter {
-        /// The named price and its plan.
+        /// Asked price and its plan.
         asked: Offering,
-        /// Price of the offering that it answers.
+        /// Price of the offering to which the enterprise replies.
         offered: f64,
     },
-    /// An enterprise accepts an offering.
+    /// Acceptance of an offering by the enterprise.
     Acceptance(Offering),
-    /// The system records a deal.
+    /// Confirmation of a deal by the system.
     Closing(Offering),
 }
 
@@ -149,46 +149,46 @@ impl Restore for TurnContent {
 /// One turn of an enterprise thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreadTurn {
-    /// Running number over all threads.
+    /// Number of the turn among the turns of all threads.
     pub message: u32,
-    /// Running number of the thread.
+    /// Number of the thread.
     pub thread: u32,
     /// Customer number of the enterprise.
     pub customer: u32,
-    /// Its group.
+    /// Group of the enterprise.
     pub group: Group,
-    /// Profile attributes for the wording.
+    /// Profile attributes of the enterprise, for the wording of its message.
     pub persona: PersonaPicks,
-    /// How the thread started.
+    /// Reason why the thread was opened.
     pub kind: ThreadKind,
     /// Number of the turn within the thread, from 0.
     pub number: u32,
     /// Sender of the turn.
     pub sender: Sender,
-    /// Whole seats; 1 on turns that the player adds to a thread.
+    /// Number of whole seats; 1 in turns that the player adds to a thread.
     pub seats: u32,
-    /// The content.
+    /// Content of the turn.
     pub content: TurnContent,
 }
 
-/// A closed deal; the new terms of the subscription follow as changed terms.
+/// A deal with an enterprise. The new terms of the subscription are recorded as [`TermsChanged`](super::TermsChanged).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DealClosed {
     /// Customer number of the enterprise.
     pub customer: u32,
-    /// How the thread started.
+    /// Reason why the thread was opened.
     pub kind: ThreadKind,
-    /// Whether a lead became a subscriber.
+    /// Whether the deal made a lead a subscriber.
     pub activated: bool,
-    /// Plan.
+    /// Plan of the deal.
     pub plan: Plan,
-    /// Dollars a month and seat.
+    /// Price of the deal, dollars per month and seat.
     pub price: f64,
-    /// Turns of the player in the thread.
+    /// Number of the player's turns in the thread.
     pub agent_turns: u32,
     /// Days since the thread was opened.
     pub days: u32,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: u32,
     /// Last day of the agreed month; `None` if the enterprise was already lost.
     pub contract_end_day: Option<u32>,

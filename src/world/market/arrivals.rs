@@ -1,4 +1,4 @@
-//! Turns the leads of a day into customers, prospects, or lost leads (docs/mechanics/market/arrivals.md).
+//! Turns the leads of a day into subscribers, enterprise leads or lost leads (docs/mechanics/market/arrivals.md).
 
 use rayon::prelude::*;
 
@@ -22,22 +22,22 @@ use crate::random::{Part, Stream, Word};
 use crate::retention::renewal::ongoing_discount;
 use crate::retention::required_at_price;
 
-/// Outcomes of the leads of a day.
+/// Number of leads of a day, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadCounts {
-    /// All leads.
+    /// Number of all leads.
     pub all: u32,
-    /// Individuals.
+    /// Number of individual leads.
     pub individuals: u32,
-    /// Enterprises that opened a thread.
+    /// Number of enterprise leads that opened a thread.
     pub companies: u32,
-    /// Individuals who signed up.
+    /// Number of individuals who signed up.
     pub subscribed: u32,
 }
 
-/// Shared inputs of the arrivals of a day.
+/// Inputs that all arrivals of a day share.
 pub struct ArrivalContext<'a> {
-    /// The day.
+    /// Context of the day.
     pub day: &'a DayContext<'a>,
     /// The market, including today's changes.
     pub market: &'a Market,
@@ -45,13 +45,13 @@ pub struct ArrivalContext<'a> {
 
 struct Lead {
     traits: Traits,
-    /// The curve including today's expectations, counted once.
+    /// Participation curve of the lead, including today's expectations once.
     curve: Curve,
     source: Source,
     outcome: LeadOutcome,
 }
 
-/// Terms of a new subscription, dollars a month.
+/// Prices and discount of a new subscription, dollars per month.
 #[derive(Clone, Copy)]
 struct InitialTerms {
     listed_price: f64,
@@ -66,7 +66,7 @@ enum LeadOutcome {
     GatedOut,
 }
 
-/// Returns the factors of today's leads by group; undiscovered groups have none.
+/// Returns the factors of today's leads by group. The factors of undiscovered groups are 0.
 pub fn expected_leads(arrivals: &ArrivalContext<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
     let (market, context) = (arrivals.market, lead_context(arrivals, subscribers));
     ByGroup::from_fn(|group| {
@@ -74,7 +74,7 @@ pub fn expected_leads(arrivals: &ArrivalContext<'_>, subscribers: &ByGroup<u32>)
     })
 }
 
-/// Returns the inputs of the lead factors of the day.
+/// Returns the inputs from which the day's lead factors are computed.
 pub fn lead_context<'a>(arrivals: &ArrivalContext<'a>, subscribers: &'a ByGroup<u32>) -> LeadContext<'a> {
     let &ArrivalContext { day: &DayContext { morning, settings, params, .. }, market } = arrivals;
     LeadContext {
@@ -87,8 +87,8 @@ pub fn lead_context<'a>(arrivals: &ArrivalContext<'a>, subscribers: &'a ByGroup<
     }
 }
 
-/// Draws and evaluates the leads of the day. Subscriptions are numbered subscribers first, then lost leads,
-/// then enterprises, each in the order of their customers.
+/// Draws and evaluates the leads of the day. Subscriptions are numbered in this order: subscribers, lost leads,
+/// enterprises, each by customer number.
 pub fn process_arrivals(
     arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
@@ -123,8 +123,8 @@ pub fn process_arrivals(
     counts
 }
 
-/// Leads whose streams are opened together: a multiple of the vector lanes, and small enough to distribute
-/// among threads.
+/// Number of leads whose random streams are opened together: a multiple of the SIMD lanes, and small enough to
+/// distribute the work among threads.
 const LEADS_PER_BATCH: u32 = 64;
 
 fn evaluate_leads(
@@ -163,26 +163,26 @@ fn plan_offers(arrivals: &ArrivalContext<'_>, group: Group) -> ByPlan<PlanOffer>
     })
 }
 
-/// The decision of an individual lead and its inputs.
+/// The decision of an individual lead, with the inputs of the decision.
 #[derive(Debug, Clone, Copy)]
 pub struct LeadEvaluation {
-    /// Plans on offer.
+    /// Plans that are offered to the lead.
     pub offers: ByPlan<PlanOffer>,
-    /// Discount for its group and channel, dollars a month.
+    /// Discount for the lead's group and channel, dollars per month.
     pub discount: f64,
-    /// Demand that quotas are compared with.
+    /// Demand of the lead, which is compared with quotas.
     pub demand: f64,
     /// The lead's curve including today's expectations.
     pub curve: Curve,
-    /// The plan that it prefers.
+    /// The plan that the lead picks.
     pub choice: PlanChoice,
-    /// Factor by which it misjudges quality.
+    /// Factor by which the lead misjudges quality.
     pub noise: f64,
 }
 
 impl LeadEvaluation {
-    /// Evaluates offers under a discount for leads, dollars a month, with a curve and a demand that quotas
-    /// are compared with.
+    /// Evaluates offers for a lead with a curve and a demand, which is compared with quotas. `promotion` is the
+    /// discount for leads, dollars per month.
     #[inline]
     pub fn new(
         offers: &ByPlan<PlanOffer>,
@@ -209,7 +209,7 @@ impl LeadEvaluation {
     }
 }
 
-/// Evaluates the n-th customer of a group of individuals on its day of arrival.
+/// Evaluates the lead with running number `n` of an individual group on the day of arrival.
 pub fn evaluate_individual(
     arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
@@ -251,7 +251,7 @@ fn curve_and_demand(arrivals: &ArrivalContext<'_>, group: Group, traits: &Traits
     curve_and_demand_with(morning.expectations[group], traits, params)
 }
 
-/// Returns the curve of a lead including the market's expectations, and the demand that quotas are compared with.
+/// Returns the curve of a lead, including the market's expectations, and the demand that is compared with quotas.
 pub fn curve_and_demand_with(expectation: Expectation, traits: &Traits, params: &Params) -> (Curve, f64) {
     let floor = params.customer_generation.c_max_min;
     let curve = traits.curve.with_drift(expectation.quality, expectation.c_max, floor);
@@ -309,7 +309,7 @@ fn record_arrivals(leads_by_run: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCo
     }
 }
 
-/// Records one row per funded pair of a known group and a channel with a yield. Channels are in channel
+/// Records the leads of every funded pair of known group and channel with a yield. Channels are in channel
 /// order, groups in the order in which the player listed them.
 fn record_channels(
     arrivals: &ArrivalContext<'_>,
@@ -330,7 +330,7 @@ fn record_channels(
     }
 }
 
-/// Returns the individuals among the arrivals with their customer numbers.
+/// Returns the individual leads, each with its group, running number and customer number.
 fn individual_leads(leads_by_run: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
     leads_by_run
         .iter()
@@ -338,7 +338,7 @@ fn individual_leads(leads_by_run: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<I
         .flat_map(|(run, leads)| run.numbers().map(|(_, customer)| customer).zip(leads))
 }
 
-/// Activates those who sign up, with subscription numbers from `first`.
+/// Activates the individuals who sign up. Subscription numbers start at `first`.
 fn activate_subscribers(
     arrivals: &ArrivalContext<'_>,
     leads_by_run: &[(ArrivalRun, Vec<Lead>)],
@@ -366,7 +366,7 @@ fn activate_subscribers(
     }
 }
 
-/// Records the subscriptions of individuals, numbered from `first`: subscribers, then lost leads.
+/// Records the subscription rows of individuals: subscribers, then lost leads. Subscription numbers start at `first`.
 fn record_openings(
     arrivals: &ArrivalContext<'_>,
     leads_by_run: &[(ArrivalRun, Vec<Lead>)],
@@ -416,7 +416,7 @@ fn initial_terms(
     InitialTerms { listed_price, promotion, effective_price }
 }
 
-/// Returns the stored curve. If drift is counted once, it applies to the decision but is not stored.
+/// Returns the curve that the subscriber's row stores. If drift is counted once, the curve is stored without drift.
 fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
     match params.fidelity.drift_counted {
         DriftCounted::EveryRead => *drifted,
@@ -424,7 +424,7 @@ fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
     }
 }
 
-/// Returns the row of a lead before it has agreed to anything.
+/// Returns the row of a lead that has not agreed to a price yet.
 fn new_subscriber_row(
     arrivals: &ArrivalContext<'_>,
     n: u32,
@@ -455,7 +455,7 @@ fn new_subscriber_row(
         promotion: 0.0,
         effective_price: 0.0,
         effective_c_max: stored.c_max,
-        // Drawn with the first bill or deal.
+        // The usage rate is drawn with the first bill or deal.
         usage_rate: 0.0,
         period_usage: 0,
         satisfaction: params.initial.customer_satisfaction,

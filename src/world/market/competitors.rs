@@ -11,24 +11,24 @@ use crate::product::Product;
 use crate::random::{Part, Stream, Streams};
 use crate::series::RecordedEvent;
 
-/// One competitor event.
+/// A competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// Day on which it happened.
+    /// Day of the event.
     pub day: u32,
-    /// Size that was applied.
+    /// Gain in quality that was applied.
     pub boost: f64,
-    /// Drawn size, including growth over the run.
+    /// Drawn gain in quality, scaled by the growth over the run.
     pub sampled: f64,
-    /// Share of the player's shared bank that competitors could copy.
+    /// Share of the player's shared quality bank that competitors could copy.
     pub u: f64,
-    /// Whether the copied size exceeded the drawn one.
+    /// Whether the copied gain was larger than the drawn gain and was applied.
     pub by_feedback: bool,
 }
 
 canonical! { Event { day, boost, sampled, u, by_feedback } }
 
-/// Returns the severity of a boost.
+/// Returns the severity of a gain in quality.
 pub fn severity(boost: f64, competitor: &Competitor) -> Severity {
     match boost {
         _ if boost < competitor.competitor_severity_minor_max => Severity::Minor,
@@ -46,7 +46,7 @@ fn can_occur(day: u32, total_days: u32, params: &Params) -> bool {
     !competitor.competitor_events_disabled && !too_early && !too_late
 }
 
-/// Returns the probability of an event on a day, 0 if none is possible.
+/// Returns the probability of an event on a day, or 0 if no event is possible.
 pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
     let competitor = &params.competitor;
     if !can_occur(day, total_days, params) {
@@ -62,7 +62,7 @@ pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, par
     if gap < least { 0.0 } else { 1.0 / mean }
 }
 
-/// Returns the growth of sizes over the run: from 1 to 4 along a ramp that ends 30 days before the last day.
+/// Returns the factor by which events grow over the run. The factor rises from 1 to 4 until 30 days before the last day.
 pub fn magnitude_scale(day: u32, total_days: u32, competitor: &Competitor) -> f64 {
     let start = f64::from(competitor.magnitude_ramp_start_day);
     let end = (f64::from(total_days) - f64::from(competitor.competitor_event_late_cutoff_days))
@@ -73,14 +73,14 @@ pub fn magnitude_scale(day: u32, total_days: u32, competitor: &Competitor) -> f6
     least + (most - least) * ramp
 }
 
-/// Returns the size of an event from a log-normal draw: clamped, then scaled.
+/// Returns the gain in quality of an event: a log-normal draw that is clamped, then scaled by the growth over the run.
 pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, competitor: &Competitor) -> f64 {
     log_normal.clamp(competitor.competitor_event_boost_min, competitor.competitor_event_boost_max)
         * magnitude_scale(day, total_days, competitor)
 }
 
-/// Resolves an event: the larger of the sampled size and the share `u` of the bank applies, and the copied
-/// part leaves the bank.
+/// Resolves an event. The larger of the sampled gain and the share `u` of the quality bank applies. Copied quality is
+/// removed from the bank.
 pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Params) -> Event {
     let feedback = u * *bank;
     let by_feedback = (feedback > sampled) != params.has_fault(Fault::SmallerRivalMove);
@@ -90,21 +90,21 @@ pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Pa
     Event { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
 }
 
-/// A competitor's move on a day, before any change by either side.
+/// A competitor's move on a day, before the move is applied.
 #[derive(Debug, Clone)]
 pub struct CompetitorMove {
-    /// The day.
+    /// Day of the move.
     pub day: u32,
-    /// Drawn size, including growth over the run.
+    /// Drawn gain in quality, scaled by the growth over the run.
     pub sampled: f64,
-    /// Share of the shared bank that can be copied.
+    /// Share of the player's shared quality bank that competitors can copy.
     pub u: f64,
-    /// The rest of the stream, from which the shares of the targeted banks are drawn.
+    /// The rest of the random stream, from which the copied shares of the targeted quality banks are drawn.
     remaining_stream: Stream,
 }
 
 impl CompetitorMove {
-    /// Returns the copied share of each non-empty targeted bank, in alphabetical order of the groups.
+    /// Returns the copied share of each non-empty targeted quality bank, in alphabetical order of group.
     pub fn copied_group_shares(
         &self,
         group_bank: &ByGroup<f64>,
@@ -121,7 +121,7 @@ impl CompetitorMove {
     }
 }
 
-/// Returns the move on a day after the last event, if there is one.
+/// Returns the competitor move on a day, or `None` if there is no move. Depends on the day of the last event.
 pub fn move_on_day(
     day: u32,
     total_days: u32,
@@ -145,8 +145,8 @@ pub fn move_on_day(
     })
 }
 
-/// Returns the next move after a day. It is already determined: draws are keyed by day, and possible days
-/// follow from the last event.
+/// Returns the next move after a day. The next move is already determined, because draws depend only on the day and
+/// possible days depend only on the last event.
 pub fn next_move(
     after: u32,
     total_days: u32,
@@ -157,7 +157,7 @@ pub fn next_move(
     (after + 1..=total_days).find_map(|day| move_on_day(day, total_days, last_event, params, streams))
 }
 
-/// Applies the move of the day, if there is one.
+/// Applies the competitor move of the day, if any.
 pub fn apply_move(
     day: u32,
     total_days: u32,
@@ -178,7 +178,7 @@ pub fn apply_move(
     events.push(event);
 }
 
-/// Returns today's event, if any: its size before growth over the run, and the share of the bank.
+/// Draws today's event, if any: its gain in quality before the growth over the run, and the share of the quality bank.
 pub fn draw_event(chance: f64, competitor: &Competitor, stream: &mut Stream) -> Option<RecordedEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;
@@ -189,7 +189,7 @@ pub fn draw_event(chance: f64, competitor: &Competitor, stream: &mut Stream) -> 
     Some(RecordedEvent { size, u })
 }
 
-/// Raises the expectations of all groups, and those of reactive groups further.
+/// Raises the expectations of all groups, and additionally the expectations of reactive groups.
 pub fn raise_expectations(boost: f64, drift: &mut DriftTotals, params: &Params) {
     drift.global_quality += boost;
     for group in Group::all() {
@@ -197,7 +197,7 @@ pub fn raise_expectations(boost: f64, drift: &mut DriftTotals, params: &Params) 
     }
 }
 
-/// Copies a share `v` of a group's targeted bank, which raises that group's expectations.
+/// Copies a share `v` of a group's targeted quality bank, which raises the group's expectations.
 pub fn copy_group_bank(
     group: Group,
     v: f64,
@@ -222,7 +222,7 @@ mod tests {
         Group::parse(id).expect("a group")
     }
 
-    /// An event with given draws: log-normal size and the fraction of the range of u.
+    /// Resolves an event with given draws: the log-normal gain and the fraction of the range of `u`.
     fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (Event, f64, Severity) {
         let params = Params::bundled();
         let competitor = &params.competitor;

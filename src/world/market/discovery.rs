@@ -7,8 +7,8 @@ use crate::identifiers::Group;
 use crate::params::Params;
 use crate::random::{Part, Stream, Streams};
 
-/// Returns the outcome of an attempt: success with a fixed probability, then any undiscovered group with
-/// equal probability.
+/// Draws the outcome of an attempt. The attempt succeeds with probability `chance` and then discovers each
+/// undiscovered group with equal probability.
 pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) -> Option<Group> {
     if undiscovered.is_empty() || !stream.bernoulli(chance) {
         return None;
@@ -17,12 +17,13 @@ pub fn draw_attempt(undiscovered: &[Group], chance: f64, stream: &mut Stream) ->
 }
 
 impl Market {
-    /// Returns the undiscovered groups: individuals first, each segment in numeric order.
+    /// Returns the undiscovered groups in group order: individuals, then enterprises.
     pub fn undiscovered(&self) -> impl Iterator<Item = Group> + '_ {
         Group::all().filter(|group| !self.is_known(*group))
     }
 
-    /// Returns the outcome of an attempt made now. It depends only on the seed and the number of earlier attempts.
+    /// Returns the outcome of an attempt that is made now. The outcome depends on the seed, the number of earlier
+    /// attempts and the undiscovered groups.
     pub fn next_attempt(&self, params: &Params, streams: &Streams) -> Attempt {
         let research = &params.market_research;
         let undiscovered: Vec<Group> = self.undiscovered().collect();
@@ -35,7 +36,7 @@ impl Market {
         Attempt { earlier: self.attempts, cost: research.discovery_cost_level_1, found }
     }
 
-    /// Counts an attempt and marks the group it found as known.
+    /// Counts an attempt and marks the discovered group as known.
     pub fn record_attempt(&mut self, attempt: &Attempt, day: u32, params: &Params) {
         self.attempts += 1;
         if let Some(group) = attempt.found {
@@ -48,7 +49,7 @@ impl Market {
     }
 }
 
-/// Returns the snapshot of an initial group on day 0.
+/// Returns the day 0 snapshot of a group, or `None` if the group is not known on day 0.
 pub(super) fn initial_snapshot(group: Group, params: &Params) -> Option<Snapshot> {
     group.is_initially_known().then(|| Snapshot::take_snapshot(group, 0, &DriftTotals::default(), params))
 }
@@ -57,7 +58,7 @@ pub(super) fn initial_snapshot(group: Group, params: &Params) -> Option<Snapshot
 mod tests {
     use super::*;
 
-    /// Groups that consecutive attempts find, with `pause` days between attempts.
+    /// Returns the groups that consecutive attempts discover, with `pause` days between attempts.
     fn discovered_groups(params: &Params, seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
         let streams = Streams::new(seed);
         let mut market = Market::initial(params);
@@ -100,7 +101,7 @@ mod tests {
             }
         }
         assert!((f64::from(successes) / 20_000.0 - 0.3).abs() < 0.013, "{successes}");
-        // 1,200 first finds over 20 groups: 60 each, with a standard deviation of 7.6.
+        // 1,200 first discoveries among 20 groups: 60 per group on average, with a standard deviation of 7.6.
         assert!(first[..6].iter().all(|count| *count == 0));
         assert!(first[6..].iter().all(|count| (25..=95).contains(count)), "{first:?}");
     }

@@ -1,4 +1,4 @@
-//! The economy: a hidden index, its delayed publication, and its effects on groups (docs/mechanics/market/economy.md).
+//! The economy: the hidden daily PMI, its delayed publication, and its effects on groups (docs/mechanics/market/economy.md).
 
 use crate::canonical::canonical;
 use crate::events::{Facts, Notice, Phase, Reading, Trend};
@@ -11,15 +11,15 @@ use novamind_base::formatting::round_to;
 /// The state of the economy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Economy {
-    /// Today's index, hidden.
+    /// Today's PMI, hidden from the player.
     pub pmi: f64,
-    /// Whether a first day has passed; before that, every multiplier is 1.
+    /// Whether the first day has been simulated. Before the first day, every multiplier is 1.
     pub started: bool,
-    /// Daily values since the last measurement.
+    /// Daily PMI values since the last measurement.
     history: Vec<f64>,
     /// Day of the last measurement.
     last_measurement: Option<u32>,
-    /// Measured but not yet published readings.
+    /// Readings that are measured but not yet published.
     waiting: Vec<Reading>,
     /// The newest published reading.
     pub published: Option<Reading>,
@@ -27,20 +27,20 @@ pub struct Economy {
 
 canonical! { Economy { pmi, started, history, last_measurement, waiting, published } }
 
-/// Returns the value to which the cycle pulls the index: mean + amplitude sin(2 pi day / period + phase).
+/// Returns the value towards which the economic cycle pulls the PMI: mean + amplitude sin(2 pi day / period + phase).
 pub fn cycle_target(day: u32, phase: f64, economy: &MacroEconomy) -> f64 {
     let turn = 2.0 * std::f64::consts::PI * f64::from(day) / f64::from(economy.macro_pmi_cycle_period_days);
     economy.macro_pmi_long_run_mean + economy.macro_pmi_cycle_amplitude * libm::sin(turn + phase)
 }
 
-/// Returns the index after one day; `z` is a standard normal draw.
+/// Returns the PMI of the next day. `z` is a standard normal draw.
 pub fn next_pmi(pmi: f64, target: f64, z: f64, economy: &MacroEconomy) -> f64 {
     let moved =
         pmi + economy.macro_pmi_mean_reversion_rate * (target - pmi) + economy.macro_pmi_daily_volatility * z;
     moved.clamp(economy.macro_pmi_floor, economy.macro_pmi_ceiling)
 }
 
-/// Returns the factor of a sensitivity at an index: max(0.5, 1 + beta (PMI - 50) / 50).
+/// Returns the multiplier for a sensitivity `beta` at a PMI: max(0.5, 1 + beta (PMI - 50) / 50).
 pub fn macro_multiplier(beta: f64, pmi: f64, economy: &MacroEconomy) -> f64 {
     (economy.multiplier_neutral + beta * (pmi - economy.neutral_pmi) / economy.pmi_scale)
         .max(economy.multiplier_min)
@@ -49,9 +49,9 @@ pub fn macro_multiplier(beta: f64, pmi: f64, economy: &MacroEconomy) -> f64 {
 /// A figure that the economy affects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
-    /// Number of leads.
+    /// Number of leads of a group.
     LeadGeneration,
-    /// Budget at a billing decision.
+    /// Budget of a customer at a billing decision.
     WillingnessToPay,
     /// Reply speed of a new enterprise.
     DealVelocity,
@@ -72,13 +72,13 @@ impl Economy {
         }
     }
 
-    /// Returns the newest measurement, published or not.
+    /// Returns the newest reading, even if it is not published yet.
     pub fn latest_measurement(&self) -> Option<&Reading> {
         self.waiting.last().or(self.published.as_ref())
     }
 
-    /// Returns the multiplier of a group in a dimension at the current index; 1 before the first day or if
-    /// the group does not react.
+    /// Returns the multiplier of a group in a dimension at the current PMI. The multiplier is 1 before the first day,
+    /// or if the group does not react.
     pub fn multiplier(&self, group: Group, dimension: Dimension, params: &Params) -> f64 {
         let beta = &params.group(group).macro_beta;
         let beta = match dimension {
@@ -105,7 +105,7 @@ fn cycle_phase(economy: &MacroEconomy, streams: &Streams) -> f64 {
     }
 }
 
-/// Returns the index of a day from that of the day before.
+/// Returns the PMI of a day, computed from the PMI of the day before.
 pub fn index_on_day(day: u32, yesterday: f64, params: &Params, streams: &Streams) -> f64 {
     let economy = &params.economy;
     let drawn = || {
@@ -116,8 +116,8 @@ pub fn index_on_day(day: u32, yesterday: f64, params: &Params, streams: &Streams
     params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn)
 }
 
-/// Advances the index unless it is fixed, takes a measurement when a month is complete, and publishes
-/// readings after their delay.
+/// Simulates the economy on one day. Updates the PMI unless it is fixed, measures a reading when a month is complete,
+/// and publishes readings after the publication lag.
 pub fn step(
     day: u32,
     economy: &mut Economy,
@@ -166,7 +166,7 @@ fn publish(day: u32, economy: &mut Economy, macro_economy: &MacroEconomy, facts:
 pub(crate) mod tests {
     use super::*;
 
-    /// An economy that has started, at a given index.
+    /// Returns an economy that has started and has the given PMI.
     pub(crate) fn economy_at(pmi: f64) -> Economy {
         Economy { pmi, started: true, ..Economy::initial(&Params::bundled()) }
     }

@@ -1,4 +1,4 @@
-//! Insights: estimates of a group, computed from true values and a noise that decreases with the study level
+//! Estimates of a group, computed from true values and an error that decreases with the study level
 //! (docs/mechanics/market/discovery.md).
 
 use super::Market;
@@ -11,7 +11,7 @@ use crate::random::{NumpyStream, Part, Streams};
 use novamind_base::formatting::round_to;
 
 impl Snapshot {
-    /// Takes a snapshot of a group on a day, including drift of the whole group but not of single customers.
+    /// Takes a snapshot of a group's true values on a day. Includes the drift of the group but not of individual customers.
     pub fn take_snapshot(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
         let group_params = params.group(group);
         let moved = drift.expectation(group);
@@ -29,20 +29,20 @@ impl Snapshot {
     }
 }
 
-/// An estimated value; each has its own noise.
+/// A value of a group that is estimated with a separate error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EstimatedField {
-    /// Budget.
+    /// Mean budget.
     WillingnessToPay,
-    /// Units a day.
+    /// Mean usage, units per day.
     UsageVolume,
-    /// Minimum quality.
+    /// Mean minimum quality.
     QualityFloor,
-    /// Size of the market.
+    /// Size of the group's market.
     MarketCap,
-    /// Growth of the market.
+    /// Growth of the group's market.
     GrowthRate,
-    /// Aversion to long contracts.
+    /// Mean aversion to long contracts.
     LockinAversion,
     /// Minimum seats of an enterprise.
     SeatMinimum,
@@ -56,7 +56,7 @@ pub enum EstimatedField {
     ReferralTo(Group),
     /// Leads that another group brings to this group.
     ReferralFrom(Group),
-    /// Leads that the group brings to itself; never shown, but the release makes the draw.
+    /// Leads that the group brings to itself. Never shown, but the released simulator makes this draw.
     ReferralToItself,
     /// Weight of the group's reputation for another group.
     ReputationTo(Group),
@@ -91,42 +91,42 @@ impl EstimatedField {
 /// Estimates of a group, rounded for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Insights {
-    /// Group.
+    /// The group that is estimated.
     pub group: Group,
-    /// Study level, 1..=5.
+    /// Study level of the estimates, 1..=5.
     pub level: u8,
-    /// Maximum relative error at that level.
+    /// Maximum relative error at the study level.
     pub noise: f64,
-    /// Budget, dollars a month; per seat for enterprises.
+    /// Budget, dollars per month; per seat for enterprises.
     pub willingness_to_pay: f64,
-    /// Units a day; per seat for enterprises.
+    /// Usage, units per day; per seat for enterprises.
     pub usage_volume: f64,
-    /// Minimum quality.
+    /// Estimated minimum quality.
     pub quality_floor: f64,
-    /// Customers or accounts in the market, at least 1.
+    /// Size of the group's market in individuals or enterprises, at least 1.
     pub market_cap: u64,
-    /// Growth of the market a year, at least 0.
+    /// Annual growth of the group's market, at least 0.
     pub growth_rate: f64,
-    /// Aversion to long contracts, at least 0.
+    /// Estimated aversion to long contracts, at least 0.
     pub lockin_aversion: f64,
-    /// Estimates that only enterprises have.
+    /// Estimates that exist only for groups of enterprises.
     pub enterprise: Option<EnterpriseInsights>,
-    /// Leads a day and subscriber that the group brings to others, in descending order.
+    /// Leads per day and subscriber that the group brings to other groups, in descending order.
     pub referrals_to: Vec<(Group, f64)>,
-    /// Leads a day and subscriber that others bring to the group, in descending order.
+    /// Leads per day and subscriber that other groups bring to the group, in descending order.
     pub referrals_from: Vec<(Group, f64)>,
-    /// Weights of the group's reputation for others, in descending order.
+    /// Weights of the group's reputation for other groups, in descending order.
     pub reputation_to: Vec<(Group, f64)>,
-    /// Weights of others' reputation for the group, in descending order.
+    /// Weights of other groups' reputation for the group, in descending order.
     pub reputation_from: Vec<(Group, f64)>,
 }
 
-/// Estimates of a group of enterprises.
+/// Estimates that exist only for groups of enterprises.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnterpriseInsights {
-    /// Minimum seats, at least 1.
+    /// Minimum number of seats of an enterprise, at least 1.
     pub min_seats: u64,
-    /// Maximum seats, at least the minimum.
+    /// Maximum number of seats of an enterprise, at least `min_seats`.
     pub max_seats: u64,
     /// Maximum turns of an enterprise, at least 1.
     pub decision_rounds: u64,
@@ -134,11 +134,11 @@ pub struct EnterpriseInsights {
     pub response_days: f64,
 }
 
-/// Returns the estimates of a known group at its current level; equal for every call and after a refresh.
-/// Returns `None` for an undiscovered group.
+/// Returns the estimates of a group at its current study level, or `None` for an undiscovered group. The errors are
+/// the same for every call and after a refresh.
 ///
-/// With independent noise, they do not depend on other discoveries. In the release, values are drawn from one
-/// sequence, so that another known group shifts the draws of the links.
+/// With independent errors, the estimates do not depend on other discoveries. In the released simulator, all errors
+/// are drawn from one sequence, so each additional known group shifts the draws of the links between groups.
 pub fn insights(group: Group, market: &Market, params: &Params, streams: &Streams) -> Option<Insights> {
     match params.fidelity.insight_noise {
         InsightNoise::Independent => {
@@ -155,15 +155,15 @@ pub fn insights(group: Group, market: &Market, params: &Params, streams: &Stream
     }
 }
 
-/// Returns the seed of a group's errors in the release: the first four characters of its name and `_insights`
-/// as a number, modulo 2^31. `D_S01` to `D_S09` have the same one.
+/// Returns the seed of a group's errors in the released simulator: the first four characters of `<group>_insights` as
+/// a number, modulo 2^31. `D_S01` to `D_S09` have the same seed.
 fn release_seed(group: Group) -> u32 {
     let name = format!("{}_insights", group.id());
     let letters = name.bytes().take(4).enumerate();
     letters.fold(0, |seed, (at, letter)| seed | u32::from(letter) << (8 * at)) & 0x7fff_ffff
 }
 
-/// Returns estimates with given noise. `draw` returns z in [-1, 1) for each field, in the order of the release.
+/// Returns estimates with given errors. `draw` returns z in [-1, 1) for each field, in the order of the released simulator.
 fn insights_with(
     group: Group,
     market: &Market,
@@ -261,7 +261,7 @@ fn truncate_to_at_least_one(value: f64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Estimates with the errors of the release.
+    /// Returns estimates with the errors of the released simulator.
     fn estimates(id: &str, level: u8, day: u32) -> Insights {
         let mut params = Params::bundled();
         params.fidelity.insight_noise = InsightNoise::Release;
@@ -393,13 +393,13 @@ mod tests {
         let first = estimates(&market);
         assert_eq!(first, estimates(&market));
         assert_ne!(first, insights(s1, &market, &params, &Streams::new(43)).expect("S1 is known"));
-        // A group that is discovered later does not change earlier estimates.
+        // The discovery of another group does not change earlier estimates.
         let found = Group::parse("D_S05").expect("a group");
         market.knowledge[found].level = 1;
         let more = estimates(&market);
         assert_eq!(more.willingness_to_pay, first.willingness_to_pay);
         assert!(first.reputation_to.iter().all(|link| more.reputation_to.contains(link)));
-        // Two levels do not reveal the exact value, because their draws are not proportional.
+        // Estimates at two levels do not reveal the true value, because their draws are not proportional.
         market.knowledge[s1].level = 2;
         let truth = params.group(s1).c_max_mean;
         let z = |value: f64, noise: f64| (value / truth - 1.0) / noise;

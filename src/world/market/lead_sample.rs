@@ -1,4 +1,4 @@
-//! A sample of a group's leads and their choices, computed by the functions that decide on real arrivals
+//! A sample of a group's leads and their choices, computed by the same functions as the simulation
 //! (docs/mechanics/customers/curve-explorer.md).
 
 use super::arrivals::{LeadEvaluation, curve_and_demand_with};
@@ -10,7 +10,7 @@ use crate::identifiers::{ByPlan, Group};
 use crate::params::Params;
 use crate::random::{Part, Stream, Streams, Word};
 
-/// A lead: its curve, the demand it compares quotas with, and its error in judging quality.
+/// A sampled lead: its curve, the demand that is compared with quotas, and its error in judging quality.
 #[derive(Debug, Clone, Copy)]
 struct SampledLead {
     curve: Curve,
@@ -18,21 +18,21 @@ struct SampledLead {
     misjudgement: Word,
 }
 
-/// Leads of one group, drawn like arriving ones.
+/// A sample of leads of one group, drawn like real leads.
 #[derive(Debug, Clone)]
 pub struct LeadSample {
     group: Group,
     leads: Vec<SampledLead>,
 }
 
-/// The choices of the leads of a sample.
+/// The choices that the leads of a sample make among offers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeadChoices {
-    /// Number of leads, at least 1.
+    /// Number of leads in the sample, at least 1.
     pub leads: u32,
-    /// Individuals who sign up, by plan. Enterprises that request an offer are counted under A.
+    /// Number of individuals who sign up, by plan. Enterprises that request an offer are counted under plan A.
     pub choices_by_plan: ByPlan<u32>,
-    /// Sum of the first bills, dollars; 0 for enterprises, which negotiate their price.
+    /// Sum of the first bills, in dollars. 0 for enterprises, which negotiate their price.
     pub first_bills: f64,
 }
 
@@ -49,7 +49,7 @@ impl LeadChoices {
 }
 
 impl LeadSample {
-    /// Draws the first customers of a group from these streams, with the market's change of their curves.
+    /// Draws the first customers of a group from `streams`, with the market's drift of their curves.
     pub fn draw(
         group: Group,
         count: u32,
@@ -61,7 +61,7 @@ impl LeadSample {
         let traits = streams.keys(Part::Traits, &keys);
         let noises = streams.first_words(Part::LeadNoise, &keys);
         let lead = |(key, misjudgement)| {
-            // The speed of deals affects no trait that a first choice uses.
+            // The deal velocity (1.0) does not affect the traits that a lead's choice uses.
             let traits = draw_traits_from_stream(Stream::from_key(key), group, 1.0, params);
             let (curve, demand) = curve_and_demand_with(expectation, &traits, params);
             SampledLead { curve, demand, misjudgement }
@@ -69,9 +69,9 @@ impl LeadSample {
         LeadSample { group, leads: traits.into_iter().zip(noises).map(lead).collect() }
     }
 
-    /// Returns the choices of the leads for these offers. `promotion` is the discount for leads; `ongoing` is
-    /// the discount for subscribers of a plan, which lowers the first bill but does not affect the choice.
-    /// Both in dollars a month.
+    /// Returns the choices of the leads among `offers`. `promotion` is the discount for leads. `ongoing` is the
+    /// discount for subscribers of each plan, which lowers the first bill but does not affect the choice. Both
+    /// discounts are in dollars per month.
     pub fn choose(
         &self,
         offers: &ByPlan<PlanOffer>,
@@ -100,8 +100,8 @@ impl LeadSample {
         choices
     }
 
-    /// Returns the qualities that these shares (0..=1) of the leads require at most at a price, in the order
-    /// of the shares. Leads whose budget is below the price accept no quality and count as infinity.
+    /// Returns for each share (0..=1) the quality that is sufficient for this share of the leads at a price. The
+    /// required quality of leads whose budget is below the price is infinite.
     pub fn required_quality_quantiles(&self, price: f64, shares: &[f64], params: &Params) -> Vec<f64> {
         let required = |lead: &SampledLead| match price > lead.curve.c_max {
             true => f64::INFINITY,
@@ -113,7 +113,7 @@ impl LeadSample {
         shares.iter().map(|share| all[((share * last as f64).round() as usize).min(last)]).collect()
     }
 
-    /// Returns the budget that a share of the leads does not exceed, dollars a month.
+    /// Returns a quantile of the leads' budgets, dollars per month. `share` of the leads have at most this budget.
     pub fn budget_quantile(&self, share: f64) -> f64 {
         let mut budgets: Vec<f64> = self.leads.iter().map(|lead| lead.curve.c_max).collect();
         budgets.sort_by(f64::total_cmp);
@@ -141,7 +141,7 @@ mod tests {
         ByPlan([PlanOffer { price, quality, quota: 1e6 }; 3])
     }
 
-    /// Conversions of the first week in the simulator with the same price for all plans
+    /// The expected conversions are from the first week in the simulator, with the same price for all plans
     /// (configs/lessons/price-follows-quality.toml).
     #[test]
     fn conversions_match_the_simulator_within_two_points() {

@@ -1,4 +1,4 @@
-//! The number of leads of a group per day (docs/mechanics/market/leads.md).
+//! The daily number of leads of each group (docs/mechanics/market/leads.md).
 
 use super::Market;
 use super::economy::Dimension;
@@ -11,31 +11,31 @@ use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::params::{Leads, Params};
 use crate::settings::TargetedAds;
 
-/// Factors of a group's expected leads today; hidden from the player.
+/// Factors from which today's expected leads of a group are computed. Hidden from the player.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeadFactors {
-    /// Reputation of the group.
+    /// Factor of the reputation in the group.
     pub reputation: f64,
-    /// Unused share of the market.
+    /// Factor of market saturation, which decreases with the number of subscribers.
     pub saturation: f64,
-    /// Factor of the weekday times factor of the day of the month.
+    /// Calendar factor: weekday factor times day-of-month factor.
     pub calendar: f64,
-    /// The economy.
+    /// Factor of the economy.
     pub economy: f64,
-    /// Reactions to the company's posts.
+    /// Factor of the reactions to the company's posts.
     pub social: f64,
-    /// Demand surges.
+    /// Factor of demand surges.
     pub surge: f64,
-    /// Leads by paid channel before the factors.
+    /// Leads of each paid channel, before the factors are applied.
     pub paid: ByChannel<f64>,
-    /// Leads by word of mouth before the factors.
+    /// Leads by word of mouth, before the factors are applied.
     pub network: f64,
 }
 
 canonical! { LeadFactors { reputation, saturation, calendar, economy, social, surge, paid, network } }
 
 impl LeadFactors {
-    /// Returns the expected leads: lambda = R D C M A Z (X + Y).
+    /// Returns the expected number of leads: lambda = R D C M A Z (X + Y).
     pub fn expected(&self) -> f64 {
         let paid: f64 = self.paid.iter().sum();
         self.reputation
@@ -47,7 +47,8 @@ impl LeadFactors {
             * (paid + self.network)
     }
 
-    /// Picks the source of a lead from a uniform draw, in proportion to today's contributions, channels first.
+    /// Picks the source of a lead with a uniform draw `u`, in proportion to each source's share of today's leads. Paid
+    /// channels are first in the order.
     pub fn pick_source(&self, u: f64) -> Source {
         let total = self.paid.iter().sum::<f64>() + self.network;
         if total <= 0.0 {
@@ -63,18 +64,18 @@ impl LeadFactors {
         if self.network > 0.0 {
             return Source::Network;
         }
-        // Rounding moved the draw past the last contribution.
+        // Because of rounding, the draw can be above the sum of all contributions.
         let last = Channel::ALL.into_iter().rev().find(|channel| self.paid[*channel] > 0.0);
         last.map_or(Source::Organic, Source::from_channel)
     }
 }
 
-/// Returns the number of customers or accounts in a group's market on a day.
+/// Returns the size of a group's market on a day, in individuals or enterprises.
 pub fn market_cap(base: f64, annual_growth: f64, day: u32, leads: &Leads) -> f64 {
     base * (1.0 + annual_growth * f64::from(day) / leads.days_per_year)
 }
 
-/// Returns the saturation factor: max(0, 1 - (N / cap)^2); 1 for an empty market or a market of size 0.
+/// Returns the saturation factor: max(0, 1 - (N / cap)^2). The factor is 1 without subscribers or if the cap is 0.
 pub fn saturation(subscribers: u32, cap: f64, leads: &Leads) -> f64 {
     if subscribers == 0 || cap <= 0.0 {
         return 1.0;
@@ -83,28 +84,28 @@ pub fn saturation(subscribers: u32, cap: f64, leads: &Leads) -> f64 {
     (leads.saturation_base - taken).max(leads.saturation_floor)
 }
 
-/// Returns the leads from a budget before the factors: dollars times yield per 1,000 dollars.
+/// Returns the leads from an advertising budget before the factors are applied: dollars times leads per 1,000 dollars.
 pub fn paid_leads(spend: f64, leads_per_unit: f64, leads: &Leads) -> f64 {
     spend * leads_per_unit / leads.ad_spend_unit
 }
 
-/// Inputs of the leads of a day.
+/// Inputs from which the leads of a day are computed.
 pub struct LeadContext<'a> {
-    /// Day.
+    /// Number of the day.
     pub day: u32,
-    /// Factor of weekday and day of the month.
+    /// Calendar factor of weekday and day of the month.
     pub calendar: f64,
-    /// The market.
+    /// State of the market.
     pub market: &'a Market,
-    /// Active subscriptions after today's cancellations.
+    /// Active subscriptions of each group after today's cancellations.
     pub subscribers: &'a ByGroup<u32>,
-    /// Advertising budgets.
+    /// Advertising budgets by channel and group.
     pub ads: &'a TargetedAds,
-    /// Parameters.
+    /// Parameters of the run.
     pub params: &'a Params,
 }
 
-/// Returns the leads by word of mouth before the factors, by the group whose subscribers bring them.
+/// Returns the leads by word of mouth before the factors are applied, for each group whose subscribers bring leads.
 pub fn word_of_mouth<'a>(
     group: Group,
     context: &'a LeadContext<'_>,
@@ -120,7 +121,7 @@ pub fn word_of_mouth<'a>(
         .map(move |source| (source, f64::from(subscribers[source]) * rate(source)))
 }
 
-/// Returns the factors of a discovered group.
+/// Returns the lead factors of a discovered group.
 pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
     let &LeadContext { day, calendar, market, subscribers, ads, params } = context;
     let group_params = params.group(group);

@@ -23,25 +23,25 @@ use super::settings::Settings;
 /// The hidden state of the market.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Market {
-    /// Reputation by group.
+    /// Reputation of the company in each group.
     pub reputation: reputation::ReputationBook,
-    /// Accumulated change of expectations and budgets.
+    /// Accumulated drift of expectations and budgets.
     pub drift: drift::DriftTotals,
-    /// Leads a day per 1,000 dollars a day, by channel and group.
+    /// Channel yields: leads per 1,000 dollars of advertising, by channel and group.
     pub yields: ByChannel<ByGroup<f64>>,
-    /// The economy.
+    /// State of the economy.
     pub economy: economy::Economy,
-    /// Competitor events so far.
+    /// All past competitor events.
     pub competitors: Vec<competitors::Event>,
-    /// Demand surges drawn so far.
+    /// All demand surges that have been drawn.
     pub surges: Vec<surges::Surge>,
     /// The player's knowledge of each group.
     pub knowledge: ByGroup<Knowledge>,
-    /// Number of attempts to discover a group.
+    /// Number of past attempts to discover a group.
     pub attempts: u32,
-    /// Studies in progress, in the order in which they were ordered.
+    /// Market studies in progress, in the order of purchase.
     pub studies: Vec<Study>,
-    /// Social media.
+    /// State of social media.
     pub social: social::Social,
 }
 
@@ -50,7 +50,7 @@ canonical! {
 }
 
 impl Market {
-    /// Returns the market of day 0.
+    /// Returns the market on day 0.
     pub fn initial(params: &Params) -> Market {
         let knowledge = |group: Group| {
             let known = group.is_initially_known();
@@ -80,7 +80,7 @@ impl Market {
         }
     }
 
-    /// Returns whether a group is known.
+    /// Returns whether the player knows a group.
     pub fn is_known(&self, group: Group) -> bool {
         self.knowledge[group].level >= 1
     }

@@ -1,30 +1,29 @@
-//! Market studies of groups: paid at once and completed some days later (docs/mechanics/market/discovery.md).
+//! Market studies of groups, which are paid immediately and completed some days later (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use crate::events::{Facts, Notice, Snapshot, Study};
 use crate::identifiers::Group;
 use crate::params::{GroupResearch, Params};
 
-/// Returns the default target level of a study: the current level, but at least the lowest allowed.
+/// Returns the default target level of a study: the current level, but at least the lowest target level.
 pub fn default_target(level: u8, research: &GroupResearch) -> u8 {
     level.max(research.min_target_level)
 }
 
 impl Market {
-    /// Returns the study of a group that is in progress, if any.
+    /// Returns the study of a group that is in progress, or `None`.
     pub fn running_study(&self, group: Group) -> Option<&Study> {
         self.studies.iter().find(|study| study.group == group)
     }
 
-    /// Returns the study that would be ordered today.
+    /// Returns the study that would be started today.
     pub fn plan_study(&self, group: Group, target: u8, day: u32, params: &Params) -> Study {
         let due_day = day + params.level(target).delay_days;
         Study { group, target, before: self.knowledge[group].level, due_day }
     }
 }
 
-/// Completes due studies in the order in which they were ordered: the level rises, and the snapshot is the
-/// market of this morning.
+/// Completes due studies in the order of purchase. Raises the study level and takes a snapshot of this morning's market.
 pub fn complete_due_studies(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
     let Market { studies, knowledge, drift, .. } = market;
     for study in studies.extract_if(.., |study| study.due_day <= day) {

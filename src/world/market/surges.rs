@@ -4,25 +4,25 @@ use crate::canonical::canonical;
 use crate::params::{DemandSurge, Params, SurgeStart};
 use crate::random::{Part, Streams};
 
-/// One demand surge.
+/// A demand surge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surge {
-    /// Day for which it was drawn.
+    /// Day for which the surge was drawn.
     pub day: u32,
-    /// First day on which it no longer acts.
+    /// First day after the surge.
     pub end_day: u32,
-    /// Factor on leads.
+    /// Factor by which the surge multiplies leads.
     pub multiplier: f64,
 }
 
 canonical! { Surge { day, end_day, multiplier } }
 
-/// Returns the last day of the week of a day: weeks end on days divisible by 7, and the last one with the run.
+/// Returns the last day of the week that contains `day`. Weeks end on days divisible by 7, and the last week ends with the run.
 pub fn week_end(day: u32, days_per_week: u32, total_days: u32) -> u32 {
     day.next_multiple_of(days_per_week).min(total_days.max(day))
 }
 
-/// Draws the surge of a day, if there is one.
+/// Draws the surge of a day, or returns `None` if the day has no surge.
 pub fn draw_surge(day: u32, surge: &DemandSurge, streams: &Streams) -> Option<Surge> {
     let mut stream = streams.open(Part::Surge, [u64::from(day)]);
     if !stream.bernoulli(surge.probability) {
@@ -33,7 +33,7 @@ pub fn draw_surge(day: u32, surge: &DemandSurge, streams: &Streams) -> Option<Su
     Some(Surge { day, end_day: day + duration, multiplier })
 }
 
-/// Returns the surge of a day: from the record if one is replayed, otherwise drawn.
+/// Returns the surge of a day. The surge is drawn, or read from the recorded series if the parameters replay one.
 pub fn surge_on_day(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
     let demand_surge = &params.demand_surge;
     match params.replayed_series().and_then(|series| series.demand_surge(day)) {
@@ -44,7 +44,7 @@ pub fn surge_on_day(day: u32, params: &Params, streams: &Streams) -> Option<Surg
     }
 }
 
-/// Draws the surges of all days of a week on its first day.
+/// Draws the surges of all days of a week on the first day of the week.
 pub fn draw_week_surges(
     day: u32,
     total_days: u32,
@@ -59,8 +59,8 @@ pub fn draw_week_surges(
     }
 }
 
-/// Returns the product of all surges that act on a day; 1 without any. In the release a surge acts from the
-/// first day of the week in which it was drawn, so its own day is not tested.
+/// Returns the product of the factors of all surges on a day, or 1 if there is no surge. In the released simulator, a
+/// surge starts on the first day of the week in which it was drawn ([`SurgeStart::Week`]).
 pub fn surge_factor(day: u32, surges: &[Surge], start: SurgeStart) -> f64 {
     let begun = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
     surges.iter().filter(|surge| day < surge.end_day && begun(surge)).map(|surge| surge.multiplier).product()

@@ -4,12 +4,12 @@ use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::params::{Leads, Params};
 use crate::random::{Part, Streams};
 
-/// Returns the yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
+/// Returns a channel yield after one month. `z` is a standard normal draw. A yield of 0 stays 0.
 pub fn yield_after_month(value: f64, z: f64, leads: &Leads) -> f64 {
     (value + leads.monthly_channel_noise_fraction * value * z).max(leads.monthly_channel_value_min)
 }
 
-/// Varies all yields, including those of undiscovered groups, on days divisible by 30. Channels draw in
+/// Changes the yields of all groups, including undiscovered groups, on days divisible by 30. Channels draw in
 /// alphabetical order.
 pub fn vary_yields(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, streams: &Streams) {
     let interval = params.leads.monthly_channel_noise_interval_days;

@@ -6,21 +6,21 @@ use super::Params;
 use super::load::{ParameterError, apply_override, from_tables};
 use super::names::{keys, nearest_keys, value_at};
 
-/// Parameters, or tables and lists of parameters, that take effect only at the start of a run, or that define
-/// texts that are already recorded.
+/// Parameters, tables and lists that cannot change during a run. They take effect only at the start of a run, or
+/// define texts that are already recorded.
 const START_ONLY_KEYS: [&str; 6] =
     ["run.seed", "run.total_days", "run.days_per_week", "initial", "channel", "personas"];
-/// Parameters of day 0 that apply to every new customer.
+/// Parameters in `initial` that can change during a run, because they apply to every new customer.
 const PER_CUSTOMER_KEYS: [&str; 2] = ["initial.customer_satisfaction", "initial.customer_relationship"];
 
-/// A parameter with different values in two sets.
+/// A parameter that has different values in two sets of parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterDifference {
-    /// Full key.
+    /// Full key of the parameter.
     pub key: String,
-    /// Value in the first set, or `None` if it is missing there.
+    /// Value in the first set, or `None` if the key is missing there.
     pub old: Option<Value>,
-    /// Value in the second set, or `None` if it is missing there.
+    /// Value in the second set, or `None` if the key is missing there.
     pub new: Option<Value>,
 }
 
@@ -42,11 +42,10 @@ impl Params {
         })
     }
 
-    /// Returns a copy with another value of a parameter, or of a list or table of parameters.
+    /// Returns a copy in which a parameter, a list or a table of parameters has a new value.
     ///
     /// # Errors
-    /// As [`Params::load`] for a single override, or if the parameter takes effect only at the start of a
-    /// run.
+    /// The errors of [`Params::load`] for a single override, or if the parameter takes effect only at the start of a run.
     pub fn with(&self, key: &str, value: Value) -> Result<Params, ParameterError> {
         self.value(key)?;
         let nested = key
@@ -65,13 +64,14 @@ impl Params {
         {
             None => Ok(other),
             Some(difference) => {
-                let problem = "acts only when a run begins; begin one with --set to change it".to_owned();
+                let problem =
+                    "takes effect only at the start of a run; start a run with --set to change it".to_owned();
                 Err(parameter_error(&difference.key, problem))
             }
         }
     }
 
-    /// Returns the parameters in which another set differs from this one.
+    /// Returns the parameters whose values differ between `self` and `other`.
     pub fn differences(&self, other: &Params) -> Vec<ParameterDifference> {
         if self == other {
             return Vec::new();
@@ -167,9 +167,13 @@ mod tests {
             ("..", Value::Integer(3), "no such parameter"),
             ("competitor.competitor_feedback_u_min", Value::Float(0.9), "above the upper bound"),
             ("group.S1.id", Value::String("S2".to_owned()), "the order asks for S1"),
-            ("initial.initial_cash", Value::Integer(5), "acts only when a run begins"),
-            ("personas.email.last_names", Value::Array(Vec::new()), "acts only when a run begins"),
-            ("run.seed", Value::Integer(5), "acts only when a run begins"),
+            ("initial.initial_cash", Value::Integer(5), "takes effect only at the start of a run"),
+            (
+                "personas.email.last_names",
+                Value::Array(Vec::new()),
+                "takes effect only at the start of a run",
+            ),
+            ("run.seed", Value::Integer(5), "takes effect only at the start of a run"),
         ] {
             let error = set(key, value).expect_err(key);
             let text = format!("{}: {}", error.key, error.problem);

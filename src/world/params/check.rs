@@ -1,4 +1,4 @@
-//! Ranges of parameters and relations between them.
+//! Checks the ranges of parameters and the relations between parameters.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -9,19 +9,19 @@ use super::super::fault::Fault;
 use super::super::identifiers::{Channel, Group};
 use super::{Fidelity, GroupDrift, IndividualDrift, MacroBeta, Params, Personas, Segment, SeriesChoice};
 
-/// Key and problem of a wrong value.
+/// Key of an invalid parameter, and the reason why the value is invalid.
 type Problem = (String, String);
 pub(super) type Checked = Result<(), Problem>;
 
-/// The smallest and the largest allowed number.
+/// The smallest and the largest allowed value of a parameter.
 pub(super) type Range = RangeInclusive<f64>;
 
-/// The lower bound of a range of positive numbers.
+/// Lower bound for ranges of positive numbers.
 pub(super) const POSITIVE: f64 = f64::MIN_POSITIVE;
 pub(super) const ANY: Range = f64::NEG_INFINITY..=f64::INFINITY;
 
-/// Defines tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers,
-/// including those in lists. `as "key"` after its name is its key if it differs from the name.
+/// Defines structs for tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers,
+/// which also applies to the numbers of a list. `as "key"` after the name of a field is its key, if key and name differ.
 macro_rules! parameters {
     ($($(#[$meta:meta])* pub struct $name:ident {
         $($(#[$of_field:meta])* pub $field:ident $(as $key:literal)?: $type:ty $(where $range:expr)?,)*
@@ -48,9 +48,9 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
-/// A type of parameters.
+/// A type of parameters whose numbers have ranges.
 pub(super) trait Ranged {
-    /// Checks the numbers of a value that is read as this type. The default is a single value.
+    /// Checks the numbers of a TOML value that will be parsed as this type. The default implementation checks a single number.
     fn check(value: &Value, path: &str, range: &Range) -> Checked {
         match as_number(value) {
             Some(number) if !range.contains(&number) => {
@@ -67,7 +67,7 @@ macro_rules! single {
     };
 }
 single!(f64, u8, u32, u64, bool, String, Segment);
-// Tables without ranges.
+// Types without ranges.
 single!(Fault, Fidelity, GroupDrift, IndividualDrift, MacroBeta, Personas, SeriesChoice);
 
 impl<T: Ranged> Ranged for Option<T> {
@@ -96,7 +96,7 @@ impl<T: Ranged> Ranged for BTreeMap<String, T> {
     }
 }
 
-/// Checks the value of a key if it is present.
+/// Checks the value of a key, if the table contains the key.
 pub(super) fn field<T: Ranged>(table: &Value, path: &str, key: &str, range: &Range) -> Checked {
     let Some(value) = table.get(key) else { return Ok(()) };
     let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
@@ -112,18 +112,18 @@ fn describe_range(range: &Range) -> String {
     }
 }
 
-/// Checks every number of the merged tables against the range of its field.
+/// Checks every number of the merged tables against its range.
 pub(super) fn check_ranges(tables: &Value) -> Checked {
     let mut named = tables.as_table().into_iter().flatten();
     named.try_for_each(|(name, value)| check_finite(value, name.clone()))?;
     Params::check(tables, "", &ANY)
 }
 
-/// Suffix of a lower bound, suffix of its upper bound, and whether the lower bound has to be strictly smaller.
+/// Suffix of lower bounds, suffix of the corresponding upper bounds, and whether the lower bound must be strictly smaller.
 const BOUND_PREFIXES: [(&str, &str, bool); 3] =
     [("_min", "_max", false), ("_low", "_high", false), ("_low", "_high_exclusive", true)];
 
-/// Checks that no lower bound exceeds the upper bound of the same name, in every table that has both.
+/// Checks that no lower bound exceeds its upper bound in the same table.
 pub(super) fn check_bounds(tables: &Table) -> Checked {
     tables.iter().try_for_each(|(name, value)| match value {
         Value::Table(table) => check_table_bounds(table, name),
@@ -171,7 +171,7 @@ fn check_finite(value: &Value, path: String) -> Checked {
     }
 }
 
-/// Checks relations between values: order, sizes of matrices, bounds, and sums of probabilities.
+/// Checks relations between parameters: order, sizes of matrices, bounds, and sums of probabilities.
 pub(super) fn check_relations(params: &Params) -> Checked {
     check_ordered_pairs(params)?;
     check_tiers(params)?;
@@ -183,7 +183,7 @@ pub(super) fn check_relations(params: &Params) -> Checked {
         format!("add up to {downtime}, but must add up to 1")
     })?;
     let horizons = &params.limits.prediction_horizons_days;
-    require(horizons.len() == 4, "limits.prediction_horizons_days", || "must be four horizons".to_owned())
+    require(horizons.len() == 4, "limits.prediction_horizons_days", || "must have four horizons".to_owned())
 }
 
 fn require(holds: bool, key: &str, problem: impl FnOnce() -> String) -> Checked {
@@ -214,28 +214,28 @@ fn check_tiers(params: &Params) -> Checked {
 fn check_groups(params: &Params) -> Checked {
     let count = params.group.len();
     require(count == Group::COUNT, "group", || {
-        format!("there are {count} groups, but must be {}", Group::COUNT)
+        format!("has {count} groups, but must have {}", Group::COUNT)
     })?;
     let personas = params.personas.group.len();
     require(personas == Group::COUNT, "personas.group", || {
-        format!("there are {personas} groups, but must be {}", Group::COUNT)
+        format!("has {personas} groups, but must have {}", Group::COUNT)
     })?;
     for group in Group::all() {
         let (group_params, persona) = (params.group(group), &params.personas.group[group.index()]);
         let key = |name: &str| format!("group.{}.{name}", group.index());
         require(group_params.id == group.id(), &key("id"), || {
-            format!("is {}, but the order asks for {group}", group_params.id)
+            format!("is {}, but must be {group} at this position", group_params.id)
         })?;
         require(persona.id == group.id(), &format!("personas.group.{}.id", group.index()), || {
-            format!("is {}, but the order asks for {group}", persona.id)
+            format!("is {}, but must be {group} at this position", persona.id)
         })?;
         require(
             (group_params.segment == Segment::Enterprise) == group.is_enterprise(),
             &key("segment"),
-            || "does not fit the identifier: S is individual, E is enterprise".to_owned(),
+            || "does not match the identifier: S groups are individuals, E groups are enterprises".to_owned(),
         )?;
         require(group_params.initially_known == group.is_initially_known(), &key("initially_known"), || {
-            "does not fit the identifier: D_ groups have to be discovered".to_owned()
+            "does not match the identifier: D_ groups have to be discovered".to_owned()
         })?;
         if group.is_enterprise() {
             let complete = group_params.seat_count_min.is_some()
@@ -268,7 +268,7 @@ fn check_networks(params: &Params) -> Checked {
                 format!("has {width} numbers, but must have {}", Group::COUNT)
             })?;
         }
-        require(matrix.len() == Group::COUNT, name, || "names a group that does not exist".to_owned())?;
+        require(matrix.len() == Group::COUNT, name, || "contains a group that does not exist".to_owned())?;
     }
     Ok(())
 }

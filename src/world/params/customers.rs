@@ -5,132 +5,132 @@ use serde::{Deserialize, Serialize};
 use super::check::parameters;
 
 parameters! {
-    /// The participation curve (docs/mechanics/customers/participation.md).
+    /// Shape of the participation curve (docs/mechanics/customers/participation.md).
     pub struct Participation {
         /// Steepness of both halves of the curve.
         pub curve_gain: f64,
-        /// Price / budget at the center of the lower half.
+        /// Price as a share of the budget at the center of the lower half of the curve.
         pub curve_left_center: f64,
-        /// Price / budget at the center of the upper half.
+        /// Price as a share of the budget at the center of the upper half of the curve.
         pub curve_right_center: f64,
-        /// Price / budget where the halves meet.
+        /// Price as a share of the budget at which the two halves of the curve meet.
         pub curve_split: f64 where 0.0..=1.0,
-        /// Each half spans the quality range divided by this.
+        /// Divisor of the quality range that each half of the curve spans.
         pub curve_half_divisor: f64 where 1.0..=100.0,
-        /// Weight of the lower sigmoid in the blended form, 0..=1.
+        /// Weight of the lower sigmoid in the blended curve of the paper, 0..=1.
         pub blend_weight: f64 where 0.0..=1.0,
-        /// Lower clamp of the logistic argument.
+        /// Lower bound of the logistic function's argument.
         pub sigmoid_input_min: f64,
-        /// Upper clamp of the logistic argument.
+        /// Upper bound of the logistic function's argument.
         pub sigmoid_input_max: f64,
-        /// A lead prefers a plan only with a surplus above this.
+        /// Surplus that a plan must exceed to be preferred by a lead.
         pub lead_min_satisfaction_exclusive: f64,
     }
 
-    /// Bounds of the traits a new customer draws (docs/mechanics/customers/generation.md).
+    /// Bounds of the traits that are drawn for a new customer (docs/mechanics/customers/generation.md).
     pub struct CustomerGeneration {
         /// Mean of the exponential part of the lower steepness.
         pub steepness_left_exp_scale: f64 where 0.0..=1e6,
-        /// Offset added to the exponential part.
+        /// Offset that is added to the exponential part of the lower steepness.
         pub steepness_left_offset: f64 where 0.0..=1e6,
-        /// Lower bound.
+        /// Lower bound of the lower steepness.
         pub steepness_left_min: f64 where 0.0..=1e6,
-        /// Upper bound.
+        /// Upper bound of the lower steepness.
         pub steepness_left_max: f64 where 0.0..=1e6,
         /// Mean of the exponential part of the upper steepness.
         pub steepness_right_exp_scale: f64 where 0.0..=1e6,
-        /// Offset added to the exponential part.
+        /// Offset that is added to the exponential part of the upper steepness.
         pub steepness_right_offset: f64 where 0.0..=1e6,
-        /// Lower bound.
+        /// Lower bound of the upper steepness.
         pub steepness_right_min: f64 where 0.0..=1e6,
-        /// Upper bound.
+        /// Upper bound of the upper steepness.
         pub steepness_right_max: f64 where 0.0..=1e6,
-        /// Factor on the standard deviation of a group's budgets.
+        /// Factor by which the standard deviation of a group's budgets is multiplied.
         pub c_max_std_multiplier: f64 where 0.0..=1e6,
-        /// Minimum budget before and after drift, dollars a month.
+        /// Minimum budget before and after drift, dollars per month.
         pub c_max_min: f64 where 0.0..=1e6,
         /// Lower bound of the minimum quality, before drift.
         pub q_min_min: f64 where 0.0..=1e6,
         /// Minimum width of the quality band.
         pub q_range_min: f64 where 0.0..=1e6,
-        /// Minimum demand, units a day and seat.
+        /// Minimum demand, units per day and seat.
         pub usage_demand_min: f64 where 0.0..=1e6,
         /// Minimum mean reply delay of an enterprise, in days.
         pub reply_delay_mean_min: f64 where 0.0..=1e6,
-        /// Its standard deviation as a share of the group's standard deviation.
+        /// Standard deviation of the mean reply delay, as a share of the group's standard deviation.
         pub reply_delay_mean_noise_std_factor: f64 where 0.0..=1e6,
         /// Minimum standard deviation of the reply delay, in days.
         pub reply_delay_std_min: f64 where 0.0..=1e6,
-        /// Standard deviation of that, as a share of the group's.
+        /// Standard deviation of the reply delay's standard deviation, as a share of the group's standard deviation.
         pub reply_delay_std_noise_std_factor: f64 where 0.0..=1e6,
-        /// Lower bound of the first bid as a share of the highest acceptable price.
+        /// Lower bound of the first asked price, as a share of the highest acceptable price.
         pub initial_offer_factor_min: f64 where 0.0..=1e6,
-        /// Its upper bound.
+        /// Upper bound of the first asked price, as a share of the highest acceptable price.
         pub initial_offer_factor_max: f64 where 0.0..=1e6,
         /// Lower bound of the maximum number of turns of an enterprise.
         pub max_negotiation_turns_min: u32 where 0.0..=1e6,
-        /// Lower bound.
+        /// Lower bound of the quality loss from ads at full strength.
         pub ads_quality_sensitivity_min: f64 where 0.0..=1e6,
-        /// Lower bound.
+        /// Lower bound of the ad revenue at full strength.
         pub ads_return_sensitivity_min: f64 where 0.0..=1e6,
-        /// Standard deviation of a period's usage rate as a share of the customer's demand.
+        /// Standard deviation of the usage rate of a billing period, as a share of the customer's demand.
         pub daily_usage_rate_std_fraction: f64 where 0.0..=1e6,
-        /// Lower bound of the usage rate, units a day.
+        /// Lower bound of the usage rate, units per day.
         pub daily_usage_rate_min: f64 where 0.0..=1e6,
     }
 
     /// One of the 26 customer groups (docs/mechanics/customers/groups.md). Money and usage of enterprise groups are
     /// per seat.
     pub struct GroupParams {
-        /// Identifier.
+        /// Identifier of the group.
         pub id: String,
-        /// Name shown to the player.
+        /// Display name of the group.
         pub name: String,
         /// Description of the people or enterprises in the group.
         pub description: String,
-        /// Individuals or enterprises.
+        /// Segment of the group: individuals or enterprises.
         pub segment: Segment,
         /// Whether the group is known from day 0.
         pub initially_known: bool,
-        /// Whether posts of the group weigh more.
+        /// Whether the group's members are more likely to post.
         pub influencer: bool,
         /// Mean of the minimum quality.
         pub q_min_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the minimum quality.
         pub q_min_std: f64 where 0.0..=1e9,
         /// Mean width of the quality band.
         pub q_range_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the width of the quality band.
         pub q_range_std: f64 where 0.0..=1e9,
-        /// Mean budget, dollars a month.
+        /// Mean budget, dollars per month.
         pub c_max_mean: f64,
-        /// Its standard deviation, before `c_max_std_multiplier`.
+        /// Standard deviation of the budget, before multiplication by `c_max_std_multiplier`.
         pub c_max_std: f64 where 0.0..=1e9,
-        /// Mean demand, units a day.
+        /// Mean demand, units per day.
         pub usage_demand_mean: f64 where 0.0..=1e6,
-        /// Its standard deviation.
+        /// Standard deviation of the demand.
         pub usage_demand_std: f64 where 0.0..=1e6,
-        /// Customers or accounts in the market on day 0.
+        /// Size of the group's market on day 0, in individuals or enterprises.
         pub base_market_cap: f64 where 0.0..=1e12,
-        /// Growth of the market a year, as a share of the base.
+        /// Annual growth of the group's market, as a share of its size on day 0.
         pub annual_cap_growth_rate: f64,
-        /// Mean aversion to long contracts; shown as an estimate, otherwise without effect.
+        /// Mean aversion to long contracts. Shown as an estimate; has no other effect.
         pub lockin_penalty_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the aversion to long contracts.
         pub lockin_penalty_std: f64 where 0.0..=1e9,
-        /// Mean quality lost to ads at full strength.
+        /// Mean quality loss from ads at full strength.
         pub ads_quality_sensitivity_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the quality loss from ads.
         pub ads_quality_sensitivity_std: f64 where 0.0..=1e9,
-        /// Mean revenue from ads at full strength, dollars a day and seat.
+        /// Mean ad revenue at full strength, dollars per day and seat.
         pub ads_return_sensitivity_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the ad revenue.
         pub ads_return_sensitivity_std: f64 where 0.0..=1e9,
         /// Mean monthly probability that a payment fails permanently.
         pub involuntary_churn_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the monthly probability of failed payments.
         pub involuntary_churn_std: f64 where 0.0..=1e9,
-        /// Share of a competitor event that additionally raises this group's expectations.
+        /// Share of a competitor event's gain by which this group's expectations rise additionally.
         pub competitor_reactivity_q_bias: f64,
         /// Minimum seats of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -141,29 +141,29 @@ parameters! {
         /// Mean reply delay of an enterprise, in days.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub reply_delay_mean: Option<f64>,
-        /// Its standard deviation.
+        /// Standard deviation of an enterprise's reply delay, in days.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub reply_delay_std: Option<f64> where 0.0..=1e9,
         /// Mean of the maximum number of turns of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub max_negotiation_turns_mean: Option<f64>,
-        /// Its standard deviation.
+        /// Standard deviation of the maximum number of turns.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub max_negotiation_turns_std: Option<f64> where 0.0..=1e9,
-        /// Sensitivities to the economy; an absent dimension does not react.
+        /// Sensitivities to the economy. A dimension that is absent does not react.
         pub macro_beta: MacroBeta,
-        /// Drift of the whole group.
+        /// Drift of the whole group, per day.
         pub group_drift_per_day: GroupDrift,
-        /// Drift of each subscriber; an absent rate also skips its bounds.
+        /// Drift of each subscriber, per day. A value whose rate is absent is not clamped either.
         pub individual_drift_per_day: IndividualDrift,
     }
 }
 
-/// Individuals decide alone, enterprises negotiate.
+/// Segment of the market: individuals, who decide alone, or enterprises, which negotiate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Segment {
-    /// One person, one seat.
+    /// A person with one seat.
     Individual,
     /// An organization with many seats.
     Enterprise,
@@ -173,44 +173,44 @@ pub enum Segment {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MacroBeta {
-    /// Number of leads.
+    /// Sensitivity of the number of leads.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lead_generation: Option<f64>,
-    /// Budget at a billing decision.
+    /// Sensitivity of the budget at a billing decision.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub willingness_to_pay: Option<f64>,
-    /// Reply speed of a new enterprise.
+    /// Sensitivity of a new enterprise's reply speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deal_velocity: Option<f64>,
-    /// Drift of seats.
+    /// Sensitivity of the drift of seats.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seat_count: Option<f64>,
 }
 
-/// Additive drift of a group a day (docs/mechanics/market/drift.md).
+/// Additive drift of a group per day (docs/mechanics/market/drift.md).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GroupDrift {
-    /// Dollars a month added to every budget.
+    /// Dollars per month added to every budget.
     pub c_max_drift: f64,
-    /// Quality added to every expectation.
+    /// Quality added to the expectations of every customer.
     pub q_bias_drift: f64,
 }
 
-/// Compounding drift of a subscriber a day (docs/mechanics/market/drift.md).
+/// Compounding drift of a subscriber per day (docs/mechanics/market/drift.md).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IndividualDrift {
-    /// Rate of the budget.
+    /// Daily drift rate of the budget.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub c_max_drift: Option<f64>,
-    /// Rate of both quality bounds.
+    /// Daily drift rate of both quality bounds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub q_bias_drift: Option<f64>,
-    /// Rate of the lower steepness.
+    /// Daily drift rate of the lower steepness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steepness_left_drift: Option<f64>,
-    /// Rate of the seats.
+    /// Daily drift rate of the seats.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seat_count_drift: Option<f64>,
 }
@@ -219,91 +219,91 @@ pub struct IndividualDrift {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Personas {
-    /// Axes common to individuals.
+    /// Profile words that all individual groups share.
     pub individual: IndividualPersona,
-    /// Axes common to enterprises.
+    /// Profile words that all enterprise groups share.
     pub enterprise: EnterprisePersona,
-    /// Parts of addresses.
+    /// Word lists for email addresses of enterprises.
     pub email: EmailParts,
-    /// Axes of each group, in group order.
+    /// Profile words of each group, in group order.
     pub group: Vec<GroupPersona>,
 }
 
-/// Profile words of individuals.
+/// Profile words that all individual groups share.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IndividualPersona {
-    /// Experience levels.
+    /// Levels of work experience.
     pub experience_levels: Vec<String>,
     /// Levels of technical skill.
     pub tech_savvy: Vec<String>,
-    /// Upper edges of usage, units a day.
+    /// Upper bounds of the usage labels, units per day.
     pub usage_thresholds: [f64; 3],
-    /// Labels of usage.
+    /// Labels for usage, lowest first.
     pub usage_labels: [String; 4],
-    /// Upper edges of budget as factors of the group mean.
+    /// Upper bounds of the budget labels, as factors of the group mean.
     pub budget_factors: [f64; 2],
-    /// Labels of budget.
+    /// Labels for budget, lowest first.
     pub budget_labels: [String; 3],
-    /// Upper edges of the group's mean minimum quality.
+    /// Upper bounds of the expectation labels, compared with the group's mean minimum quality.
     pub quality_thresholds: [f64; 3],
-    /// Labels of expectations.
+    /// Labels for expectations, lowest first.
     pub quality_labels: [String; 4],
 }
 
-/// Profile words of enterprises.
+/// Profile words that all enterprise groups share.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EnterprisePersona {
-    /// Experience of every contact.
+    /// Experience level of every contact person.
     pub experience: String,
     /// Levels of technical skill.
     pub tech_savvy: Vec<String>,
-    /// Number of seats from which the size has a plus sign.
+    /// Number of seats from which the company size is shown with a plus sign.
     pub size_plus_from_seats: u32,
-    /// Upper edges of the group's mean minimum quality.
+    /// Upper bounds of the expectation labels, compared with the group's mean minimum quality.
     pub quality_thresholds: [f64; 3],
-    /// Labels of expectations.
+    /// Labels for expectations, lowest first.
     pub quality_labels: [String; 4],
 }
 
-/// Parts of enterprise addresses (docs/mechanics/market/social/texts.md#addresses).
+/// Word lists for email addresses of enterprises (docs/mechanics/market/social/texts.md#addresses).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EmailParts {
-    /// 48 first names.
+    /// First names (48).
     pub first_names: Vec<String>,
-    /// 48 last names.
+    /// Last names (48).
     pub last_names: Vec<String>,
-    /// 20 domain names.
+    /// Company words of the domain (20).
     pub company_domains: Vec<String>,
-    /// 6 top-level domains.
+    /// Top-level domains (6).
     pub domain_suffixes: Vec<String>,
 }
 
-/// Profile words of one group, without the axes of the other segment.
+/// Profile words of one group. Attributes of the other segment are empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupPersona {
     /// Identifier of the group.
     pub id: String,
-    /// Industries.
+    /// Industries of the group.
     pub industry: Vec<String>,
-    /// Roles.
+    /// Job roles in the group.
     pub role: Vec<String>,
-    /// Work styles of individuals.
+    /// Work styles; only for individuals.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub work_style: Vec<String>,
-    /// Sizes of enterprises.
+    /// Company sizes; only for enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub company_size: Vec<String>,
-    /// Cultures of enterprises.
+    /// Company cultures; only for enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub culture: Vec<String>,
-    /// Decision styles of enterprises.
+    /// Decision styles; only for enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub decision_style: Vec<String>,
-    /// Primary concerns of enterprises.
+    /// Primary concerns; only for enterprises.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub primary_concern: Vec<String>,
 }

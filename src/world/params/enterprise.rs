@@ -3,59 +3,59 @@
 use super::check::parameters;
 
 parameters! {
-    /// Negotiations (`docs/mechanics/enterprise/README.md`).
+    /// Parameters of negotiations (`docs/mechanics/enterprise/README.md`).
     pub struct EnterpriseParams {
-        /// Mean first bid as a share of the highest acceptable price.
+        /// Mean first asked price, as a share of the highest acceptable price.
         pub enterprise_initial_offer_factor_mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the first asked price, as a share of the highest acceptable price.
         pub enterprise_initial_offer_factor_std: f64,
-        /// Days without an answer after which a lead or customer is lost.
+        /// Days without an answer of the player after which an enterprise is lost.
         pub agent_response_timeout_days: u32 where 1.0..=100_000.0,
-        /// Maximum offerings per message.
+        /// Maximum number of offerings per message.
         pub enterprise_max_offerings_per_turn: u32 where 1.0..=1_000.0,
         /// Length of a contract, days.
         pub contract_month_days: u32 where 1.0..=100_000.0,
-        /// Shortest reply delay, days.
+        /// Shortest reply delay of an enterprise, days.
         pub reply_delay_min_days: u32 where 1.0..=100_000.0,
-        /// Surplus of quality above which an offer is accepted.
+        /// Surplus that an offer must exceed to be accepted.
         pub accept_min_satisfaction_exclusive: f64,
         /// Share of the gap to the highest price that each turn closes, 0..=1.
         pub enterprise_negotiation_alpha: f64 where 0.0..=1.0,
-        /// Iterations of the search for the highest price.
+        /// Maximum number of iterations in the search for the highest price.
         pub max_price_search_iterations: u32 where 1.0..=1_000.0,
-        /// Decimals of a counter-offer.
+        /// Decimals of the price in a counter-offer.
         pub counter_offer_decimals: u32 where 0.0..=12.0,
-        /// Days that an answer may take without penalty.
+        /// Days within which the player can answer without a penalty.
         pub late_reply_free_days: u32 where 0.0..=100_000.0,
-        /// Change of the relationship per further day; negative.
+        /// Change of the relationship per additional day; negative.
         pub late_reply_relationship_delta_per_day: f64,
-        /// Change of the relationship by a new deal.
+        /// Change of the relationship after a new deal.
         pub deal_relationship_delta: f64,
-        /// Change of the relationship if a customer falls silent; negative.
+        /// Change of the relationship if an enterprise stops replying; negative.
         pub ghost_relationship_delta: f64,
-        /// The same in a renegotiation.
+        /// Change of the relationship if an enterprise stops replying in a renegotiation.
         pub renegotiation_ghost_relationship_delta: f64,
-        /// The same if the player did not answer.
+        /// Change of the relationship if the player did not answer before the deadline.
         pub timeout_relationship_delta: f64,
         /// Lower bound of a relationship.
         pub relationship_min: f64 where 0.0..=1.0,
         /// Upper bound of a relationship.
         pub relationship_max: f64 where 0.0..=1.0,
-        /// Surplus at the agreed price below which a customer threatens to leave.
+        /// Surplus at the agreed price below which an enterprise threatens to cancel.
         pub churn_trigger_satisfaction_below: f64,
-        /// Relative gain in surplus above which a customer may request another plan.
+        /// Relative gain in surplus above which an enterprise can request a different plan.
         pub plan_change_min_relative_improvement: f64,
-        /// Daily probability of that request.
+        /// Daily probability that an enterprise requests a different plan.
         pub plan_change_probability: f64 where 0.0..=1.0,
-        /// Minimum of the current surplus as the denominator of the gain.
+        /// Minimum denominator of the relative gain in surplus.
         pub plan_change_improvement_denominator_min: f64 where POSITIVE..=1e6,
-        /// Age from which an open issue is the reason for a departure, days.
+        /// Issue age from which an open issue is the reason for a cancellation, days.
         pub extended_issue_days: u32 where 0.0..=100_000.0,
-        /// Reference quality for the reason of a departure.
+        /// Reference quality that decides whether quality is the reason for a cancellation.
         pub churn_reason_quality_reference: f64,
-        /// Difference from it below which quality is the reason.
+        /// Difference from the reference quality below which quality is the reason for a cancellation.
         pub churn_reason_quality_gap: f64,
-        /// Shared quality of the plan below which quality is the reason after a timeout.
+        /// Shared quality of the plan below which quality is the reason for a cancellation after a timeout.
         pub timeout_quality_reason_threshold: f64,
     }
 }

@@ -1,4 +1,4 @@
-//! Loading of parameters: merges the bundled files with overrides and locates invalid values.
+//! Loads parameters: merges the bundled files with overrides and locates invalid values.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -10,25 +10,25 @@ use super::names::{NAME_FIELDS, element_name, element_position, nearest_keys, re
 use super::{Params, check};
 use crate::identifiers::Group;
 
-/// A text with parameters and its name.
+/// A TOML text with parameters, and its name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParameterSource {
-    /// Name in error messages, for instance `configs/world/market.toml`.
+    /// Name of the text in error messages, for instance `configs/world/market.toml`.
     pub name: String,
-    /// TOML text.
+    /// TOML text with parameters.
     pub text: String,
 }
 
 /// An invalid parameter and its location.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParameterError {
-    /// File or option with the invalid value.
+    /// File or option that contains the invalid value.
     pub source: String,
-    /// Line in the file, from 1, if it is known.
+    /// Line in the file, counted from 1; `None` if the line is not known.
     pub line: Option<usize>,
-    /// Key as `table.key`; empty if the whole file is invalid.
+    /// Key of the parameter as `table.key`; empty if the whole file is invalid.
     pub key: String,
-    /// The problem and the allowed values.
+    /// Reason why the value is invalid, with the allowed values.
     pub problem: String,
 }
 
@@ -43,7 +43,7 @@ impl ParameterError {
         }
     }
 
-    /// Creates an error for a key, with its line in the text.
+    /// Creates an error for a key, with the line of the key in the text.
     pub fn for_key(source: &str, text: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         ParameterError {
             source: source.to_owned(),
@@ -78,7 +78,7 @@ macro_rules! shipped {
     };
 }
 
-/// Returns the parameter files included in the binary.
+/// Returns the bundled parameter files.
 pub fn bundled_sources() -> Vec<ParameterSource> {
     Vec::from(shipped![
         "run.toml",
@@ -97,18 +97,18 @@ pub fn bundled_sources() -> Vec<ParameterSource> {
 }
 
 impl Params {
-    /// Returns the bundled parameters, which are parsed once.
+    /// Returns the bundled parameters. The files are parsed only once.
     pub fn bundled() -> Params {
         static BUNDLED: OnceLock<Params> = OnceLock::new();
         let read = || Params::load(&bundled_sources(), &[]).expect("the bundled parameters are valid");
         BUNDLED.get_or_init(read).clone()
     }
 
-    /// Merges the base sources, which together contain every key once, with the overrides in order.
+    /// Merges base sources and overrides. Together, the base sources contain every key once. Overrides are applied in order.
     ///
     /// # Errors
-    /// The first problem: invalid TOML, a table in two base sources, an unknown or missing key, a wrong type,
-    /// a value out of range, or contradicting values.
+    /// The first error that is found: invalid TOML, a table in two base sources, an unknown or missing key, a wrong
+    /// type, a value out of range, or contradictory values.
     pub fn load(base: &[ParameterSource], overrides: &[ParameterSource]) -> Result<Params, ParameterError> {
         let mut merged = Table::new();
         for source in base {
@@ -130,7 +130,7 @@ impl Params {
 /// Creates parameters from complete tables and checks their values.
 ///
 /// # Errors
-/// Key and problem of the first invalid value.
+/// Key of the first invalid value, and the reason why it is invalid.
 pub(super) fn from_tables(tables: Table) -> Result<Params, (String, String)> {
     let with_names = |(key, problem): (String, String)| (replace_indexes_with_names(&tables, &key), problem);
     let whole = Value::Table(tables.clone());
@@ -150,13 +150,13 @@ fn parse_source(source: &ParameterSource) -> Result<Table, ParameterError> {
 
 fn deserialize(tables: Value) -> Result<Params, (String, String)> {
     serde_path_to_error::deserialize(tables).map_err(|error| {
-        // List elements in paths of the reader, such as `group[0].c_max_mean`, become key parts as everywhere else.
+        // Convert list indexes in the parser's path, such as `group[0].c_max_mean`, to the form of parameter names.
         let key = error.path().to_string().replace('[', ".").replace(']', "");
         (key, plain_message(error.inner().message()))
     })
 }
 
-/// Returns an error message of the TOML reader without Rust type names.
+/// Removes Rust type names from an error message of the TOML parser.
 fn plain_message(message: &str) -> String {
     let Some((found, expected)) = message.rsplit_once(", expected ") else { return message.to_owned() };
     let words = match expected {
@@ -170,12 +170,12 @@ fn plain_message(message: &str) -> String {
     format!("{found}, expected {words}")
 }
 
-/// Merges `above` into `below`: tables are merged key by key, list elements are found by name, and other
-/// values are replaced.
+/// Merges the table `above` into `below`. Merges nested tables key by key, finds list elements by name, and replaces
+/// other values.
 ///
 /// # Errors
-/// Key and problem if a key does not exist in `below`, because an override never adds a parameter, or if the
-/// value of a table or list is neither.
+/// Key and reason, if a key does not exist in `below` or if a single value would replace a table or list. An override
+/// never adds a parameter.
 pub fn apply_override(below: &mut Table, above: Table) -> Result<(), (String, String)> {
     merge_table(below, above).map_err(|OverrideError { key, kind }| {
         let problem = match kind {
@@ -199,21 +199,21 @@ pub fn apply_override(below: &mut Table, above: Table) -> Result<(), (String, St
     })
 }
 
-/// An override that does not fit the existing value.
+/// Error for an override that does not match the existing value.
 struct OverrideError {
     key: String,
     kind: OverrideErrorKind,
 }
 
-/// The existing value.
+/// Kind of the existing value that an override does not match.
 enum OverrideErrorKind {
-    /// No value.
+    /// No value exists.
     Unknown,
-    /// A table; one of its keys.
+    /// A table, with one of its keys as an example.
     Table(String),
-    /// A list; one of its elements.
+    /// A list, with one of its elements as an example.
     List(String),
-    /// A single value.
+    /// A value that is neither a table nor a list.
     SingleValue,
 }
 
@@ -282,7 +282,7 @@ fn line_of(text: &str, offset: usize) -> usize {
     text[..offset.min(text.len())].matches('\n').count() + 1
 }
 
-/// Returns the line of the deepest part of a dotted key that is in the text. List elements have names or are
+/// Returns the line in which the longest existing prefix of a dotted key is defined. List elements have names or are
 /// numbered from 0.
 pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     let document = toml::de::DeTable::parse(text).ok()?;

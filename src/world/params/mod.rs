@@ -1,7 +1,7 @@
-//! Parameters of the world: loaded from `configs/world/*.toml`, checked once, then immutable.
+//! Parameters of the world, which are loaded from `configs/world/*.toml`, checked once, and then immutable.
 //!
 //! The pages of `docs/mechanics/README.md` explain every key. A scenario is a small file that overrides some
-//! of them. The merged result has a digest that every run records.
+//! parameters. Every run records a digest of the merged parameters.
 
 mod change;
 mod check;
@@ -37,8 +37,8 @@ use self::check::parameters;
 use super::fault::Fault;
 use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
-/// Keys that were added after runs had been recorded: table, key, and, as JSON, the value with the earlier
-/// behavior, which is the default.
+/// Keys that were added after runs had been recorded. Each element is table, key, and the default value as JSON, which
+/// results in the earlier behavior.
 const ADDED_KEYS: [(&str, &str, &str); 1] = [("fidelity", "insight_noise", "\"independent\"")];
 
 parameters! {
@@ -46,17 +46,17 @@ parameters! {
     pub struct Params {
         /// Length and end of a run.
         pub run: Run,
-        /// Day 0.
+        /// Company and market on day 0.
         pub initial: Initial,
         /// Limits of tools, queries and texts.
         pub limits: Limits,
-        /// Alternative forms of mechanics.
+        /// Alternative forms of some mechanics.
         pub fidelity: Fidelity,
-        /// Which recorded series are replayed.
+        /// Recorded series that is replayed, if any.
         pub series: SeriesChoice,
-        /// The participation curve.
+        /// Shape of the participation curve.
         pub participation: Participation,
-        /// Bounds of a new customer's traits.
+        /// Bounds of the traits of new customers.
         pub customer_generation: CustomerGeneration,
         /// Delivered and perceived quality.
         pub quality: Quality,
@@ -66,70 +66,70 @@ parameters! {
         pub operations: Operations,
         /// In-app advertising.
         pub ads: Ads,
-        /// Model tiers 1..=5.
+        /// Model tiers, numbered 1..=5.
         pub model_tier: Vec<ModelTier>,
-        /// Capacity tiers 0..=7.
+        /// Capacity tiers, numbered 0..=7.
         pub capacity_tier: Vec<CapacityTier>,
-        /// R&D tiers 1..=20.
+        /// R&D tiers, numbered 1..=20.
         pub research_tier: Vec<ResearchTier>,
-        /// Daily satisfaction.
+        /// Daily update of satisfaction.
         pub satisfaction: Satisfaction,
         /// Support issues.
         pub issues: Issues,
-        /// Billing.
+        /// Billing of subscribers.
         pub billing: Billing,
-        /// Minimum discounts.
+        /// Minimum sums of discounts.
         pub promotions: Promotions,
-        /// Failed payments.
+        /// Cancellations after failed payments.
         pub involuntary_churn: InvoluntaryChurn,
-        /// Weekday and day of the month.
+        /// Calendar factors of weekdays and days of the month.
         pub calendar: Calendar,
         /// Demand surges.
         pub demand_surge: DemandSurge,
         /// Leads and channel yields.
         pub leads: Leads,
-        /// Reputation.
+        /// Reputation of the company.
         pub reputation: Reputation,
         /// Competitor events.
         pub competitor: Competitor,
         /// Preference drift.
         pub drift: Drift,
-        /// The economy.
+        /// The economy and its publication.
         pub economy as "macro": MacroEconomy,
-        /// Posts of customers.
+        /// Posts that customers write.
         pub social: SocialParams,
-        /// Posts of the company.
+        /// Posts of the player.
         pub ceo_posts: CeoPosts,
-        /// Negotiations.
+        /// Negotiations with enterprises.
         pub enterprise: EnterpriseParams,
         /// Discovery of groups.
         pub market_research: MarketResearch,
-        /// Study levels 1..=5.
+        /// Study levels, numbered 1..=5.
         pub info_level: Vec<InfoLevel>,
-        /// Studies of groups.
+        /// Market studies of groups.
         pub group_research: GroupResearch,
         /// The 26 groups, in their fixed order.
         pub group: Vec<GroupParams>,
         /// The five channels, in their fixed order.
         pub channel: Vec<ChannelParams>,
-        /// Leads a day in a group per active subscription of the source group (word of mouth).
+        /// Word of mouth: leads per day in each group per active subscription of the source group.
         pub referral_leads_per_subscriber_day: BTreeMap<String, Vec<f64>> where 0.0..=1e6,
-        /// Weight of a change of reputation of the source group on a group.
+        /// Weight of the source group's reputation changes for each group.
         pub reputation_influence: BTreeMap<String, Vec<f64>> where 0.0..=f64::INFINITY,
         /// Words of customer profiles.
         pub personas: Personas,
-        /// The seeded fault of a debug run. It is in no table, so it can be set only at the start of a run.
+        /// The seeded fault of a debug run. No parameter table contains the fault, so it can be set only at the start of a run.
         #[serde(skip)]
         pub fault: Option<Fault>,
     }
 
-    /// One advertising channel.
+    /// Parameters of one advertising channel.
     pub struct ChannelParams {
-        /// Identifier.
+        /// Identifier of the channel.
         pub id: String,
-        /// Name shown to the player.
+        /// Display name of the channel.
         pub name: String,
-        /// Leads a day per 1,000 dollars a day by group, at the start of a run.
+        /// Leads per 1,000 dollars of advertising at the start of a run, by group.
         pub leads_per_1000_dollars: BTreeMap<String, f64> where 0.0..=1e9,
     }
 }
@@ -140,7 +140,7 @@ impl Params {
         &self.group[group.index()]
     }
 
-    /// Returns the yields at the start of a run: leads a day per 1,000 dollars a day.
+    /// Returns the channel yields at the start of a run, in leads per 1,000 dollars.
     pub fn starting_yields(&self) -> ByChannel<ByGroup<f64>> {
         ByChannel::from_fn(|channel: Channel| {
             let yields = &self.channel[channel.index()].leads_per_1000_dollars;
@@ -148,12 +148,12 @@ impl Params {
         })
     }
 
-    /// Returns the word-of-mouth rate from a source group to a target group, leads a day and subscription.
+    /// Returns the word-of-mouth rate from a source group to a target group, in leads per day and subscription.
     pub fn referral_rate(&self, source: Group, target: Group) -> f64 {
         self.referral_leads_per_subscriber_day[source.id()][target.index()]
     }
 
-    /// Returns the weight of the source's reputation changes for the target.
+    /// Returns the weight of the source group's reputation changes for the target group.
     pub fn reputation_weight(&self, source: Group, target: Group) -> f64 {
         self.reputation_influence[source.id()][target.index()]
     }
@@ -178,28 +178,28 @@ impl Params {
         &self.research_tier[usize::from(tier) - 1]
     }
 
-    /// Returns the digest of the effective parameters: 16 hexadecimal digits of BLAKE3 over their canonical JSON, and
-    /// the number of the fault if there is one. Keys of `ADDED_KEYS` with their earlier behavior are left out.
+    /// Returns the digest of the parameters: 16 hexadecimal digits of the BLAKE3 hash of their canonical JSON and the
+    /// number of the fault, if any. Keys of `ADDED_KEYS` with the earlier behavior are left out.
     ///
-    /// A run records it, so that it is never continued silently with other parameters.
+    /// Every run records this digest, so that a run is never continued with different parameters by mistake.
     pub fn digest(&self) -> String {
         self.digest_without(|value, earlier| value == earlier)
     }
 
-    /// Returns the digest that versions without the keys of `ADDED_KEYS` computed for these parameters.
+    /// Returns the digest that versions without the keys of `ADDED_KEYS` computed for the same parameters.
     pub fn earlier_digest(&self) -> String {
         self.digest_without(|_, _| true)
     }
 
-    /// Returns the digest without the keys of `ADDED_KEYS` for which `is_left_out` returns true, given their
-    /// value and the value of the earlier behavior.
+    /// Returns the digest without some keys of `ADDED_KEYS`. `is_left_out` receives the value of a key and the value
+    /// with the earlier behavior.
     fn digest_without(&self, is_left_out: impl Fn(&Json, &Json) -> bool) -> String {
         let tables = serde_json::to_value(self).expect("parameters hold only strings and finite numbers");
         digest_of(tables, self.fault, &ADDED_KEYS, is_left_out)
     }
 }
 
-/// Returns the digest of parameters as JSON, without the added keys for which `is_left_out` returns true.
+/// Returns the digest of parameters that are given as JSON, without the added keys for which `is_left_out` returns true.
 fn digest_of(
     mut tables: Json,
     fault: Option<Fault>,

@@ -1,12 +1,12 @@
-//! Names of parameters: `table.key`. List elements have names, as in `group.S1.c_max_mean`,
-//! `capacity_tier.3.capacity_units` and `reputation_influence.S1.S3`, or their index from 0.
+//! Names of parameters in the form `table.key`. A list element is addressed by its name, as in `group.S1.c_max_mean`,
+//! `capacity_tier.3.capacity_units` and `reputation_influence.S1.S3`, or by its index from 0.
 
 use toml::{Table, Value};
 
 use super::super::identifiers::Group;
 use novamind_base::similar_names;
 
-/// Fields that name list elements.
+/// Fields that contain the name of a list element.
 pub(super) const NAME_FIELDS: [&str; 3] = ["id", "tier", "level"];
 
 /// Returns the name of a list element.
@@ -30,7 +30,7 @@ fn is_by_group(list: &[Value]) -> bool {
     list.len() == Group::COUNT && list.iter().all(is_number)
 }
 
-/// Returns a key with list indexes replaced by element names.
+/// Replaces list indexes in a key with element names.
 pub(super) fn replace_indexes_with_names(tables: &Table, counted: &str) -> String {
     let mut parts = counted.split('.');
     let Some(first) = parts.next() else { return String::new() };
@@ -47,7 +47,7 @@ pub(super) fn replace_indexes_with_names(tables: &Table, counted: &str) -> Strin
     key
 }
 
-/// Returns the value with this name: a parameter, a list or a table.
+/// Returns the parameter, list or table with this key.
 pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
     let mut parts = key.split('.');
     let first = tables.get(parts.next()?)?;
@@ -57,7 +57,7 @@ pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
     })
 }
 
-/// Returns the names of all parameters.
+/// Returns the keys of all parameters.
 pub(crate) fn keys(tables: &Table) -> Vec<String> {
     let mut all = Vec::new();
     tables.iter().for_each(|(key, value)| collect_keys(key.clone(), value, &mut all));
@@ -79,7 +79,8 @@ fn collect_keys(path: String, value: &Value, all: &mut Vec<String>) {
     }
 }
 
-/// Returns the keys most similar to one that does not exist, best first. Keys with the same suffix come first.
+/// Returns the existing keys that are most similar to an unknown key, most similar first. If any keys have the same
+/// last part, returns only these keys.
 pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let all = keys(tables);
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
@@ -88,14 +89,14 @@ pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let ends_alike = |one: &&String| !is_place && last(one) == text;
     let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
     let near = match alike.is_empty() {
-        // Regardless of distance: the user probably meant a key with the same last part.
+        // The user probably meant a key with the same last part, even if the distance is large.
         false => sort_by_distance(key, alike),
         true => similar_names(key, all.iter().map(String::as_str)),
     };
     near.into_iter().map(str::to_owned).collect()
 }
 
-/// Longest key, in bytes, for which distances are computed.
+/// Maximum length of a key, in bytes, for which distances are computed.
 const MAX_KEY_BYTES: usize = 200;
 
 fn sort_by_distance<'a>(key: &str, mut alike: Vec<&'a str>) -> Vec<&'a str> {

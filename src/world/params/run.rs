@@ -9,11 +9,11 @@ parameters! {
     pub struct Run {
         /// Default seed of a new run.
         pub seed: u64,
-        /// Default length in days; the size of competitor events grows towards it.
+        /// Default length of a run in days. Competitor events grow until shortly before the last day.
         pub total_days: u32 where 7.0..=100_000.0,
-        /// Days per `next_week`; the last week of a run can be shorter.
+        /// Days that one `next_week` call simulates. The last week of a run can be shorter.
         pub days_per_week: u32 where 7.0..=7.0,
-        /// The run ends when cash is below this at the end of a day, in dollars.
+        /// Bankruptcy threshold, dollars. The run ends when cash is below the threshold at the end of a day.
         pub bankruptcy_cash_threshold: f64,
     }
 
@@ -21,37 +21,37 @@ parameters! {
     pub struct Initial {
         /// Cash on day 0, in dollars.
         pub initial_cash: f64 where POSITIVE..=1e15,
-        /// Opening price of plan A, dollars a month.
+        /// Initial list price of plan A, dollars per month.
         pub default_price_a as "default_price_A": f64 where 0.0..=1e9,
-        /// Opening price of plan B, dollars a month.
+        /// Initial list price of plan B, dollars per month.
         pub default_price_b as "default_price_B": f64 where 0.0..=1e9,
-        /// Opening price of plan C, dollars a month.
+        /// Initial list price of plan C, dollars per month.
         pub default_price_c as "default_price_C": f64 where 0.0..=1e9,
-        /// Opening model tier of plan A, 1..=5.
+        /// Initial model tier of plan A, 1..=5.
         pub default_tier_a as "default_tier_A": u8 where 1.0..=5.0,
-        /// Opening model tier of plan B, 1..=5.
+        /// Initial model tier of plan B, 1..=5.
         pub default_tier_b as "default_tier_B": u8 where 1.0..=5.0,
-        /// Opening model tier of plan C, 1..=5.
+        /// Initial model tier of plan C, 1..=5.
         pub default_tier_c as "default_tier_C": u8 where 1.0..=5.0,
-        /// Opening quota of plan A, units a day.
+        /// Initial quota of plan A, units per day.
         pub default_quota_a as "default_quota_A": u64 where 0.0..=1e15,
-        /// Opening quota of plan B, units a day.
+        /// Initial quota of plan B, units per day.
         pub default_quota_b as "default_quota_B": u64 where 0.0..=1e15,
-        /// Opening quota of plan C, units a day.
+        /// Initial quota of plan C, units per day.
         pub default_quota_c as "default_quota_C": u64 where 0.0..=1e15,
-        /// Opening spend on operations, dollars a day.
+        /// Initial spending on operations, dollars per day.
         pub default_spend_operations: f64 where 0.0..=1e12,
-        /// Opening spend on development, dollars a day.
+        /// Initial spending on development, dollars per day.
         pub default_spend_development: f64 where 0.0..=1e12,
-        /// Opening capacity tier, 0..=7.
+        /// Initial capacity tier, 0..=7.
         pub default_capacity_tier: u8 where 0.0..=7.0,
-        /// Reputation of every group at the start, 0..=1.
+        /// Initial reputation of every group, 0..=1.
         pub initial_reputation: f64 where 0.0..=1.0,
-        /// Quality gained before day 1.
+        /// General bonus on day 0.
         pub q_shared_bonus: f64,
         /// Study level of the six initial groups.
         pub initial_group_info_level: u8 where 0.0..=5.0,
-        /// Study level of the twenty groups to be discovered.
+        /// Study level of the twenty undiscovered groups.
         pub discoverable_group_info_level: u8 where 0.0..=5.0,
         /// Satisfaction of a new customer.
         pub customer_satisfaction: f64,
@@ -63,136 +63,138 @@ parameters! {
     pub struct Limits {
         /// Maximum length of the player's posts, in code points.
         pub post_max_chars: u32 where 0.0..=1e9,
-        /// Posts returned if no limit is given.
+        /// Number of posts that `get_social_posts` returns if the call has no limit.
         pub get_social_posts_default_limit: u32 where 0.0..=1e9,
         /// Maximum rows of a query result.
         pub query_row_limit: u32 where 0.0..=1e9,
-        /// A query is stopped after this many seconds.
+        /// Time limit of a query, in seconds.
         pub query_timeout_seconds: u32 where 0.0..=1e9,
-        /// Characters shown of a daily calculation.
+        /// Maximum characters of a daily calculation that the dashboard shows.
         pub dashboard_calculation_max_chars: u32 where 0.0..=1e9,
-        /// Characters shown of an own post.
+        /// Maximum characters of the player's post that the dashboard shows.
         pub dashboard_post_preview_chars: u32 where 0.0..=1e9,
         /// Horizons of the weekly cash forecasts, in days.
         pub prediction_horizons_days: Vec<u32> where 1.0..=100_000.0,
     }
 }
 
-/// Mechanics of the release with alternative forms (`docs/mechanics/README.md#the-release-and-the-paper`).
+/// Mechanics for which the released simulator and the paper have different forms
+/// (`docs/mechanics/README.md#the-release-and-the-paper`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fidelity {
-    /// Form of the participation curve.
+    /// Formula of the participation curve.
     pub required_quality: RequiredQuality,
-    /// The terms that the quota factor multiplies.
+    /// Quality terms that are multiplied by the quota factor.
     pub perceived_quality: PerceivedQuality,
-    /// Where overload and outages lower quality.
+    /// Evaluations of quality that overload and outages affect.
     pub service_penalty: ServicePenalty,
-    /// The period that a quota limits.
+    /// Period for which a quota is defined.
     pub usage_quota: UsageQuota,
-    /// How often accumulated drift counts for a customer.
+    /// How often accumulated drift is added to a customer's curve.
     pub drift_counted: DriftCounted,
-    /// From when a demand surge acts.
+    /// First day of a demand surge.
     pub surge_start: SurgeStart,
     /// Whether dead enterprise threads reappear.
     pub reappearing_threads: bool,
-    /// On which days customers post.
+    /// Days on which customers post.
     pub customer_posts: CustomerPosts,
-    /// The judge of the player's posts.
+    /// The judge that evaluates the player's posts.
     pub post_judge: PostJudge,
     /// Whether an enterprise rejects prices above its budget.
     pub deal_price_ceiling: bool,
-    /// Where the errors of insights come from.
+    /// Random draws of the errors of estimates.
     pub insight_noise: InsightNoise,
 }
 
-/// Form of the participation curve.
+/// Formula of the participation curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequiredQuality {
-    /// Two logistic halves with a jump between them: the release.
+    /// Two logistic halves with a jump between them, as in the released simulator.
     Piecewise,
-    /// One blend of both sigmoids: the paper.
+    /// A blend of both halves, as in the paper.
     Blended,
 }
 
-/// The terms that the quota factor multiplies.
+/// Quality terms that are multiplied by the quota factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PerceivedQuality {
-    /// Delivered quality, relationship and tenure: the release.
+    /// Delivered quality, relationship and tenure, as in the released simulator.
     Release,
-    /// Also issues and ads: the paper.
+    /// All terms, including issues and ads, as in the paper.
     Paper,
 }
 
-/// Where overload and outages lower quality.
+/// Evaluations of quality that overload and outages affect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ServicePenalty {
-    /// Only in daily satisfaction: the release.
+    /// Only daily satisfaction, as in the released simulator.
     Satisfaction,
-    /// In every judgement of quality: the paper.
+    /// Every evaluation of quality, as in the paper.
     Everywhere,
 }
 
-/// The period that a quota limits.
+/// Period for which a quota is defined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UsageQuota {
-    /// Units a day: the release.
+    /// Units per day, as in the released simulator.
     Daily,
-    /// Units of a billing period: the paper.
+    /// Units per billing period, as in the paper.
     Period,
 }
 
-/// How often accumulated drift counts for a customer who arrived later.
+/// How often drift from before a customer's arrival is added to the customer's curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftCounted {
-    /// At creation and again at every read: the release.
+    /// When the customer is created and again whenever the curve is read, as in the released simulator.
     EveryRead,
-    /// Once.
+    /// Only once.
     Once,
 }
 
-/// From when a demand surge acts.
+/// First day of a demand surge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SurgeStart {
-    /// From the first day of the week in which it was drawn: the release.
+    /// First day of the week in which the surge was drawn, as in the released simulator.
     Week,
-    /// From its own day: the paper.
+    /// Day for which the surge was drawn, as in the paper.
     Day,
 }
 
-/// On which days customers post.
+/// Days on which customers post.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CustomerPosts {
-    /// On the seventh day of a week: the release.
+    /// Every seventh day, as in the released simulator.
     Weekly,
-    /// Every day: the paper.
+    /// Every day, as in the paper.
     Daily,
 }
 
-/// The judge of the player's posts.
+/// The judge that evaluates the player's posts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PostJudge {
-    /// The built-in judge without a language model.
+    /// The built-in judge, which uses no language model.
     Offline,
-    /// No judge.
+    /// No judge: posts are not judged.
     None,
 }
 
-/// Where the errors of insights come from.
+/// Random draws of the errors of estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InsightNoise {
     /// A separate draw for each run, group, level and value.
     Independent,
-    /// One sequence for each group, the same in every run, at every level and on every day: the release.
+    /// One sequence of draws for each group, which is the same in every run, at every level and on every day, as in
+    /// the released simulator.
     Release,
 }
 
@@ -200,16 +202,16 @@ pub enum InsightNoise {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeriesChoice {
-    /// The record to replay.
+    /// The recorded series that is replayed.
     pub replayed: Replayed,
 }
 
-/// Recorded series that replace the draws that do not depend on the company.
+/// Recorded series that can replace the draws that do not depend on the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replayed {
-    /// None: everything is drawn.
+    /// No recorded series: all values are drawn.
     None,
-    /// The released simulator's seed 42.
+    /// Series recorded from the released simulator with seed 42.
     Seed42,
 }

@@ -1,4 +1,5 @@
-//! Revenue of in-app advertising (`docs/mechanics/product/ads.md`). Its cost in quality is in `quality`.
+//! Revenue from in-app advertising (`docs/mechanics/product/ads.md`). Module `quality` computes the quality loss from
+//! advertising.
 
 use crate::customers::Customers;
 use crate::customers::columns::Block;
@@ -8,7 +9,7 @@ use crate::params::Params;
 use crate::quality::ads_effect;
 use crate::settings::AdsStrength;
 
-/// Effective ad strengths by group, and for customers with an individual setting.
+/// Effective strengths of in-app advertising by group, and for customers with an individual setting.
 #[derive(Debug, Clone)]
 pub struct AdLoad<'a> {
     setting: &'a AdsStrength,
@@ -18,7 +19,7 @@ pub struct AdLoad<'a> {
 }
 
 impl<'a> AdLoad<'a> {
-    /// Computes effective strengths from a setting.
+    /// Computes the effective strengths from the settings of in-app advertising.
     pub fn new(setting: &'a AdsStrength, params: &'a Params) -> AdLoad<'a> {
         AdLoad {
             setting,
@@ -28,19 +29,19 @@ impl<'a> AdLoad<'a> {
         }
     }
 
-    /// Returns the strength that decisions and negotiations use: global + group.
+    /// Returns the effective strength in decisions and negotiations: global + group.
     #[inline]
     pub fn for_group(&self, group: Group) -> f64 {
         self.by_group[group]
     }
 
-    /// Returns the strength that satisfaction and revenue use: global + group + customer.
+    /// Returns the effective strength for satisfaction and revenue: global + group + customer.
     #[inline]
     pub fn for_customer(&self, group: Group, customer: u32) -> f64 {
         if self.personal { self.for_single_customer(group, customer) } else { self.by_group[group] }
     }
 
-    /// Handles customers with an individual setting, in a separate function to keep the common case fast.
+    /// Returns the strength for a customer with an individual setting. A separate function keeps the common case fast.
     #[cold]
     fn for_single_customer(&self, group: Group, customer: u32) -> f64 {
         let value = self.setting.for_customer(customer);
@@ -51,14 +52,14 @@ impl<'a> AdLoad<'a> {
         }
     }
 
-    /// Returns whether any customer sees ads.
+    /// Returns whether any customer can see ads.
     pub fn is_used(&self) -> bool {
         self.setting.is_used()
     }
 }
 
-/// Returns the revenue of the day in dollars: sensitivity times effective strength times whole seats, over
-/// all customers who see ads. Records one row per subscriber with revenue.
+/// Returns today's ad revenue in dollars: the sum over all subscribers of sensitivity times effective strength times
+/// whole seats. Records one row per subscriber with revenue.
 pub fn record_ad_revenue(customers: &Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
     if !load.is_used() {
         return 0.0;

@@ -1,4 +1,4 @@
-//! Development (`docs/mechanics/product/development.md`).
+//! General and targeted development (`docs/mechanics/product/development.md`).
 
 use super::Product;
 use crate::fault::Fault;
@@ -6,7 +6,7 @@ use crate::params::{Development, Params};
 use crate::random::{Part, Streams};
 use crate::settings::Settings;
 
-/// Returns the shared quality gained by a day of development: 0.0045 ln(1 + spend / 5000).
+/// Returns the quality gain of all groups from one day of general development: 0.0045 ln(1 + spend / 5000).
 pub fn development_gain(spend: f64, development: &Development) -> f64 {
     if spend <= 0.0 {
         return 0.0;
@@ -14,7 +14,7 @@ pub fn development_gain(spend: f64, development: &Development) -> f64 {
     development.dev_improvement_coef * libm::log(1.0 + spend / development.dev_spend_scale)
 }
 
-/// Returns a group's quality gained by a day of targeted development: 0.0225 ln(1 + spend / 5000).
+/// Returns the quality gain of a group from one day of targeted development: 0.0225 ln(1 + spend / 5000).
 pub fn targeted_development_gain(spend: f64, development: &Development) -> f64 {
     if spend <= 0.0 {
         return 0.0;
@@ -22,13 +22,14 @@ pub fn targeted_development_gain(spend: f64, development: &Development) -> f64 {
     development.targeted_dev_improvement_coef * libm::log(1.0 + spend / development.targeted_dev_spend_scale)
 }
 
-/// Returns the noise of the shared quality on a day.
+/// Draws the noise of the shared quality on a day.
 pub fn daily_noise(day: u32, params: &Params, streams: &Streams) -> f64 {
     let mut stream = streams.open(Part::QualityNoise, [u64::from(day)]);
     stream.normal(0.0, params.development.quality_shared_noise_scale)
 }
 
-/// Improves the product by a day. Noise is added every day regardless of spending and never enters the bank.
+/// Applies one day of development to the product. Noise is added every day regardless of spending, and never to the
+/// quality bank.
 pub fn apply_development(
     day: u32,
     product: &mut Product,

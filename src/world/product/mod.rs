@@ -12,19 +12,19 @@ use super::events::Project;
 use super::identifiers::{ByGroup, Group};
 use super::params::Params;
 
-/// The results of development, and the part of them that competitors can still copy
+/// The quality that development and R&D added, and the part that competitors can still copy
 /// (`docs/mechanics/product/development.md#banks`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Product {
-    /// Quality gained for all groups, including noise.
+    /// General bonus: quality that was added for all groups, including noise.
     pub shared_bonus: f64,
-    /// Quality gained for single groups.
+    /// Group bonus: quality that was added for each group.
     pub group_bonus: ByGroup<f64>,
-    /// Shared improvements that no competitor has copied yet.
+    /// Shared quality bank: general bonus that competitors have not copied yet.
     pub shared_bank: f64,
-    /// Targeted improvements that no competitor has copied yet.
+    /// Targeted quality banks: group bonus that competitors have not copied yet.
     pub group_bank: ByGroup<f64>,
-    /// R&D projects, in order of their start.
+    /// R&D projects, in the order of their start.
     pub research: Vec<Project>,
 }
 
@@ -33,7 +33,7 @@ canonical! {
 }
 
 impl Product {
-    /// Returns the product of day 0.
+    /// Returns the product on day 0.
     pub fn initial(params: &Params) -> Product {
         Product {
             shared_bonus: params.initial.q_shared_bonus,
@@ -44,7 +44,7 @@ impl Product {
         }
     }
 
-    /// Returns the product quality for a group before the model's multiplier.
+    /// Returns the product quality for a group, before multiplication by the model's multiplier.
     pub fn quality(&self, group: Group, params: &Params) -> f64 {
         params.quality.base_product_quality + self.shared_bonus + self.group_bonus[group]
     }

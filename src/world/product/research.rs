@@ -5,18 +5,19 @@ use crate::events::{Facts, Notice, Project, ResearchChange};
 use crate::params::{Development, Params, ResearchTier};
 use crate::random::{Part, Streams};
 
-/// Returns the duration in whole days from a standard normal draw, at least 30.
+/// Returns the duration of a project in whole days, at least 30. `z` is a standard normal draw.
 pub fn project_duration(tier: &ResearchTier, z: f64, development: &Development) -> u32 {
     let drawn = (tier.mean_days + tier.std_days * z).trunc();
     drawn.max(f64::from(development.rd_min_duration_days)) as u32
 }
 
-/// Returns the quality gain from a standard normal draw, at least 0.001.
+/// Returns the quality gain of a project, at least 0.001. `z` is a standard normal draw.
 pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> f64 {
     (tier.mean_quality_boost + tier.std_quality_boost * z).max(development.rd_min_quality_boost)
 }
 
-/// Returns the project that a start on `day` would create. Duration and gain depend on (seed, tier, earlier starts).
+/// Returns the project that would be started on `day`. Duration and gain depend only on the seed, the tier and the
+/// number of earlier starts in the tier.
 pub fn draw_project(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
     let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
     let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);
@@ -33,7 +34,7 @@ pub fn draw_project(product: &Product, day: u32, tier: u8, params: &Params, stre
     }
 }
 
-/// Completes due projects: their gain is added to the product and to the bank that competitors can copy.
+/// Completes due projects. Adds their gain to the product and to the shared quality bank.
 pub fn complete_due_projects(day: u32, product: &mut Product, facts: &mut Facts) {
     for project in &mut product.research {
         if project.completed_day.is_none() && project.due_day <= day {

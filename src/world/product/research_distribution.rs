@@ -1,5 +1,5 @@
-//! The distribution of duration and gain of an R&D tier's projects before they are drawn
-//! (`docs/mechanics/product/research.md#spread`). It depends only on the tier, not on the seed.
+//! Distributions of the duration and the quality gain of an R&D tier's projects
+//! (`docs/mechanics/product/research.md#spread`). The distributions depend only on the tier, not on the seed.
 
 use crate::params::{Development, ResearchTier};
 use crate::random::inverse_normal;
@@ -8,24 +8,25 @@ use crate::random::inverse_normal;
 pub fn share_done_within(days: u32, tier: &ResearchTier, development: &Development) -> f64 {
     match days < development.rd_min_duration_days {
         true => 0.0,
-        // Durations are truncated to whole days, so a day includes all draws below the next day.
+        // Durations are truncated to whole days, so a duration of `days` includes all draws below `days` + 1.
         false => share_below(f64::from(days) + 1.0, tier.mean_days, tier.std_days),
     }
 }
 
-/// Returns the smallest number of days within which a share of the projects is complete; 0 < share < 1.
+/// Returns the smallest number of days within which a share of the projects is completed, for 0 < share < 1.
 pub fn duration_quantile(share: f64, tier: &ResearchTier, development: &Development) -> u32 {
     let drawn = tier.mean_days + tier.std_days * inverse_normal(share);
     let least = development.rd_min_duration_days;
     let days = (drawn - 1.0).ceil().max(f64::from(least)) as u32;
-    // Rounding can put the quantile slightly on the wrong side of a day.
+    // Because of rounding, the quantile can be slightly below or above a whole day.
     match share_done_within(days, tier, development) < share {
         true => days + 1,
         false => days,
     }
 }
 
-/// Returns the mean duration in days: the minimum duration plus the probability of each later day.
+/// Returns the mean duration in days: the minimum duration plus, for each later day, the probability that the project
+/// still continues.
 pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
     let (least, mean, std) = (development.rd_min_duration_days, tier.mean_days, tier.std_days);
     if std < 1.0 {
@@ -33,20 +34,19 @@ pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
         let lasts_longer = |days| 1.0 - share_done_within(days, tier, development);
         return f64::from(least) + (least..last).map(lasts_longer).sum::<f64>();
     }
-    // The sum over days as an integral: the midpoint rule with its first correction has an error below a
-    // thousandth of a day.
+    // Approximate the sum over days by an integral. The midpoint rule with its first correction has an error below 0.001 days.
     let floor = f64::from(least);
     mean_with_minimum(floor + 0.5, mean, std)
         - 0.5
         - normal_density((floor + 0.5 - mean) / std) / (24.0 * std)
 }
 
-/// Returns the mean quality gain.
+/// Returns the mean quality gain of a tier's projects.
 pub fn mean_gain(tier: &ResearchTier, development: &Development) -> f64 {
     mean_with_minimum(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
 }
 
-/// Returns the quality gain that a share of the projects does not exceed; 0 < share < 1.
+/// Returns a quantile of the quality gain, for 0 < share < 1. `share` of the projects have at most this gain.
 pub fn gain_quantile(share: f64, tier: &ResearchTier, development: &Development) -> f64 {
     let drawn = tier.mean_quality_boost + tier.std_quality_boost * inverse_normal(share);
     drawn.max(development.rd_min_quality_boost)
@@ -57,7 +57,7 @@ pub fn share_at_minimum_gain(tier: &ResearchTier, development: &Development) -> 
     share_below(development.rd_min_quality_boost, tier.mean_quality_boost, tier.std_quality_boost)
 }
 
-/// Returns the mean of a normal number that is raised to `floor` if it is below.
+/// Returns the mean of max(`floor`, X), where X is a normal variate.
 fn mean_with_minimum(floor: f64, mean: f64, std: f64) -> f64 {
     match std > 0.0 {
         true => {

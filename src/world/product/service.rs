@@ -1,4 +1,4 @@
-//! Service of a day (`docs/mechanics/product/service.md`).
+//! Service health of a day (`docs/mechanics/product/service.md`).
 
 use crate::events::{Facts, ServiceDay};
 use crate::morning::Morning;
@@ -10,19 +10,19 @@ pub fn overload(usage: u64, capacity_units: f64, operations: &Operations) -> f64
     (usage as f64 / capacity_units - operations.overload_reference_utilization).max(0.0)
 }
 
-/// Returns the probability of an outage today: max(0.001, 0.03 exp(-ops / 500)) (1 + 4 o).
+/// Returns today's probability of an outage: max(0.001, 0.03 exp(-ops / 500)) (1 + 4 o).
 pub fn outage_probability(spend_operations: f64, overload: f64, operations: &Operations) -> f64 {
     let base =
         operations.base_outage_prob * libm::exp(-spend_operations / operations.ops_outage_reduction_scale);
     base.max(operations.ops_outage_min_prob) * (1.0 + operations.outage_overload_factor * overload)
 }
 
-/// Returns the latency in milliseconds; `z` is a standard normal draw.
+/// Returns the 95th percentile of the latency in milliseconds. `z` is a standard normal draw.
 pub fn p95_latency(overload: f64, z: f64, operations: &Operations) -> f64 {
     operations.p95_base_ms + operations.p95_overload_factor * overload + operations.p95_noise_std * z
 }
 
-/// Returns the share of failed requests; `z` is a standard normal draw.
+/// Returns the share of failed requests. `z` is a standard normal draw.
 pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
     let rate = operations.error_rate_base
         + operations.error_rate_overload_factor * overload
@@ -30,7 +30,7 @@ pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
     rate.clamp(operations.error_rate_min, operations.error_rate_max)
 }
 
-/// Draws the length of an outage in minutes.
+/// Draws the duration of an outage in minutes.
 pub fn draw_downtime_minutes(stream: &mut Stream, operations: &Operations) -> u32 {
     let (mut u, choices) = (stream.uniform(), operations.downtime_minutes_choices);
     for (minutes, probability) in choices.into_iter().zip(operations.downtime_minutes_probabilities) {
@@ -42,16 +42,16 @@ pub fn draw_downtime_minutes(stream: &mut Stream, operations: &Operations) -> u3
     choices[2]
 }
 
-/// Fixed inputs of the service on a day.
+/// Fixed inputs of the service health on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedService {
-    /// Share of the metered usage that counts as load.
+    /// Share of the measured usage that counts as demand.
     pub load_factor: f64,
-    /// Day whose random draws determine outages, latency and errors.
+    /// Day whose random draws determine outages, latency and error rate.
     pub draw_day: u32,
 }
 
-/// Determines and records the service of the day, with fixed inputs if given.
+/// Computes and records the service health of the day, with fixed inputs if `fixed_service` is `Some`.
 pub fn observe_service(
     total_usage: u64,
     morning: &Morning,

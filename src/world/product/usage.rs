@@ -1,4 +1,4 @@
-//! Usage of a day (`docs/mechanics/product/usage.md`).
+//! Usage of the service on one day (`docs/mechanics/product/usage.md`).
 
 use crate::customers::Customers;
 use crate::customers::columns::Block;
@@ -7,35 +7,36 @@ use crate::identifiers::{ByGroup, ByPlan, Plan};
 use crate::morning::Morning;
 use crate::params::{CustomerGeneration, Params, UsageQuota};
 
-/// Units used today.
+/// Units that were used today.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MeteredUsage {
-    /// By all customers.
+    /// Units used by all customers.
     pub total: u64,
-    /// By plan, for compute costs.
+    /// Units used by plan, for compute costs.
     pub by_plan: ByPlan<u64>,
-    /// By group and plan.
+    /// Units used by group and plan.
     pub by_group: ByGroup<ByPlan<u64>>,
 }
 
-/// Returns the usage rate of a billing period, units a day for the whole account: max(0, N(u, 0.2 u)) times
-/// seats; `z` is a standard normal draw.
+/// Returns the usage rate of a billing period, units per day for the whole account: max(0, N(u, 0.2 u)) times seats.
+/// `z` is a standard normal draw.
 #[inline]
 pub fn usage_rate(usage_demand: f64, seats: f64, z: f64, bounds: &CustomerGeneration) -> f64 {
     let spread = bounds.daily_usage_rate_std_fraction * usage_demand;
     (usage_demand + spread * z).max(bounds.daily_usage_rate_min) * seats
 }
 
-/// Returns the usage of one account today: its rate on this weekday, limited by the quota, rounded half away from zero.
+/// Returns the usage of one account today: the usage rate times the weekday factor, limited by the quota, rounded half
+/// away from zero.
 #[inline]
 pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
     let limited = (usage_rate * weekday).min(quota.max(0.0));
-    // Casting truncates and the remainder decides. This is faster than a rounding call and equal to it below 2^32.
+    // Casting truncates, and the remainder decides whether to add 1. Below 2^32, the result equals rounding and is faster.
     let whole = limited as u32;
     whole.saturating_add(u32::from(limited - f64::from(whole) >= 0.5))
 }
 
-/// Meters every active subscription, with one row each even if nothing was used.
+/// Measures the usage of every active subscription. Records one row per subscription, even for 0 units.
 pub fn meter(
     customers: &mut Customers,
     morning: &Morning,
@@ -88,7 +89,7 @@ mod tests {
 
     #[test]
     fn usage_is_limited_by_quota_and_rounded_half_up() {
-        // A busy weekday, with quotas that limit the first and the last account.
+        // On a busy weekday, the quotas limit the first and the last account.
         assert_eq!(usage_today(80.0, 1.1, 60.0), 60);
         assert_eq!(usage_today(40.4, 1.1, 60.0), 44);
         assert_eq!(usage_today(75.0, 1.1, 100.0), 83);

@@ -1,4 +1,4 @@
-//! The default generator of NumPy, to reproduce the released simulator's draws of insights exactly: PCG64 (M.
+//! NumPy's default random generator, which reproduces the released simulator's errors of estimates exactly: PCG64 (M.
 //! E. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random Number
 //! Generation", 2014), seeded through NumPy's `SeedSequence`.
 
@@ -11,7 +11,7 @@ pub struct NumpyStream {
 const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
 
 impl NumpyStream {
-    /// Creates a generator with a 32-bit seed.
+    /// Creates a generator from a 32-bit seed.
     pub fn new(seed: u32) -> NumpyStream {
         let words = seed_words(seed);
         let half = |at: usize| u128::from(words[at]) | u128::from(words[at + 1]) << 32;
@@ -27,7 +27,7 @@ impl NumpyStream {
         self.state = self.state.wrapping_mul(MULTIPLIER).wrapping_add(self.increment);
     }
 
-    /// Returns the next number, uniform in [0, 1).
+    /// Returns the next random number, uniform in [0, 1).
     pub fn next_f64(&mut self) -> f64 {
         self.step();
         let (high, low) = ((self.state >> 64) as u64, self.state as u64);
@@ -36,8 +36,8 @@ impl NumpyStream {
     }
 }
 
-/// Returns the eight words that `SeedSequence` generates: the seed is mixed into a pool of four words, which
-/// are then hashed.
+/// Returns the eight words that `SeedSequence` generates. The seed is mixed into a pool of four words, and the pool is
+/// then hashed.
 fn seed_words(seed: u32) -> [u32; 8] {
     let fold = |value: u32| value ^ value >> 16;
     let mut factor: u32 = 0x43b0_d7e5;

@@ -23,8 +23,8 @@ fn polynomial(x: f64, coefficients: &[f64; 8]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
 }
 
-/// Coefficients as published, lowest power first.
-#[expect(clippy::excessive_precision, reason = "kept digit for digit as published")]
+/// The published coefficients, lowest power first.
+#[expect(clippy::excessive_precision, reason = "the digits are copied from the publication")]
 mod published {
     pub const CENTER_NUMERATOR: [f64; 8] = [
         3.387_132_872_796_366_608,

@@ -1,9 +1,9 @@
 //! Opens eight streams in parallel on processors with AVX2.
 //!
-//! Opening a stream takes one block of BLAKE3 and one of ChaCha8, each a chain of dependent steps that leaves
-//! the processor mostly idle. Thousands of streams a day are opened for a single draw (bills, leads), so
-//! eight of them are processed together, one per lane of a vector register, in a fifth of the time. The bits
-//! equal those of [`super::Draws::new`], which is the fallback; tests compare them.
+//! Opening a stream takes one block of BLAKE3 and one block of ChaCha8. Both are chains of dependent steps that leave
+//! the processor mostly idle. Each simulated day opens thousands of streams for a single draw (bills, leads). Eight
+//! streams are therefore opened together, one per lane of a vector register, which takes a fifth of the time. The
+//! fallback is [`super::Streams::open`]. Tests check that both return the same bits.
 #![expect(unsafe_code, reason = "AVX2 intrinsics are unsafe; see the safety comments")]
 
 use std::arch::x86_64::{
@@ -11,15 +11,15 @@ use std::arch::x86_64::{
     _mm256_slli_epi32, _mm256_srli_epi32, _mm256_xor_si256,
 };
 
-/// Streams per batch.
+/// Number of streams per batch.
 pub const LANES: usize = 8;
 
 /// Key of a stream as 32-bit words.
 pub type Key = [u32; 8];
 
-/// The initial state of BLAKE3; its first four words enter every block.
+/// First four words of the initial state of BLAKE3, which are part of every block.
 const BLAKE3_INITIAL_STATE: [u32; 4] = [0x6a09_e667, 0xbb67_ae85, 0x3c6e_f372, 0xa54f_f53a];
-/// The word order of each round of BLAKE3.
+/// The order of message words in each round of BLAKE3.
 const BLAKE3_WORD_ORDER: [[usize; 16]; 7] = [
     [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     [2, 6, 3, 10, 7, 0, 4, 13, 1, 11, 12, 5, 9, 14, 15, 8],
@@ -40,7 +40,7 @@ pub fn is_available() -> bool {
 
 /// Returns the stream keys of eight entities, or `None` if AVX2 is not [`is_available`].
 pub fn keys<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> Option<[Key; LANES]> {
-    // SAFETY: `available` checked that the processor supports AVX2.
+    // SAFETY: `is_available` checked that the processor supports AVX2.
     is_available().then(|| unsafe { keys_in_lanes(part, entities) })
 }
 
@@ -49,7 +49,7 @@ pub fn first_words<const KEYS: usize>(
     part: &[u8; 32],
     entities: &[[u64; KEYS]; LANES],
 ) -> Option<[u64; LANES]> {
-    // SAFETY: `available` checked that the processor supports AVX2.
+    // SAFETY: `is_available` checked that the processor supports AVX2.
     is_available().then(|| unsafe { first_words_in_lanes(part, entities) })
 }
 
@@ -64,7 +64,7 @@ fn keys_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LA
     keys
 }
 
-/// Returns the first words of the first ChaCha8 block of each stream.
+/// Returns the first 64-bit word of each stream, which is in its first ChaCha8 block.
 #[target_feature(enable = "avx2")]
 fn first_words_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [u64; LANES] {
     let mut state = [splat(0); 16];
@@ -91,7 +91,7 @@ fn first_words_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KE
     words
 }
 
-/// Returns the keyed BLAKE3 hash of each entity's keys, which is the key of its stream.
+/// Returns the keyed BLAKE3 hash of each entity's keys. The hash is the key of the entity's stream.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn hash_keys<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [__m256i; 8] {
@@ -169,7 +169,7 @@ fn splat(word: u32) -> __m256i {
     _mm256_set1_epi32(word.cast_signed())
 }
 
-/// Returns a vector with a separate word in each lane.
+/// Returns a vector with one of the words in each lane.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn from_lanes(words: [u32; LANES]) -> __m256i {

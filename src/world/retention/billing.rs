@@ -1,7 +1,7 @@
-//! Bills (`docs/mechanics/retention/billing.md`).
+//! Billing of subscribers (`docs/mechanics/retention/billing.md`).
 //!
-//! Nothing between an individual's decision and its bill affects either, so subscribers who stay are billed
-//! in the same sweep. New customers and enterprises are billed after the day's deals.
+//! No step between an individual's decision and bill affects either, so individuals who stay are billed in the sweep
+//! that computes their decision. New customers and enterprises are billed after the day's deals.
 
 use std::collections::BTreeSet;
 
@@ -16,13 +16,13 @@ use crate::params::Params;
 use crate::product::usage::usage_rate;
 use crate::random::{Part, Word};
 
-/// Returns the price on which a bill is based. A price cut applies to all customers and is stored; an
-/// increase never changes a stored price. Negotiated prices stay.
+/// Returns the price before discounts on which a bill is based. A price cut applies to existing subscribers, and a
+/// price increase does not. Negotiated prices do not change.
 pub fn billed_list_price(stored: f64, list: f64, negotiated: bool) -> f64 {
     if negotiated { stored } else { stored.min(list) }
 }
 
-/// Bills of rows of a block.
+/// Bills of several subscribers of one block.
 pub struct BlockBills {
     group: Group,
     number: u32,
@@ -30,14 +30,14 @@ pub struct BlockBills {
     changes: Vec<TermsChanged>,
 }
 
-/// Bills the individuals of a block who are due today and subscribed before today.
+/// Bills the individuals of a block who are due today, except new subscribers.
 pub fn bill_block(group: Group, number: u32, block: &mut Block, day: &DayContext<'_>) -> BlockBills {
     let due = if group.is_enterprise() { Vec::new() } else { due_today(block, day.day(), day.params) };
     bill_rows(group, number, block, due, day, &BTreeSet::new())
 }
 
-/// Bills new customers and enterprises and records all bills of the day. Enterprises in `suspended` pay
-/// nothing while their threat to leave is open. Returns the payments of the day, in dollars.
+/// Bills new customers and enterprises, and records all bills of the day. Enterprises in `suspended` pay nothing while
+/// their threat to cancel is open. Returns the sum of the day's payments in dollars.
 pub fn collect_payments(
     customers: &mut Customers,
     billed: Vec<BlockBills>,
@@ -84,7 +84,7 @@ fn bill_rows(
             let before = row_terms(block, at);
             payments.push(take_payment(group, block, at, day));
             let after = row_terms(block, at);
-            // Seats of enterprises drift between two bills; the record is updated with the bill.
+            // The seats of enterprises drift between two bills, so each bill records the terms.
             if after != before || group.is_enterprise() {
                 changes.push(after);
             }
@@ -94,7 +94,7 @@ fn bill_rows(
     BlockBills { group, number, payments, changes }
 }
 
-/// Records the payment and sets the terms of the next period.
+/// Returns the payment of a subscriber and sets the terms of the next billing period.
 fn take_payment(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Payment {
     let &DayContext { morning, settings, params, .. } = day;
     let floor = params.billing.effective_price_min;
@@ -116,7 +116,7 @@ fn take_payment(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>
     Payment { customer, amount: price * block.seats[at].trunc() }
 }
 
-/// Sets the usage rate of the new period from its draw and today's seats.
+/// Sets the usage rate of the new billing period from a random draw and today's seats.
 fn start_period(block: &mut Block, at: usize, rate: Word, params: &Params) {
     let (z, seats) = (rate.standard_normal(), block.seats[at].trunc());
     block.usage_rate[at] = usage_rate(block.usage_demand[at], seats, z, &params.customer_generation);

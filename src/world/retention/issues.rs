@@ -1,8 +1,8 @@
 //! Support issues: opening, resolution, and the effect of waiting on the relationship
 //! (`docs/mechanics/retention/issues.md`).
 //!
-//! Everything is decided from the values at the start of the day. Issues are found before the satisfaction update and
-//! settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget is allocated.
+//! All decisions depend on the values at the start of the day. The sweeps of [`crate::day`] find issues before the
+//! satisfaction update and settle issues after it. Between the two sweeps, the operations budget is allocated.
 
 use super::support_pools::ResolutionRound;
 use crate::canonical::canonical;
@@ -16,7 +16,7 @@ use crate::quality::relationship_as_read;
 use crate::random::{Part, word_below};
 use crate::settings::Settings;
 
-/// Returns the probability of a new issue today from the satisfaction at the start of the day and whole seats.
+/// Returns today's probability of a new issue, from the satisfaction at the start of the day and the number of whole seats.
 #[inline]
 pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &Issues) -> f64 {
     let rate = issues.base_issue_rate
@@ -25,7 +25,7 @@ pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &I
     (rate * seats).clamp(issues.issue_probability_min, issues.issue_probability_max)
 }
 
-/// Returns the mean number of a group's issues that a pool resolves today: (b + lambda x) k_g / k.
+/// Returns the mean number of a group's issues that a support pool resolves today: (b + lambda x) k_g / k.
 pub fn mean_resolved(
     base: f64,
     spend: f64,
@@ -39,7 +39,7 @@ pub fn mean_resolved(
     (base + per_dollar * spend) * f64::from(of_group) / f64::from(of_pool)
 }
 
-/// Returns the relationship after an issue was resolved that had been open for this many days.
+/// Returns the relationship after an issue is resolved that was open for `open_days` days.
 pub fn relationship_after_solution(relationship: f64, open_days: u32, outage: bool, params: &Params) -> f64 {
     let issues = &params.issues;
     if open_days > issues.quick_resolution_threshold_days || outage {
@@ -59,10 +59,10 @@ pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &
         .max(issues.relationship_min)
 }
 
-/// Issue numbering.
+/// The counter that numbers issues.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IssueDesk {
-    /// Number of the next issue.
+    /// Number that the next issue will get.
     pub next_issue: u32,
 }
 
@@ -74,33 +74,34 @@ impl Default for IssueDesk {
     }
 }
 
-/// Issues of one block as row positions, read at the start of the day.
+/// Issues of one block at the start of the day, as row positions.
 pub struct IssueBatch {
     pub(super) group: Group,
     pub(super) block: u32,
-    /// Rows with an open issue.
+    /// Positions of rows with an open issue.
     pub(super) open: Vec<u16>,
-    /// Rows whose customer opens an issue today.
+    /// Positions of rows whose customer opens an issue today.
     pub(super) new: Vec<u16>,
-    /// Which of the open issues are resolved.
+    /// Whether each issue of `open` is resolved today.
     pub(super) solved: Vec<bool>,
-    /// Number of the first new issue.
+    /// Number of the block's first new issue.
     pub(super) first_issue: u32,
 }
 
-/// Rows whose flags fit into one word.
+/// Number of rows whose flags fit into one 64-bit word.
 const ROWS_PER_WORD: usize = u64::BITS as usize;
 
-/// Finds the rows with an open issue and those that open one today.
+/// Finds the rows with an open issue and the rows whose customer opens an issue today.
 ///
-/// The conditions are unpredictable, so they are collected as bits without branches and turned into lists afterwards.
+/// The processor cannot predict the conditions. The loop therefore collects bits without branches and converts the
+/// bits to lists afterwards.
 pub fn find_issues(group: Group, number: u32, block: &Block, day: &DayContext<'_>) -> IssueBatch {
     let &DayContext { service, params, streams, .. } = day;
     let (day, outage) = (day.day(), service.outage);
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     let mut words = [0u32; CUSTOMERS_PER_BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
-    // Copied to locals so that the compiler knows they are constant.
+    // A local copy, so that the compiler knows that the parameters are constant.
     let issues = &params.issues.clone();
     let mut waiting = [0u64; CUSTOMERS_PER_BLOCK as usize / ROWS_PER_WORD];
     let mut calling = waiting;
@@ -143,7 +144,7 @@ fn set_bit_positions(bits: &[u64]) -> Vec<u16> {
     positions
 }
 
-/// Allocates the operations budget of the day among the open issues and numbers the new ones, in block order.
+/// Allocates today's operations budget among the open issues, and numbers the new issues in block order.
 pub fn allocate_resolutions(
     calls: &mut [IssueBatch],
     settings: &Settings,
@@ -160,18 +161,18 @@ pub fn allocate_resolutions(
     }
 }
 
-/// Results of the issues of a block.
+/// Results of settling the issues of a block.
 #[derive(Debug, PartialEq, Eq)]
 pub struct SettledIssues {
-    /// Whether any issue was open.
+    /// Whether any issue was open at the start of the day.
     pub any_open: bool,
     /// Numbers of the resolved issues.
     pub resolved: Vec<u32>,
-    /// The new issues.
+    /// Issues that were opened today.
     pub opened: Vec<IssueOpened>,
 }
 
-/// Resolves, ages and opens issues of a block. No row may have been removed since they were found.
+/// Resolves, ages and opens issues of a block. No row may have been removed since `issue_batch` was created.
 pub fn settle(block: &mut Block, issue_batch: &IssueBatch, day: &DayContext<'_>) -> SettledIssues {
     let &DayContext { service, params, .. } = day;
     let outage = service.outage;
@@ -182,7 +183,7 @@ pub fn settle(block: &mut Block, issue_batch: &IssueBatch, day: &DayContext<'_>)
     }
 }
 
-/// Records the results.
+/// Records the results of all blocks as facts.
 pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
     for settled_issues in by_block {
         facts.issues_aged |= settled_issues.any_open;
@@ -191,7 +192,7 @@ pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
     }
 }
 
-/// Resolves or ages the open issues of a block; returns the numbers of the resolved ones.
+/// Resolves or ages the open issues of a block. Returns the numbers of the resolved issues.
 fn settle_open(block: &mut Block, issue_batch: &IssueBatch, outage: bool, params: &Params) -> Vec<u32> {
     let mut resolved = Vec::with_capacity(issue_batch.solved.iter().filter(|solved| **solved).count());
     for (&at, &solved) in issue_batch.open.iter().zip(&issue_batch.solved) {

@@ -13,8 +13,8 @@ use super::identifiers::Group;
 use super::morning::Morning;
 use super::params::{DriftCounted, Params};
 
-/// Updates the stored required quality of a row: its curve at the price in force, with the budget of its last
-/// bill and the group's budget drift, before the market's expectations are added.
+/// Updates the required quality that a row stores. The required quality is computed from the row's curve and current
+/// price, with the budget of the last bill and the group's budget drift, without the market's expectations.
 ///
 /// The minimum budget applies only if the drift is not 0 (`docs/mechanics/retention/satisfaction.md`).
 #[inline]
@@ -23,8 +23,8 @@ pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Par
     block.required[at] = required_at_price(&curve, remembered, block.effective_price[at], c_drift, params);
 }
 
-/// Returns the required quality at a price, with the budget of the last bill (0: none yet) and the group's
-/// budget drift.
+/// Returns the required quality at a price, with the group's budget drift. `remembered` is the budget of the last
+/// bill, or 0 before the first bill.
 #[inline]
 pub fn required_at_price(curve: &Curve, remembered: f64, price: f64, c_drift: f64, params: &Params) -> f64 {
     let budget = if remembered != 0.0 { remembered } else { curve.c_max };
@@ -38,14 +38,14 @@ pub fn due_today(block: &Block, day: u32, params: &Params) -> Vec<usize> {
     block.due_positions((day % params.billing.billing_period_days) as u8)
 }
 
-/// Updates the required quality of all rows of a block.
+/// Updates the required quality that each row of a block stores.
 pub fn refresh_block(group: Group, block: &mut Block, morning: &Morning, params: &Params) {
     for at in 0..block.len() {
         refresh_required(block, at, morning.expectations[group].c_max, params);
     }
 }
 
-/// Returns the budget stored with a bill: max(15, c + dc); without dc if drift counts once.
+/// Returns the budget that is stored with a bill: max(15, c + dc), without dc if drift is counted once.
 pub fn remembered_budget(c_max: f64, c_drift: f64, params: &Params) -> f64 {
     let drift = match params.fidelity.drift_counted {
         DriftCounted::EveryRead => c_drift,

@@ -1,4 +1,4 @@
-//! The comparison of plans when an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
+//! The comparison of plans with which an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
 
 use super::renewal::{RenewalContext, ongoing_discount};
 use crate::context::DayContext;
@@ -9,24 +9,24 @@ use crate::identifiers::{ByPlan, Group, Plan};
 use crate::params::{Params, ServicePenalty};
 use crate::quality::{Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus};
 
-/// The plans as an individual perceives them, and its requirements.
+/// Prices and qualities of the plans for an individual, and the individual's requirements.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanComparison {
-    /// Today's list prices minus the ongoing discounts, dollars a month.
+    /// Today's list prices less the ongoing discounts, dollars per month.
     pub prices: ByPlan<f64>,
-    /// The quality terms of each plan.
+    /// Terms of the perceived quality of each plan.
     pub experiences: ByPlan<Experience>,
-    /// Quality lost to today's service, included in the delivered quality.
+    /// Quality loss from today's service, which the delivered quality already includes.
     pub service_penalty: f64,
-    /// The individual's curve.
+    /// Participation curve of the individual, without market drift.
     pub own_curve: Curve,
-    /// The market's change of the curve.
+    /// Market drift of the curve.
     pub expectation: Expectation,
-    /// Macro multiplier of the budget.
+    /// Macroeconomic multiplier of the budget.
     pub willingness_to_pay: f64,
 }
 
-/// Compares the plans for the individual at a position of a block.
+/// Creates the comparison of plans for the individual at a position of a block.
 pub fn compare_plans(
     group: Group,
     block: &Block,
@@ -45,7 +45,7 @@ pub fn compare_plans(
     let quality = &params.quality;
     let rate = block.usage_rate[at];
     let demand = quota_demand(rate * morning.weekday, rate, params);
-    // (`docs/mechanics/product/quality.md#terms-of-each-decision`)
+    // See `docs/mechanics/product/quality.md#terms-of-each-decision`.
     let experiences = ByPlan::from_fn(|plan| Experience {
         delivered: morning.delivered(group, plan) - service_penalty,
         relationship: relationship_bonus(block.relationship[at], quality),
@@ -70,31 +70,30 @@ impl PlanComparison {
         ByPlan::from_fn(|plan| perceived_quality(self.experiences[plan], params.fidelity.perceived_quality))
     }
 
-    /// Returns the curve with the market's change, and the budget with the effect of the economy.
+    /// Returns the curve with market drift, and with the effect of the economy on the budget.
     pub fn curve(&self, params: &Params) -> Curve {
         let curve = drifted_curve(self.own_curve, self.expectation, params);
         curve.with_budget(curve.c_max * self.willingness_to_pay)
     }
 
-    /// Returns the best acceptable plan, if any.
+    /// Returns the best acceptable plan, or `None` if no plan is acceptable.
     pub fn choice(&self, params: &Params) -> Option<Plan> {
         best_plan(&self.prices, &self.qualities(params), &self.curve(params), params)
     }
 
-    /// Returns the quality of a plan in excess of what its price requires. A plan is acceptable from 0 on if
-    /// its price is within the budget.
+    /// Returns the surplus of a plan. A plan is acceptable if its surplus is at least 0 and its price is within the budget.
     pub fn surplus(&self, plan: Plan, params: &Params) -> f64 {
         let quality = perceived_quality(self.experiences[plan], params.fidelity.perceived_quality);
         quality - required_quality(self.prices[plan], &self.curve(params), params)
     }
 }
 
-/// Returns the curve of an individual with the market's change.
+/// Returns the curve of an individual with market drift.
 pub fn drifted_curve(curve: Curve, expectation: Expectation, params: &Params) -> Curve {
     curve.with_drift(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
-/// Returns the acceptable plan with the largest surplus, the earlier one on a tie, or `None` if none is acceptable.
+/// Returns the acceptable plan with the largest surplus, or `None` if no plan is acceptable. On a tie, the earlier plan wins.
 ///
 /// A plan is acceptable if its price is within the budget of the curve and its quality is at least the
 /// required quality.
@@ -106,7 +105,7 @@ pub fn best_plan(
 ) -> Option<Plan> {
     let mut best: Option<(f64, Plan)> = None;
     for plan in Plan::ALL {
-        // No price requires less than the minimum of the curve, so most plans need no further evaluation.
+        // The required quality is never below the minimum of the curve, so most plans need no further evaluation.
         let most = qualities[plan] - curve.q_min.min(curve.q_max);
         if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
             continue;

@@ -11,7 +11,8 @@ use crate::retention::due_today;
 use crate::retention::plan_comparison::{compare_plans, drifted_curve};
 use crate::settings::Settings;
 
-/// Returns the monthly rate of involuntary churn from a standard normal draw; 0 if the group has none.
+/// Returns the monthly rate of involuntary churn. `z` is a standard normal draw. The rate is 0 for groups without
+/// involuntary churn.
 pub fn involuntary_rate(mean: f64, std: f64, z: f64, churn: &InvoluntaryChurn) -> f64 {
     if !churn.enable_involuntary_churn || (mean <= 0.0 && std <= 0.0) {
         return 0.0;
@@ -19,14 +20,14 @@ pub fn involuntary_rate(mean: f64, std: f64, z: f64, churn: &InvoluntaryChurn) -
     (mean + std * z).clamp(churn.mu_min, churn.mu_max)
 }
 
-/// Returns the rates of all groups in the month of a day; 0 for enterprises.
+/// Returns the monthly rate of involuntary churn of each group in the month of `day`. The rate is 0 for enterprises.
 pub fn involuntary_rates(day: u32, params: &Params, streams: &Streams) -> ByGroup<f64> {
     ByGroup::from_fn(|group| {
         if group.is_enterprise() { 0.0 } else { group_involuntary_rate(group, day, params, streams) }
     })
 }
 
-/// Returns the rate of a group in the month of a day.
+/// Returns the monthly rate of involuntary churn of a group in the month of `day`.
 pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
     let churn = &params.involuntary_churn;
     let month = day / churn.month_days;
@@ -43,58 +44,58 @@ pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: 
 /// An individual who cancelled today because no plan was acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CancelledIndividual {
-    /// Customer number.
+    /// Customer number of the individual.
     pub customer: u32,
-    /// Group.
+    /// Group of the individual.
     pub group: Group,
-    /// Running number within the group.
+    /// Running number of the individual within the group.
     pub n: u32,
     /// Satisfaction after today's update.
     pub satisfaction: f64,
-    /// Days subscribed.
+    /// Days since the subscription started.
     pub days_subscribed: u32,
-    /// The cancelled plan.
+    /// Plan of the cancelled subscription.
     pub plan: Plan,
-    /// Price paid, dollars a month.
+    /// Price of the cancelled subscription, dollars per month.
     pub price: f64,
 }
 
 /// Results of the billing decisions of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RenewalResults {
-    /// Cancellations, voluntary and involuntary.
+    /// Number of cancellations, voluntary and involuntary.
     pub cancellations: u32,
-    /// Switches to a plan with a higher list price than the stored one.
+    /// Number of switches to a plan whose list price is higher than the subscriber's stored price.
     pub upgrades: u32,
-    /// Other switches.
+    /// Number of other switches.
     pub downgrades: u32,
-    /// Individuals who found no acceptable plan.
+    /// Individuals who cancelled because no plan was acceptable.
     pub cancelled_individuals: Vec<CancelledIndividual>,
 }
 
-/// Shared inputs of the decisions of a day.
+/// Inputs that all billing decisions of a day share.
 pub struct RenewalContext<'a> {
-    /// The day.
+    /// Context of the day.
     pub day: &'a DayContext<'a>,
-    /// Monthly rate of involuntary churn by group.
+    /// Monthly rate of involuntary churn of each group.
     pub involuntary: ByGroup<f64>,
-    /// Macro multiplier of the budget by group.
+    /// Macroeconomic multiplier of each group's budgets.
     pub willingness_to_pay: ByGroup<f64>,
 }
 
-/// Decisions of the individuals of a block.
+/// Billing decisions of the individuals of a block.
 #[derive(Default)]
 pub struct BlockDecisions {
     endings: Vec<SubscriptionEnded>,
-    /// Individuals who found no acceptable plan.
+    /// Individuals who cancelled because no plan was acceptable.
     cancelled_individuals: Vec<CancelledIndividual>,
-    /// Reputation damage by each of them.
+    /// Reputation damage of each element of `cancelled_individuals`.
     damages: Vec<f64>,
     switches: Vec<(bool, TermsChanged)>,
 }
 
-/// Adds up and records the decisions of all blocks. Each individual without an acceptable plan damages the
-/// group's reputation, in order; failed payments do not.
+/// Adds up and records the decisions of all blocks. Each individual without an acceptable plan damages the reputation
+/// in the group, in order. Failed payments do not damage the reputation.
 pub fn record_decisions(
     by_block: Vec<BlockDecisions>,
     reputation: &mut ReputationBook,
@@ -123,7 +124,7 @@ pub fn record_decisions(
     renewals
 }
 
-/// Returns the change of reputation by each individual without an acceptable plan: negative.
+/// Returns the reputation change that each individual without an acceptable plan causes. The changes are negative.
 fn reputation_damages(gave_up: &[CancelledIndividual], day: &DayContext<'_>) -> Vec<f64> {
     let &DayContext { morning, params, streams, .. } = day;
     let keys_of =
@@ -150,7 +151,7 @@ pub fn payment_rolls(
     words
 }
 
-/// Lets the individuals of a block decide who are billed today; removes those who leave.
+/// Computes the decisions of the block's individuals who are due today. Removes the individuals who cancel.
 pub fn decide_block(
     group: Group,
     number: u32,
@@ -233,7 +234,7 @@ pub fn ongoing_discount(
     settings.promotion.sum(customer, group, plan).max(params.promotions.promotion_min)
 }
 
-/// Switches a row to another plan at today's terms; tenure continues. Returns whether it is an upgrade.
+/// Switches a subscriber to a different plan at today's terms. Tenure continues. Returns whether the switch is an upgrade.
 fn switch_plan(
     group: Group,
     block: &mut Block,
@@ -256,7 +257,7 @@ fn switch_plan(
     (upgrade, row_terms(block, at))
 }
 
-/// Returns the current terms of a row.
+/// Returns the current subscription terms of a row.
 pub fn row_terms(block: &Block, at: usize) -> TermsChanged {
     TermsChanged {
         subscription: block.subscription[at],
@@ -290,7 +291,7 @@ mod tests {
         Group::at(0).expect("S1")
     }
 
-    /// Runs `check` with the decision context of a given day and settings.
+    /// Runs `check` with the decision context of the given day and settings.
     fn with_judgement<R>(
         day: &Morning,
         settings: &Settings,
@@ -342,7 +343,7 @@ mod tests {
         });
     }
 
-    /// The decision only; bills are tested in `billing`.
+    /// Tests only the decision. Module `billing` tests the bill.
     #[test]
     fn price_increase_is_evaluated_at_the_list_price() {
         for (list, willingness, promotion, stays) in [

@@ -13,13 +13,13 @@ use crate::quality::{
 };
 use crate::reputation::{ReputationContribution, contribution};
 
-/// Returns the moving average: (1 - alpha) old + alpha instant.
+/// Returns the moving average of satisfaction: (1 - alpha) old + alpha instant.
 #[inline]
 pub fn smoothed_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
     (1.0 - alpha) * old + alpha * instant
 }
 
-/// Adds up the contributions of the blocks of each group, in their order.
+/// Adds up the contributions of each group's blocks, in block order.
 pub fn sum_by_group(by_block: Vec<(Group, ReputationContribution)>) -> ByGroup<ReputationContribution> {
     let mut moods = ByGroup::<ReputationContribution>::default();
     for (group, mood) in by_block {
@@ -28,20 +28,20 @@ pub fn sum_by_group(by_block: Vec<(Group, ReputationContribution)>) -> ByGroup<R
     moods
 }
 
-/// The terms of one subscriber's satisfaction update.
+/// The terms from which one subscriber's satisfaction is updated.
 #[derive(Debug, Clone, Copy)]
 pub struct SatisfactionTerms {
-    /// The terms of its perceived quality.
+    /// Terms of the subscriber's perceived quality.
     pub experience: Experience,
-    /// Quality lost to today's service, included in the delivered quality.
+    /// Quality loss from today's service, which the delivered quality already includes.
     pub service_penalty: f64,
-    /// Perceived quality.
+    /// Perceived quality of the subscriber.
     pub perceived: f64,
-    /// Quality that the price requires, before the market's expectations.
+    /// Required quality at the subscriber's price, without the market's expectations.
     pub required: f64,
-    /// The market's addition to the required quality.
+    /// Quality that the market's expectations add to the required quality.
     pub expectation: f64,
-    /// Perceived quality minus both.
+    /// Today's satisfaction: perceived quality less required quality and expectations.
     pub instant: f64,
     /// Satisfaction before the update.
     pub before: f64,
@@ -49,7 +49,7 @@ pub struct SatisfactionTerms {
     pub after: f64,
 }
 
-/// Computes the update of one subscriber without applying it; the block must be in the state before [`update_block`].
+/// Computes the satisfaction update of one subscriber without applying it. Must be called before [`update_block`].
 pub fn satisfaction_terms(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> SatisfactionTerms {
     let &DayContext { morning, service, ads, tenure, params, .. } = day;
     let quality = &params.quality;
@@ -101,7 +101,7 @@ struct DayInputs {
     ads: f64,
 }
 
-// Always inlined, because rows are vectorized only if this is part of the loop.
+// Always inlined, because the compiler vectorizes the loop over rows only if this function is part of the loop.
 #[inline(always)]
 fn build_experience(
     subscriber_inputs: SubscriberInputs,
@@ -124,15 +124,15 @@ fn build_experience(
     }
 }
 
-/// Returns the quota for which quota / demand equals demand / quota of the given one.
+/// Returns a quota q for which q / demand equals demand / `quota`.
 fn inverted_quota(quota: f64, daily_demand: f64) -> f64 {
     daily_demand * daily_demand / quota
 }
 
-/// Rows per batch: few enough for their looked-up values to stay in cache.
+/// Number of rows per batch, small enough for the looked-up values to stay in cache.
 const ROWS_PER_BATCH: usize = 64;
 
-/// Values that have to be looked up by row.
+/// Values that have to be looked up for each row.
 struct RowInputs {
     delivered: [f64; ROWS_PER_BATCH],
     quota: [f64; ROWS_PER_BATCH],
@@ -178,7 +178,7 @@ impl RowInputs {
     }
 }
 
-/// Updates the satisfaction of all rows of a block and returns their contributions to the group's reputation.
+/// Updates the satisfaction of all rows of a block and returns their contributions to the reputation in the group.
 ///
 /// Rows are processed in batches. Lookups, calculation and summation are separate loops over local copies, so
 /// that the compiler can vectorize the calculation.

@@ -1,4 +1,4 @@
-//! Resolution of open issues: pools of money resolve them one after the other
+//! Resolution of open issues by support pools, each with a part of the operations budget
 //! (`docs/mechanics/retention/issues.md#pools`).
 
 use super::issues::{IssueBatch, mean_resolved};
@@ -9,7 +9,7 @@ use crate::params::Params;
 use crate::random::{Part, Streams};
 use crate::settings::Settings;
 
-/// A pool of open issues that share one budget.
+/// A set of open issues that share one operations budget.
 #[derive(Debug, Clone, Copy)]
 enum SupportPool {
     Everybody,
@@ -20,7 +20,7 @@ enum SupportPool {
 }
 
 impl SupportPool {
-    /// Returns the keys of the pool's stream: kind and member.
+    /// Returns the keys of the pool's random stream: kind and number of the pool.
     fn keys(self) -> [u64; 2] {
         match self {
             SupportPool::Everybody => [0, 0],
@@ -46,7 +46,7 @@ impl SupportPool {
             || matches!(self, SupportPool::Group(pool_group) if pool_group == group)
     }
 
-    /// Returns the only group that a pool can contain, if there is one.
+    /// Returns the group of a pool that contains issues of only one group, otherwise `None`.
     fn only_group(self) -> Option<Group> {
         match self {
             SupportPool::Group(group) | SupportPool::GroupPlan(group, _) => Some(group),
@@ -55,7 +55,7 @@ impl SupportPool {
     }
 }
 
-/// The resolution of issues on one day.
+/// The resolution of all issues on one day.
 pub(super) struct ResolutionRound<'a> {
     pub day: u32,
     pub calls: &'a mut [IssueBatch],
@@ -65,7 +65,7 @@ pub(super) struct ResolutionRound<'a> {
 }
 
 impl ResolutionRound<'_> {
-    /// Processes pools from the widest to the narrowest; each works on the issues that earlier ones left open.
+    /// Processes the pools from the widest to the narrowest. Each pool resolves issues that earlier pools left open.
     pub fn resolve_all(&mut self, settings: &Settings) {
         let base = self.params.issues.issue_resolution_base_rate;
         self.resolve_pool(SupportPool::Everybody, base, settings.core.operations);
@@ -104,7 +104,7 @@ impl ResolutionRound<'_> {
             let solved = stream.poisson(mean).min(u64::from(pool_members.count())) as usize;
             let mut order: Vec<u32> = (0..pool_members.count()).collect();
             let mut chosen = vec![false; order.len()];
-            // A partial shuffle: the first `solved` members are a uniform sample without replacement.
+            // Partial shuffle: the first `solved` members are a uniform sample without replacement.
             for first in 0..solved {
                 let other = first + stream.index(order.len() - first);
                 order.swap(first, other);
@@ -137,8 +137,8 @@ impl ResolutionRound<'_> {
     }
 }
 
-/// Open issues of a group in a pool, in block order, as runs of consecutive entries. If a pool contains all
-/// issues and none is resolved yet, as in the first pool of a day, each block is one run.
+/// Open issues of a group in a pool, in block order, stored as runs of consecutive entries of an [`IssueBatch`]. A
+/// block is a single run if the pool contains all its issues and none is resolved, as in the first pool of a day.
 #[derive(Default)]
 struct PoolMembers {
     runs: Vec<MemberRun>,
@@ -146,11 +146,11 @@ struct PoolMembers {
 }
 
 struct MemberRun {
-    /// Number of its first member.
+    /// Number of the run's first member within the pool.
     first: u32,
-    /// Index of the block's batch of issues.
+    /// Index of the block's issue batch.
     calls: u32,
-    /// Entry of its first member in that batch.
+    /// Position of the run's first member in the issue batch.
     entry: u32,
 }
 
@@ -171,7 +171,7 @@ impl PoolMembers {
         }
     }
 
-    /// Marks the chosen issues as resolved; `chosen` has one value per member.
+    /// Marks the chosen issues as resolved. `chosen` has one value per member.
     fn mark_solved(&self, chosen: &[bool], calls: &mut [IssueBatch]) {
         let ends = self.runs.iter().skip(1).map(|next| next.first).chain([self.count]);
         for (run, end) in self.runs.iter().zip(ends) {

@@ -1,4 +1,4 @@
-//! Tests that a world that replays the recorded series reproduces the figures measured with it.
+//! Tests that a world with replayed series reproduces the figures that were measured in the released simulator.
 
 use super::*;
 use crate::day::step_day;
@@ -22,7 +22,7 @@ fn replay_params() -> Params {
         .expect("parameters")
 }
 
-/// Rows of a file of measured figures.
+/// Returns the rows of a file with measured figures.
 macro_rules! measured {
     ($file:literal) => {
         include_str!(concat!("../../../tests/data/seed42/", $file, ".csv"))
@@ -58,7 +58,7 @@ fn run_untouched_company(seed: u64, mut each: impl FnMut(&World, &Facts)) {
 fn economy_matches_the_record_daily() {
     let pmi: Vec<f64> = measured!("pmi_daily").map(|row| number(row[1])).collect();
     let mut published: Vec<(u32, Reading)> = Vec::new();
-    // The seed of the run has no effect.
+    // Use a different seed, because the seed of the run has no effect on replayed series.
     run_untouched_company(7, |world, facts| {
         assert_eq!(world.market.economy.pmi.to_bits(), pmi[world.day as usize - 1].to_bits());
         published.extend(facts.readings.iter().map(|reading| (world.day, *reading)));
@@ -84,7 +84,7 @@ fn macro_multipliers_match_the_record() {
                 (Dimension::WillingnessToPay, row[3]),
                 (Dimension::SeatCount, row[4]),
             ] {
-                // Groups without this sensitivity have no value.
+                // The file has no value for groups without this sensitivity.
                 if !text.is_empty() {
                     assert!((multiplier(dimension) - number(text)).abs() < 1e-12, "{row:?}");
                 }
@@ -126,7 +126,7 @@ fn surges_match_the_record() {
     let mut seen = Vec::new();
     run_untouched_company(42, |world, _| {
         if world.day == 402 {
-            // The surge of day 405 acts from the first day of its week.
+            // The surge of day 405 starts on the first day of its week.
             let factor = surge_factor(402, &world.market.surges, SurgeStart::Week);
             assert_eq!(factor, 6.745419511721691);
         }

@@ -1,7 +1,6 @@
-//! Cut and changed bytes: damage is always detected, and everything that can be recovered is recovered.
+//! Truncated files and changed bytes: damage is always detected, and all recoverable data is recovered.
 //!
-//! Every test run tries a few positions, and 2,000 in
-//! `.ci/full`.
+//! Every test run tries a few positions, and `.ci/full` tries 2,000.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +15,8 @@ use super::run::{copy, create, open, runs, view};
 use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
-/// Plays a run of some weeks with decisions in the current one and closes it properly. Returns its folder and its visible state.
+/// Plays a run of several weeks with decisions in the current week, and closes it properly. Returns its folder and its
+/// visible state.
 fn closed_run(place: &Path) -> (PathBuf, Value) {
     let mut session = create(place, 21, 60);
     let folder = session.folder().expect("a folder").to_owned();
@@ -33,7 +33,7 @@ fn closed_run(place: &Path) -> (PathBuf, Value) {
     (folder, view)
 }
 
-/// Changes a byte, or truncates the file at its position.
+/// Changes a random byte of a file, or truncates the file at this byte.
 fn damage_file(file: &Path, dice: &mut Dice) -> (usize, bool) {
     let mut bytes = fs::read(file).expect("bytes");
     let (at, cut) = (dice.roll(bytes.len()), dice.roll(2) == 0);
@@ -75,7 +75,7 @@ fn check_damage_to_the_trajectory(places: usize) {
         let (at, cut) = damage_file(&path, &mut dice);
         let hurt = fs::read(&path).expect("bytes");
         match Session::open(&place, Access::Write, true) {
-            // Only a last line without its end may be dropped.
+            // Only a last line without a line end may be dropped.
             Ok(mut session) => {
                 assert!(
                     at >= whole[..whole.len() - 1].iter().rposition(|b| *b == b'\n').expect("a line end")
@@ -93,7 +93,7 @@ fn check_damage_to_the_trajectory(places: usize) {
                     "byte {at}, cut {cut}: {text}"
                 );
                 assert_eq!(fs::read(&path).expect("bytes"), hurt, "a failed opening changes nothing");
-                // Read-only opening fails, too.
+                // Opening the run read-only also fails.
                 assert!(Session::open(&place, Access::Read, false).is_err(), "byte {at}, cut {cut}");
                 refused += 1;
             }
@@ -121,7 +121,7 @@ fn random_damage_is_detected_or_repaired() {
     check_damage_to_the_trajectory(1000);
 }
 
-/// The sum protects the last line: every changed byte is detected, even without database and snapshot.
+/// The checksum protects the last line: every changed byte is detected, even without the database and the snapshot.
 #[test]
 fn every_byte_of_the_last_line_is_verified() {
     let (runs_folder, other) = (runs(), runs());
@@ -152,7 +152,7 @@ fn missing_last_lines_are_detected() {
         let lines = Trajectory::parse(&whole[..*end]).expect("lines").lines;
         let error = match Session::open(&place, Access::Write, true) {
             Err(error) => error.to_string(),
-            // The database stores the position of the last call or week; later views and queries do not change it.
+            // The database stores the position of the last call or week. Later views and queries do not change this position.
             Ok(_) => {
                 let rest = Trajectory::parse(&whole).expect("lines").lines.split_off(lines.len());
                 let idle = |line: &Line| match &line.record {

@@ -1,7 +1,6 @@
-//! The program is killed at random moments of plain mode: everything that it confirmed with `ok` is recorded.
+//! Plain mode is killed at random moments: every action that the program confirmed with `ok` is recorded.
 //!
-//! 12 kills in every test run (`tests/program/terminal` kills the console), and 200 in
-//! `.ci/full`.
+//! A test run has 12 kills, and `.ci/full` has 200. `tests/program/terminal` kills the console.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -26,7 +25,7 @@ fn start(runs: &Path, options: &[&str]) -> Child {
     command.spawn().expect("the program starts")
 }
 
-/// Returns random input: about six lines per week.
+/// Returns random input for plain mode, about six lines per week.
 fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     let mut lines = String::new();
     if begins {
@@ -47,15 +46,15 @@ fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     lines
 }
 
-/// Plays until a random moment, kills the program, and returns its output so far.
+/// Plays until a random moment, kills the program, and returns its output up to this moment.
 fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value> {
     let mut pipe = child.stdin.take().expect("a pipe");
-    // The reader may end before everything is written.
+    // The program may end before all input is written.
     let writer = std::thread::spawn(move || drop(pipe.write_all(script.as_bytes())));
     let mut answers = BufReader::new(child.stdout.take().expect("a pipe")).lines();
     let mut confirmed = Vec::new();
     let mut read = |confirmed: &mut Vec<Value>| match answers.next() {
-        // The kill may have cut the last line, which confirms nothing then.
+        // If the kill truncated the last line, the line confirms no action.
         Some(Ok(line)) => {
             confirmed.extend(serde_json::from_str::<Value>(&line).ok());
             true
@@ -113,7 +112,7 @@ fn check_kills(count: usize) {
     let mut weeks = 0;
     for number in 0..count {
         let place = runs();
-        // Up to three kills per run; after each, everything confirmed so far must be recorded.
+        // A run is killed up to three times. After each kill, all actions confirmed before must be recorded.
         let mut confirmed: Vec<String> = Vec::new();
         for life in 0..1 + dice.roll(3) {
             let exists =

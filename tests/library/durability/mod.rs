@@ -1,4 +1,4 @@
-//! Durability of confirmed actions: runs that are closed, killed, damaged, or lose power, and are opened again.
+//! Durability of confirmed actions: runs that are closed, killed, damaged or lose power are opened again.
 
 mod damage;
 mod kill;

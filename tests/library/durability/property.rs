@@ -1,7 +1,7 @@
-//! Invariants of random games: cash is the sum of the ledger, every subscriber is a customer, and the same decisions lead to the
-//! same state, with interruptions at any point, on one thread and on two.
+//! Invariants of runs with random actions: cash is the sum of the ledger, and every subscriber is a customer. The same
+//! decisions lead to the same state, with interruptions at any point, on one thread and on two threads.
 //!
-//! 16 games in every test run, 1,000 in `.ci/full`.
+//! A test run plays 16 random runs, `.ci/full` plays 1,000.
 
 use std::path::Path;
 
@@ -44,7 +44,7 @@ fn check_invariants(session: &mut Session, seed: u64) {
     let odd =
         "SELECT COUNT(*) FROM service_day WHERE error_rate < 0 OR error_rate > 1 OR total_usage_units < 0";
     assert_eq!(query_number(session, odd), 0.0, "game {seed}");
-    // Latency has no minimum, so its noise of 50 ms can make it negative, but not by eight standard deviations.
+    // Noise with a standard deviation of 50 ms can make latency negative, but latency must be within eight standard deviations.
     let latency = "SELECT COUNT(*) FROM service_day WHERE p95_ms IS NULL OR ABS(p95_ms - 180 \
                    - 800 * MAX(0, 1.0 * total_usage_units / capacity_units - 1)) > 400";
     assert_eq!(query_number(session, latency), 0.0, "game {seed}");
@@ -52,7 +52,7 @@ fn check_invariants(session: &mut Session, seed: u64) {
     assert_eq!(query_number(session, issues), 0.0, "game {seed}");
 }
 
-/// Returns the state of a run folder, simulated from its first line on a number of threads.
+/// Returns the state hash of a run, simulated from its first line on a number of threads.
 fn verified_state(folder: &Path, threads: usize) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| verify(folder)).unwrap_or_else(|error| panic!("{error}")).state_hash
@@ -69,7 +69,7 @@ fn check_random_run(seed: u64) {
     for _ in 0..WEEKS {
         apply_random_actions(&mut session, &mut dice);
         if dice.roll(3) == 0 {
-            // Closed properly, or dropped like at the end of a program.
+            // The session is closed properly, or dropped as at the end of a program.
             if dice.roll(2) == 0 {
                 session.save().expect("saved");
             }
@@ -95,7 +95,7 @@ fn check_random_run(seed: u64) {
     assert_eq!(Some(verified_state(&folder, 2)), states, "game {seed}");
 }
 
-/// Returns and prints the seeds; `NOVAMIND_TEST_SEED` sets the first one.
+/// Checks runs with `count` seeds and prints the seeds. `NOVAMIND_TEST_SEED` sets the first seed.
 fn check_random_runs(first: u64, count: u64) {
     let offset = std::env::var("NOVAMIND_TEST_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
     println!("games {} to {}", offset + first, offset + first + count - 1);

@@ -1,4 +1,4 @@
-//! Random games: actions drawn from a seed, some of which are correctly rejected.
+//! Random actions, which are drawn from a seed. Some actions are invalid and must be rejected.
 
 use novamind::record::trajectory::record::Via;
 use novamind::session::Session;
@@ -15,14 +15,14 @@ const QUERIES: [&str; 3] =
     ["SELECT COUNT(*) FROM customers", "SELECT nothing FROM ledger", "SELECT * FROM service_day"];
 const PLANS: [&str; 3] = ["A", "B", "C"];
 
-/// An action.
+/// A random action of the player.
 #[derive(Debug, Clone)]
 pub enum RandomAction {
     /// A tool call.
     Call(&'static str, Value),
     /// Undo of the last setting.
     Undo,
-    /// A query.
+    /// A SQL query.
     Query(&'static str),
     /// A change of the notes.
     Memo(String),
@@ -31,7 +31,7 @@ pub enum RandomAction {
 }
 
 impl RandomAction {
-    /// Returns a random action for a company with known waiting threads.
+    /// Returns a random action. `waiting` contains the numbers of the enterprises that wait for an answer.
     pub fn random(dice: &mut Dice, waiting: &[u32]) -> RandomAction {
         match dice.roll(24) {
             0 => RandomAction::Undo,
@@ -45,7 +45,7 @@ impl RandomAction {
         }
     }
 
-    /// Performs the action. Rejections are valid results.
+    /// Performs the action. A rejection is a valid result.
     pub fn apply(&self, session: &mut Session) {
         match self {
             RandomAction::Call(tool, args) => drop(session.call(tool, args, Via::Form)),
@@ -124,14 +124,14 @@ fn random_deal(dice: &mut Dice, waiting: &[u32]) -> (&'static str, Value) {
     ("send_enterprise_deal", json!({ "deals": [{ "customer_id": customer, "offerings": offerings }] }))
 }
 
-/// Returns up to five actions of a decision day.
+/// Performs up to five random actions on a decision day.
 pub fn apply_random_actions(session: &mut Session, dice: &mut Dice) {
     for _ in 0..dice.roll(6) {
         apply_random_action(session, dice);
     }
 }
 
-/// Returns a random action.
+/// Performs a random action.
 pub fn apply_random_action(session: &mut Session, dice: &mut Dice) {
     let waiting: Vec<u32> =
         session.company().observe().waiting.iter().map(|thread| thread.customer).collect();

@@ -1,10 +1,11 @@
-//! Runs that other builds recorded replay to the same states.
+//! Runs that were recorded by other builds replay to the same states.
 //!
-//! `tests/data/recorded` has a run recorded by a development build and one by a release build, which every build verifies. It
-//! also has a run of a company that uses every setting, and one of a scenario that later got another key. They pin the
-//! mechanics: a change of the results of decisions must increase `world::MECHANICS` and record the runs again.
+//! `tests/data/recorded` contains a run of a development build and a run of a release build, which every build
+//! verifies. It also contains a run that uses every setting, and a run of a scenario that later received an additional
+//! key. The runs pin the mechanics: a change that affects the results of decisions must increase `world::MECHANICS`
+//! and record the runs again.
 //!
-//! `format2-*` are runs of format 2, one of every kind. `tests/data/recorded/README.md` lists them.
+//! `format2-*` are runs of format 2, one run of every kind. `tests/data/recorded/README.md` lists them.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -45,7 +46,7 @@ fn recorded_run_with_every_setting_verifies() {
     let folder = copy(&recorded_run_folder("everything"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (119, 17));
-    // A tool that is not in the run would not be tested.
+    // The run must contain every tool, because a missing tool would not be tested.
     let mut session = Session::open(&folder, Access::Read, true).expect("it opens");
     for (least, sql) in [
         (20, "SELECT count(*) FROM service_day WHERE downtime_minutes > 0"),
@@ -78,7 +79,7 @@ fn run_of_a_scenario_with_a_later_key_verifies() {
     assert!(!session.company().observe().has_own_parameters, "it plays the scenario as its version had it");
 }
 
-/// Runs of format 2, one of every kind: last day, number of states, prefix of the last state hash.
+/// Name, last day, number of states, and prefix of the last state hash of each run of format 2.
 const FORMAT_2: [(&str, u32, usize, &str); 16] = [
     ("format2-adopted", 42, 6, "1dd30530ca85389a"),
     ("format2-baseline", 21, 3, "f8ff62b143bd28af"),
@@ -130,12 +131,12 @@ fn runs_of_format_2_cover_all_line_kinds_and_tools() {
     // `memo` is written in format 1 only.
     let known = known.map(|(kind, _)| kind.clone()).filter(|kind| kind != "memo");
     assert_eq!(kinds, known.collect());
-    // `query` has separate lines.
+    // The tool `query` is recorded in lines of a separate kind.
     let catalogue = ToolId::all().map(ToolId::name).filter(|tool| *tool != "query");
     assert_eq!(catalogue.filter(|tool| !tools.contains(*tool)).collect::<Vec<_>>(), [""; 0]);
 }
 
-/// Digests of the parameters of all scenarios, which recorded runs have.
+/// Digests of the parameters of all scenarios, which are stored in recorded runs.
 const DIGESTS: [(&str, &str); 13] = [
     ("default", "a9623642a136c0a4"),
     ("competitor-hard", "666f481a1d3f48e4"),

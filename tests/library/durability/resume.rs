@@ -9,7 +9,7 @@ use super::run::{copy, create, open, runs, view};
 use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
-/// At every week and between its decisions, a reopened run equals the uninterrupted one, and continues identically.
+/// At every week and between its decisions, a reopened run equals the uninterrupted run and continues identically.
 #[test]
 fn snapshot_restores_the_complete_state() {
     let (runs_folder, other) = (runs(), runs());
@@ -21,12 +21,12 @@ fn snapshot_restores_the_complete_state() {
         apply_random_actions(&mut straight, &mut dice);
         straight.save().expect("saved");
         let again = copy(&folder, &other.path().join(number.to_string()));
-        // The snapshot can only be used with an up-to-date database.
+        // A snapshot can only be used with an up-to-date database.
         assert!(again.join("snapshot.bin").exists());
         let mut resumed = open(&again);
         assert_eq!(resumed.remarks(), [""; 0], "week {number}");
         assert_eq!(view(&mut resumed), view(&mut straight), "week {number}");
-        // Undo works for actions before the run was closed.
+        // Undo also reverts actions from before the run was closed.
         let seed = dice.roll(1 << 20) as u64;
         let go_on = |session: &mut Session| {
             let mut dice = Dice::new(seed);
@@ -37,7 +37,7 @@ fn snapshot_restores_the_complete_state() {
         go_on(&mut straight);
         go_on(&mut resumed);
         let (mut left, mut right) = (view(&mut resumed), view(&mut straight));
-        // Only the clock differs.
+        // The recorded time of submission differs, so it is replaced before the comparison.
         for view in [&mut left, &mut right] {
             view["rows"][4] = "submitted at".into();
         }
@@ -75,12 +75,12 @@ fn unusable_snapshots_are_replaced_by_replay() {
     for (name, bytes, text) in [
         ("none", None, None),
         ("an earlier one", Some(early), None),
-        ("one of another run", Some(foreign), Some("of another run")),
+        ("one of another run", Some(foreign), Some("another run")),
         ("a damaged one", Some(changed), Some("is damaged")),
         ("half of one", Some(late[..late.len() / 2].to_vec()), Some("is damaged")),
         ("almost nothing", Some(late[..30].to_vec()), Some("is truncated")),
-        ("an empty one", Some(Vec::new()), Some("another version or damaged")),
-        ("one of another format", Some(of_the_future), Some("another version or damaged")),
+        ("an empty one", Some(Vec::new()), Some("another version or is damaged")),
+        ("one of another format", Some(of_the_future), Some("another version or is damaged")),
     ] {
         let place = copy(&folder, &other.path().join(name));
         match bytes {
@@ -101,7 +101,7 @@ fn unusable_snapshots_are_replaced_by_replay() {
     }
 }
 
-/// Reading a run neither needs nor changes other files than its trajectory.
+/// Reading a run requires only its trajectory and changes no file.
 #[test]
 fn reading_a_run_changes_no_files() {
     let runs_folder = runs();

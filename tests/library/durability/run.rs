@@ -1,4 +1,4 @@
-//! Helpers: a run in a separate folder, and the comparison of two sessions of the same run.
+//! Helpers that create, open and copy a run, and that compare two sessions of the same run.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,12 +8,12 @@ use novamind::session::{Access, NewRun, Session, Storage};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// A temporary folder for runs.
+/// Returns a temporary folder for runs.
 pub fn runs() -> TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
-/// Creates a run with a seed.
+/// Creates a run with a seed and a number of days.
 pub fn create(runs: &Path, seed: u64, days: u32) -> Session {
     let storage = Storage::Runs(runs.to_owned());
     let new = NewRun { seed: Some(seed), days: Some(days), storage, ..NewRun::default() };
@@ -36,7 +36,7 @@ pub fn copy(folder: &Path, to: &Path) -> PathBuf {
     path
 }
 
-/// Returns everything visible of a session, and its state hash.
+/// Returns all visible data of a session, and its state hash.
 pub fn view(session: &mut Session) -> Value {
     let totals = [
         "SELECT COUNT(*), SUM(amount), SUM(id * amount) FROM ledger",
@@ -49,7 +49,7 @@ pub fn view(session: &mut Session) -> Value {
         "SELECT COUNT(*), SUM(LENGTH(type || message)) FROM notifications",
         "SELECT COUNT(*), MAX(day) FROM config_history",
     ];
-    // Not `query`, which would be recorded.
+    // The tool `query` is not used, because its calls would be recorded.
     session.wait_for_database().expect("a database");
     let connection = session.database().open_connection().expect("a connection");
     let limits = session.company().query_limits();

@@ -1,4 +1,5 @@
-//! Sealed snapshots: the file alone reveals nothing, and one that was sealed by a study needs its secret.
+//! Sealed snapshots: the file alone reveals no data, and a snapshot that was sealed by a study can only be read with
+//! the study's key.
 
 use std::fs;
 
@@ -28,7 +29,7 @@ fn snapshot_is_encrypted() {
         let sealed = file.strip_prefix(TITLE).expect("a title");
         let text = |byte: &u8| byte.is_ascii_graphic() || *byte == b' ';
         let longest = sealed.split(|byte| !text(byte)).map(<[u8]>::len).max().expect("bytes");
-        // Random bytes of this length contain runs of a dozen or two printable bytes by chance.
+        // Random bytes of this length contain sequences of up to about twenty printable bytes by chance.
         assert!(longest < 32, "{longest} printable bytes in a row");
         let mut counts = [0usize; 256];
         sealed.iter().for_each(|byte| counts[usize::from(*byte)] += 1);
@@ -73,14 +74,14 @@ fn study_snapshot_requires_its_seal_key() {
     let remark = with("none", &SealKey::default());
     assert!(remark.contains("sealed with the key of a study and is not used"), "{remark}");
     let remark = with("another", &SealKey::with_study_secret(&[4; 32]));
-    assert!(remark.contains("damaged or of another run"), "{remark}");
-    // Playing with the secret seals with the secret again.
+    assert!(remark.contains("damaged or belongs to another run"), "{remark}");
+    // A session that was opened with the key seals its snapshots with the key again.
     let mut session = Session::open_sealed(&folder, Access::Write, true, key.clone()).expect("it opens");
     advance_week(&mut session);
     session.save().expect("saved");
     drop(session);
     assert_eq!(fs::read(folder.join("snapshot.bin")).expect("a snapshot")[TITLE.len()], b's');
-    // A study can also open a run outside of a study.
+    // A run that was created outside of a study can also be opened with the key of a study.
     let mut plain = create(runs_folder.path(), 6, 60);
     plain.save().expect("saved");
     let folder = plain.folder().expect("a folder").to_owned();

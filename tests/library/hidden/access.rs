@@ -1,4 +1,4 @@
-//! Permissions for hidden tables, recorded lines, and that other connections do not have these tables.
+//! Hidden tables: permissions, recorded lines, and connections without these tables.
 
 use std::fs;
 
@@ -59,7 +59,7 @@ fn hidden_queries_are_recorded_without_changing_the_state() {
     expected.push(("sql".to_owned(), "SELECT c_mx FROM hidden.customers".to_owned(), 3));
     assert_eq!(inspections(&trajectory), expected);
     assert_eq!(verify(&place).expect("it verifies").day, 21);
-    // After reopening, the tables exist again.
+    // After the run is reopened, the hidden tables exist again.
     let mut again = Session::open(&place, Access::Write, true).expect("it opens");
     assert_eq!(query_hidden(&mut again, "SELECT max(day) FROM hidden.groups"), [[integer(21)]]);
 }
@@ -78,7 +78,10 @@ fn unfinished_runs_reject_hidden_queries_uniformly() {
             ["SELECT * FROM hidden.groups", "SELECT 1", "", "nonsense", "SELECT * FROM hidden.nothing"];
         for (sql, day) in asked.into_iter().zip([None, Some(3), Some(9000), None, Some(1)]) {
             let refused = session.inspect().query_hidden_tables(sql, day).expect_err("hidden").to_string();
-            assert_eq!(refused, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+            assert_eq!(
+                refused,
+                "not_in_this_mode: the x-ray is available in debug runs and in runs that have ended"
+            );
         }
         assert!(session.inspect().hidden_query_interrupt().is_err());
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
@@ -120,7 +123,7 @@ fn other_connections_report_an_unknown_table() {
         open_many_markets(&mut session);
         advance_week(&mut session);
         if mode == Mode::Debug {
-            // Also after a query of the x-ray.
+            // The tables stay unknown to other connections after a query of the x-ray.
             hidden_tables().iter().for_each(|table| {
                 query_hidden(&mut session, &format!("SELECT * FROM {}", table.name));
             });

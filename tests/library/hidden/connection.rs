@@ -1,4 +1,4 @@
-//! Results, rejections and limits of the connection of the x-ray.
+//! Results, rejections and limits of the database connection of the x-ray.
 
 use novamind::database::Cell;
 use novamind::insight::Inspect;

@@ -13,7 +13,7 @@ use novamind::world::market::economy::Dimension;
 use super::{cell, integer, make_offers, open_many_markets, query_hidden, run_in, text};
 use crate::support::company::advance_week;
 
-/// Rows by table and day, collected from the simulator during play.
+/// Expected rows by table, which are collected from the simulator after each day.
 #[derive(Default)]
 struct WatchedTables(BTreeMap<&'static str, Vec<Vec<Cell>>>);
 
@@ -108,7 +108,7 @@ fn hidden_tables_match_the_state_of_each_day() {
     let mut session = run_in(folder.path(), Mode::Debug, 200);
     open_many_markets(&mut session);
     let mut watched = WatchedTables::default();
-    // Queries at several times: the tables are extended.
+    // Queries in several weeks, because the tables are extended by each query.
     for (week, asks) in (1..=20).zip([true, false, false, true, false, false, false].into_iter().cycle()) {
         watched_week(&mut session, &mut watched);
         if !asks && week != 20 {
@@ -126,13 +126,13 @@ fn hidden_tables_match_the_state_of_each_day() {
     let moved =
         query_hidden(&mut session, "SELECT 1 FROM hidden.drift WHERE global_quality > 0 AND c_max <> 0");
     assert!(!moved.is_empty(), "something has drifted");
-    // Measurements are published 30 days later, as in the visible table.
+    // PMI measurements are published 30 days later, as in the visible table.
     let sql = "SELECT count(*) FROM hidden.pmi AS own JOIN macroeconomic_conditions AS told \
                ON told.day = own.measured_day AND told.pmi_value = own.measured_pmi \
                AND told.pmi_trend = own.pmi_trend \
                AND told.cycle_phase = own.cycle_phase AND own.published = 0";
     assert!(matches!(query_hidden(&mut session, sql)[0][0], Cell::Integer(days) if days > 100));
-    // The product of the equation is the expectation.
+    // The product of the factors equals the expected number of leads.
     let sql = "SELECT count(*), max(abs(reputation * saturation * calendar * economy * social * surge * (social_media \
                + search_ads + linkedin + content_marketing + referral_program + word_of_mouth) - expected) \
                / max(expected, 1)) FROM hidden.factors";
@@ -142,7 +142,7 @@ fn hidden_tables_match_the_state_of_each_day() {
     assert!(days > 800 && error < 1e-12, "{days} {error}");
 }
 
-/// Returns the columns of a subscriber from the simulator state.
+/// Returns the expected rows of all subscribers from the simulator state.
 fn subscribers(session: &Session) -> Vec<Vec<Cell>> {
     let xray = session.debug_hidden_state().expect("a debug run");
     let mut rows = Vec::new();
@@ -198,13 +198,13 @@ fn hidden_customers_match_the_requested_day() {
     assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
     for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
         let rows = session.inspect().query_hidden_tables(SUBSCRIBERS, Some(*day)).expect("a look").rows;
-        // The row limit of a query.
+        // A query returns at most 5,000 rows.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
         for (row, expected) in rows.iter().zip(expected) {
             assert_eq!(row, expected, "day {day}");
         }
     }
-    // Negotiating enterprises have their status, and join with visible tables.
+    // Rows of negotiating enterprises contain their status and can be joined with visible tables.
     let sql = "SELECT count(*), count(own.plan), count(reply_delay_mean), count(status) FROM hidden.customers AS own \
                JOIN subscriptions USING (customer_id) WHERE own.standing = 'lead'";
     let [Cell::Integer(leads), Cell::Integer(0), Cell::Integer(delays), Cell::Integer(known)] =
@@ -213,7 +213,7 @@ fn hidden_customers_match_the_requested_day() {
         panic!("leads");
     };
     assert!(leads > 3 && leads == delays && leads == known, "{leads} {delays} {known}");
-    // A call changes the current state, not the end of the previous day.
+    // A tool call changes the current state, but not the state at the end of the previous day.
     let relationships = "SELECT customer_id, relationship FROM hidden.customers ORDER BY 1";
     session.step(7, &mut |_| {}).expect("days");
     let before = query_hidden(&mut session, relationships);
@@ -231,7 +231,7 @@ fn hidden_threads_match_the_customer_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
     open_many_markets(&mut session);
-    // Leads first: the re-simulation is then ahead of the kept threads.
+    // Queries the table of leads first, so that the re-simulation is ahead of the stored threads.
     for _ in 0..6 {
         advance_week(&mut session);
         make_offers(&mut session);

@@ -1,4 +1,4 @@
-//! The documentation page of the columns.
+//! The documentation page that lists the columns of the hidden tables.
 
 use std::fs;
 use std::path::Path;

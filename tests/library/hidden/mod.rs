@@ -1,5 +1,5 @@
-//! The hidden tables: their rows equal the simulator state, they exist only on the connection of the x-ray, and every query
-//! records a line.
+//! The hidden tables. Their rows equal the simulator state, they exist only on the connection of the x-ray, and every
+//! query of them is recorded.
 
 mod access;
 mod connection;
@@ -31,7 +31,7 @@ fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
     Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
-/// Returns a company with subscribers in several groups, in-app advertising and negotiations.
+/// Plays until the company has subscribers in several groups, in-app advertising and negotiations.
 fn open_many_markets(session: &mut Session) {
     apply_opening_decisions(session);
     for (tool, arguments) in [

@@ -1,4 +1,4 @@
-//! Copied lines of branches, and submitted forecasts.
+//! Lines that branches copy, and the order of submitted forecasts.
 
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::Trajectory;
@@ -14,7 +14,7 @@ fn branch_excludes_decisions_of_its_first_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut parent = create(Storage::Runs(folder.path().to_owned()), &[]);
     let mut at_the_beginning = Vec::new();
-    // Another price on the first day of each week.
+    // Sets a different price on the first day of each week.
     for number in 1..=4 {
         at_the_beginning.push((
             number,
@@ -31,7 +31,7 @@ fn branch_excludes_decisions_of_its_first_day() {
         assert_eq!(branch.company().current_arguments("set_prices"), prices, "week {number}");
         assert!(branch.company().setting_changes().is_empty(), "nothing is decided yet in week {number}");
         for (part, hash) in &branch.state_hash().1 {
-            // The hash of the facts includes the calls of the week, which the branch does not have.
+            // The hash of the facts includes the calls of the week, which the branch does not contain.
             if *part != "facts" {
                 assert_eq!(hash, &parts[part], "{part} at the beginning of week {number}");
             }

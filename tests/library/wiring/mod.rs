@@ -1,7 +1,7 @@
-//! Values arrive unchanged and in the correct place: arguments of calls, copied days and weeks of branches, columns of tables,
-//! limits and exit codes.
+//! Values are passed on unchanged and in the correct position: arguments of calls, copied days and weeks of branches,
+//! columns of tables, limits and exit codes.
 //!
-//! Fixtures have different numbers everywhere, so that swapped values show.
+//! All numbers of a fixture are different, so that swapped values are detected.
 
 mod branches_and_forecasts;
 mod settings;

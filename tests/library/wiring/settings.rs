@@ -113,7 +113,7 @@ fn the_change_review_names_every_number_that_was_set() {
         leaves(&two_calls(tool)[1], &mut expected);
         let mut values: Vec<f64> =
             session.company().setting_changes().iter().map(|change| change.new).collect();
-        // An unchanged number is not a change.
+        // Zeros are excluded, because an unchanged zero is not a change.
         expected.retain(|number| *number != 0.0);
         values.retain(|number| *number != 0.0);
         for number in &values {

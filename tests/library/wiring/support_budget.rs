@@ -1,4 +1,4 @@
-//! Support budgets: each resolves issues of its scope only.
+//! Support budgets: each budget resolves only the issues of its scope.
 
 use novamind::session::{Session, Storage};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::create;
 use crate::support::company::{advance_week, advance_weeks, call_tool, query_numbers};
 
-/// Returns a company with several groups and plans in which no issue is resolved without a budget.
+/// Returns a company with several groups and plans, in which issues are resolved only with a budget.
 fn waiting_company() -> Session {
     let overrides = [("issues.issue_resolution_base_rate", "0.0")];
     let mut session = create(Storage::Memory, &overrides);
@@ -24,10 +24,12 @@ fn waiting_company() -> Session {
     session
 }
 
-/// Customers without a billing day on days 36 to 42, because only billing can change the plan.
+/// SQL condition for customers that are not billed on days 36 to 42. Their plan cannot change, because plans change
+/// only on billing days.
 const SAME_PLAN: &str = "s.billing_day_mod30 NOT BETWEEN 6 AND 12";
 
-/// Counts the issues that were open on day 35, within and outside of a condition, and how many were resolved since.
+/// Counts the issues that were open on day 35 and the issues that have been resolved since, for customers inside and
+/// outside of a condition.
 fn count_solved_issues(session: &mut Session, inside: &str) -> [f64; 4] {
     let sql = format!(
         "SELECT total(({inside})), total(({inside}) AND i.resolved_day > 35), total(NOT ({inside})), \

@@ -1,4 +1,4 @@
-//! A study collected from three machines: later states, archives, conflicts, labels, gaps.
+//! Collection of a study from three machines: later states of runs, archives, conflicts, labels and missing sessions.
 
 use std::fs;
 use std::path::Path;
@@ -30,7 +30,7 @@ fn copy(from: &Path, to: &Path) {
 fn collect_takes_each_run_in_its_latest_state() {
     let (one, two, lab) = (Home::new(), Home::new(), Home::new());
     let (first, second) = (played_run(&one, "P01"), played_run(&two, "P02"));
-    // An early archive, and the run continued after it.
+    // The run is exported as an archive and then continued.
     let (archive, _) = export(&one, &first, "early.tar.gz");
     assert_eq!(one.play(&["--run", &run_id(&first)], "next \"the end\" naive\n").exit_code, 0);
     let sources = [one.runs(), archive, two.runs()];
@@ -49,7 +49,7 @@ fn collect_takes_each_run_in_its_latest_state() {
     assert!(out.join(format!("{}.tar.gz", run_id(&second))).exists() && out.join("events.csv").exists());
     let hidden = fs::read_dir(&out).expect("a folder").flatten();
     assert!(!hidden.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with('.')));
-    // Again, into the same folder: its contents are not a source.
+    // The study is collected again into the same folder, whose contents must not be used as a source.
     let (output, out) = collect(&lab, &[lab.0.path(), &one.runs()], &["--json"]);
     assert_eq!(output.exit_code, 0, "{}{}", output.stdout, output.stderr);
     let object: Value = serde_json::from_str(&output.stdout).expect("JSON");
@@ -61,7 +61,7 @@ fn collect_takes_each_run_in_its_latest_state() {
 fn collect_reports_conflicts_shared_labels_and_damage() {
     let (one, two, lab) = (Home::new(), Home::new(), Home::new());
     let first = played_run(&one, "P01");
-    // The same run, continued differently on two machines.
+    // The same run is continued differently on two machines.
     let copied = two.runs().join(run_id(&first));
     copy(&first, &copied);
     for (home, price) in [(&one, "A=13"), (&two, "A=14")] {

@@ -1,5 +1,5 @@
-//! Transferring runs: the same run gives the same archive, an interrupted export leaves nothing, and a run is imported to the folder
-//! of its player.
+//! Transfer of runs: exports of the same run are equal, an interrupted export leaves no file, and a run is imported
+//! into the folder of its participant.
 
 use std::fs;
 use std::path::Path;
@@ -44,7 +44,7 @@ fn interrupted_export_leaves_no_file() {
     };
     let (mut tries, mut interrupted) = (0, 0);
     while interrupted < 3 {
-        // Sometimes the export finishes before the signal arrives.
+        // The export can finish before the signal arrives, so the test tries several times.
         tries += 1;
         assert!(tries < 100, "it was never interrupted");
         let mut program = home.program();

@@ -1,4 +1,4 @@
-//! Exported runs: archives, their tables, the session summary, comparisons of runs, and the schema of the lines.
+//! Exported runs: archives, tables, session summaries, comparisons of runs, and the schema of trajectory lines.
 
 mod collected;
 mod handover;
@@ -28,7 +28,7 @@ next \"as planned\" naive
 next \"as planned\" naive
 ";
 
-/// Plays a baseline run of three weeks by a participant; returns its folder.
+/// Plays a baseline run of three weeks as a participant, and returns its folder.
 fn played_run(home: &Home, participant: &str) -> PathBuf {
     let before: Vec<PathBuf> = run_folders(&home.runs());
     let options = ["--mode", "baseline", "--participant", participant, "--seed", "7"];
@@ -55,7 +55,7 @@ fn import(home: &Home, archive: &Path) -> ProgramOutput {
     home.run(&["runs", "import", &text(archive)])
 }
 
-/// Returns the files of a plain archive.
+/// Returns the files of an uncompressed archive.
 fn archive_contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in tar::Archive::new(fs::File::open(archive).expect("a file")).entries().expect("entries") {
@@ -68,7 +68,7 @@ fn archive_contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Writes an archive of arbitrary files.
+/// Writes an archive that contains the given files.
 fn write_forged_archive(archive: &Path, files: &[(String, Vec<u8>)]) {
     let mut builder = tar::Builder::new(fs::File::create(archive).expect("a file"));
     for (name, bytes) in files {
@@ -81,7 +81,7 @@ fn write_forged_archive(archive: &Path, files: &[(String, Vec<u8>)]) {
 
 fn header(name: &str, size: u64, kind: tar::EntryType) -> tar::Header {
     let mut header = tar::Header::new_ustar();
-    // Bypasses the checks of the crate, which does not write dangerous names.
+    // Sets the name directly, because the `tar` crate refuses dangerous names.
     header.as_old_mut().name[..name.len()].copy_from_slice(name.as_bytes());
     header.set_size(size);
     header.set_mode(0o644);
@@ -128,7 +128,7 @@ fn conflicting_record_is_imported_under_another_name() {
     let run = played_run(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
     assert_eq!(import(&other, &archive).exit_code, 0);
-    // Both runs continue differently.
+    // The original run and the imported run are continued differently.
     for (home, price) in [(&home, "A=11"), (&other, "A=19")] {
         let lines = format!("set_prices {price}\nnext \"on\" naive\n");
         assert_eq!(home.play(&["--run", &run_id(&run)], &lines).exit_code, 0);
@@ -201,7 +201,7 @@ fn archive_database_opens_in_plain_sqlite() {
     let typed = "SELECT 1.0 * count(*) FROM sqlite_master WHERE name = 'subscriptions' \
                  AND sql LIKE '%CAST(effective_price AS REAL) AS effective_price%'";
     assert_eq!(ask(typed), 1.0, "SQLite before 3.52 needs the type to sort whole rows");
-    // The SQLite of the machine's Python is often older than that of the program.
+    // The SQLite version of the installed Python is often older than the version of the program.
     let script = "import sqlite3, sys\n\
                   rows = sqlite3.connect(sys.argv[1]).execute('SELECT * FROM subscriptions ORDER BY status DESC')\n\
                   at = [column[0] for column in rows.description].index('effective_price')\n\
@@ -280,7 +280,7 @@ fn dangerous_and_foreign_files_are_refused() {
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");
     import(&home, &bad).assert_fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
-    // A false size: nothing is read and no memory is reserved.
+    // A file with a false size is not read, and no memory is reserved for it.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");
     import(&home, &bad).assert_fails(3, &["run.toml is too large"]);
@@ -389,12 +389,12 @@ fn export_all_writes_consistent_tables() {
         let there = Home::new();
         assert_eq!(import(&there, &archive).exit_code, 0);
     }
-    // Again, for one participant only; the archives may exist.
+    // The export is repeated for one participant. Existing archives are allowed.
     let one = home.run(&["runs", "export", "--all", "--participant", "P01", "--out", &text(&out)]);
     assert_eq!((one.exit_code, read_table(&out.join("runs.csv")).len()), (0, 1));
     let list = home.run(&["runs", "list", "--participant", "P01"]);
     assert_eq!(list.stdout.lines().count(), 1, "{}", list.stdout);
-    // A damaged run is reported and does not prevent the export of the others.
+    // A damaged run is reported and does not prevent the export of the other runs.
     fs::write(first.join("trajectory.jsonl"), "nonsense\n").expect("damage");
     let output = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
     output.assert_fails(3, &["1 of 2 runs"]);
@@ -429,7 +429,7 @@ fn reports_summarize_sessions_and_compare_runs() {
     let names = [run_id(&first), run_id(&second)];
     let program_output = home.run(&["lab", "compare", &names[0], &names[1]]);
     for part in ["P01", "P02", "rule-based baseline", "cash on day 21", "day 0", "Claude Fable 5", "differ"] {
-        // Both runs have the same decisions, so only their end differs.
+        // Both runs have the same decisions, so only the figures at their end differ.
         assert_eq!(
             program_output.stdout.contains(part),
             part != "differ",

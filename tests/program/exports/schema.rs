@@ -17,7 +17,7 @@ fn schema() -> Value {
     serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("the schema is JSON")
 }
 
-/// Returns a part of the schema, with references resolved.
+/// Resolves a reference and returns the referenced part of the schema.
 fn resolve<'a>(root: &'a Value, part: &'a Value) -> &'a Value {
     match part.get("$ref").and_then(Value::as_str) {
         Some(reference) => {
@@ -113,7 +113,7 @@ fn has_type(value: &Value, name: &str) -> bool {
     }
 }
 
-/// Checks the only patterns of the schema: a number of hexadecimal digits.
+/// Checks a text against a pattern of the schema. All patterns are a number of hexadecimal digits.
 fn is_hexadecimal(text: &str, pattern: &str) -> bool {
     let count = pattern.strip_prefix("^[0-9a-f]{").and_then(|rest| rest.strip_suffix("}$"));
     let count: usize =
@@ -121,7 +121,7 @@ fn is_hexadecimal(text: &str, pattern: &str) -> bool {
     text.len() == count && text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// Returns the problems of a line, checked against the schema of its kind so that they name the field.
+/// Returns the problems of a line. The line is checked against the schema of its kind, so that problems name the field.
 fn line_problems(root: &Value, line: &Value) -> Vec<String> {
     let kind = line["kind"].as_str().unwrap_or_default();
     let Some(part) = root.pointer(&format!("/$defs/{kind}")) else { return vec![format!("no kind {kind}")] };
@@ -139,7 +139,7 @@ fn kinds(root: &Value) -> BTreeSet<String> {
     references.map(|value| value["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
 }
 
-/// Checks the examples of a document: valid lines, one of each kind.
+/// Checks that the examples of a document are valid lines and include every kind.
 pub fn check_examples(examples: &[Value]) {
     let root = schema();
     for example in examples {
@@ -155,7 +155,7 @@ fn lines_of(folder: &Path) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
 }
 
-/// Records every activity of a user besides acting, as in the examples of the schema.
+/// Records every kind of user activity except decisions, as in the examples of the schema.
 fn note_every_activity(run: &mut Session) {
     use novamind::record::trajectory::record::*;
     let root = schema();

@@ -33,7 +33,7 @@ fn signature_names_the_signer_and_rejects_modifications() {
             whole.iter().filter_map(|(name, bytes)| Some((name.clone(), change(name, bytes.clone())?)));
         write_forged_archive(&bad, &changed.collect::<Vec<_>>());
     };
-    // A consistent seal that is not the signed one.
+    // The seal is consistent but differs from the signed seal.
     files(&|name, bytes| {
         if !name.ends_with("seal.toml") {
             return Some(bytes);
@@ -59,7 +59,7 @@ fn signature_names_the_signer_and_rejects_modifications() {
         "{}",
         program_output.stdout
     );
-    // Without its signature it is a complete unsigned archive.
+    // Without its signature, the archive is a valid unsigned archive.
     files(&|name, bytes| (!name.ends_with("seal.sig")).then_some(bytes));
     let output = import(&other, &bad);
     assert!(
@@ -68,12 +68,14 @@ fn signature_names_the_signer_and_rejects_modifications() {
         output.stdout,
         output.stderr
     );
-    // An invalid key is reported before the run is simulated, and nothing is written.
+    // An invalid key is reported before the run is simulated, and no file is written.
     let nothing = home.0.path().join("nothing.tar");
     fs::write(&file, "no key").expect("written");
     let output = export(&nothing, &file);
     assert!(
-        output.exit_code != 0 && output.stderr.contains("is not a key of this kind") && !nothing.exists(),
+        output.exit_code != 0
+            && output.stderr.contains("is not a key file of this kind")
+            && !nothing.exists(),
         "{}",
         output.stderr
     );

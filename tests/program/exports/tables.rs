@@ -1,4 +1,4 @@
-//! The tables of a study: their texts are harmless, and an independent script computes the same figures.
+//! The tables of a study: their texts are escaped, and an independent script computes the same figures.
 
 use std::path::Path;
 use std::process::Command;
@@ -15,7 +15,7 @@ use super::{played_run, read_table, run_folders, text};
 use crate::support::home::{Home, run_id};
 use crate::support::python::recompute;
 
-/// Plays a run of four weeks to its end, with many of the events that the measures count.
+/// Commands that play a run of four weeks to its end, with many events that the measures count.
 const FOUR_WEEKS: &str = "set_prices A=12 B=25 C=55
 set_usage_quotas A=60000 B=250000 C=1200000
 set_model_tiers B=2 C=4
@@ -37,7 +37,7 @@ memo =HYPERLINK(\"http://x\")
 next \"because\" naive
 ";
 
-/// Texts that a spreadsheet or a terminal would interpret.
+/// Texts that a spreadsheet or a terminal would interpret as a formula or a control sequence.
 const HOSTILE: &[&str] = &["=1+1", "+1+cmd", "-1+cmd", "@SUM(A1)", "\u{1b}[31mred", "\u{202e}evil", "\t=1"];
 
 fn export(home: &Home) -> std::path::PathBuf {
@@ -47,7 +47,7 @@ fn export(home: &Home) -> std::path::PathBuf {
     out
 }
 
-/// Plays a run with lines of every kind about the player, who leaves and returns.
+/// Plays a run with every kind of activity line. The player leaves and returns.
 fn run_with_all_activity_lines(home: &Home) {
     let storage = Storage::Runs(home.runs());
     let new = NewRun {
@@ -136,7 +136,7 @@ fn run_with_all_activity_lines(home: &Home) {
         drop(run);
         run = Session::open(&folder, Access::Write, true).expect("it opens");
     }
-    // The player views the end and leaves.
+    // The player views the final page and closes the run.
     run.activity().attach(console);
     wait();
     run.activity().record_view("cash", "overview", 11);
@@ -182,7 +182,7 @@ fn independent_script_reproduces_every_measure() {
     }
     let Some((output, code)) = recompute(&out) else { return };
     assert!(code == Some(0) && output.contains("3 runs") && output.contains(" 0 differences"), "{output}");
-    // The comparison detects errors.
+    // A changed figure in the exported table must be detected by the comparison.
     let weeks = out.join("weeks.csv");
     let changed =
         std::fs::read_to_string(&weeks).expect("a table").replacen("set_prices=1", "set_prices=2", 1);
@@ -317,7 +317,7 @@ fn anonymized_tables_can_be_linked_only_with_the_secret() {
     assert!(events.iter().filter(|row| row["kind"] == "start").all(|row| row["value"].is_empty()));
     anonymise(&place("none"), &["--without", "run"]).assert_fails(2, &["run cannot be left out"]);
     anonymise(&place("none"), &["--without", "sead"]).assert_fails(2, &["no table has a column sead"]);
-    // The same secret gives the same names, masked texts keep their lengths, and nothing is overwritten.
+    // The same secret gives the same names, masked texts keep their lengths, and existing files are not overwritten.
     anonymise(&anonymous, &[]).assert_fails(1, &["already exists"]);
     let masked = place("masked");
     assert_eq!(anonymise(&masked, &["--mask"]).exit_code, 0);

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::support::company::opening_calls;
 use crate::support::home::{Home, ProgramOutput, read_bytes, run_id, run_with_input};
 
-/// Plays a debug run of some weeks with a number of calls each; returns its folder.
+/// Plays a debug run with a number of calls in each week, and returns its folder.
 fn debug_run(home: &Home, weeks: usize, calls: usize) -> PathBuf {
     let mut lines: String = opening_calls().iter().map(|(tool, args)| format!("{tool} {args}\n")).collect();
     lines += &("set_prices A=13\nset_prices A=12\n".repeat(calls / 2) + "next naive\n").repeat(weeks);
@@ -45,7 +45,7 @@ fn killed_adoption_leaves_no_run() {
     let mut pipe = child.stdin.take().expect("a pipe");
     pipe.write_all(b"whatif adopt from 2: set_prices * 0.9\n").expect("written");
     let begun = Instant::now();
-    // The first weeks of the branch are on disk, and it is incomplete.
+    // The first weeks of the branch are on disk, and the branch is incomplete.
     let is_under_way = || {
         let trajectory = staging_folders(&home).first().map(|folder| folder.join("trajectory.jsonl"));
         trajectory

@@ -1,4 +1,4 @@
-//! A full disk: what is not saved has no effect, and what was confirmed is not lost.
+//! A full disk: actions that cannot be saved have no effect, and confirmed actions are not lost.
 
 use std::fs;
 use std::path::Path;
@@ -7,12 +7,12 @@ use serde_json::Value;
 
 use crate::support::home::{Home, ProgramOutput, read_bytes, run_id, run_with_input, split_lines};
 
-/// Blocks of 512 bytes a file may have.
+/// Maximum size of a file in blocks of 512 bytes.
 const BLOCKS: usize = 2048;
-/// Bytes by which a statement lengthens its line of the trajectory.
+/// Number of bytes by which a padded SQL statement lengthens its line of the trajectory.
 const PADDING: usize = 490_000;
 
-/// Plays on a disk on which no file exceeds the limit.
+/// Plays with a file size limit, which acts like a full disk.
 fn play_with_file_limit(home: &Home, options: &str, lines: &str) -> ProgramOutput {
     let program = env!("CARGO_BIN_EXE_novamind");
     let script = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec '{program}' play --plain --json {options}");
@@ -68,7 +68,7 @@ fn unsaved_call_has_no_effect() {
 
 #[test]
 fn week_without_its_line_is_simulated_again() {
-    // Lengths of the lines.
+    // A first run measures the lengths of the lines.
     let home = Home::new();
     let start = "set_prices A=12\n".to_owned() + &padding(PADDING);
     home.play(&["--days", "28"], &(start.clone() + "next naive\n"));
@@ -140,7 +140,7 @@ fn query_rebuilds_only_a_missing_database() {
         assert_eq!(read_bytes(&run, "trajectory.jsonl"), trajectory);
     }
     assert_eq!(ask().stdout, before);
-    // Without space it is built in memory.
+    // If the disk is full, the database is built in memory.
     fs::remove_file(run.join("world.db")).expect("gone");
     let program = env!("CARGO_BIN_EXE_novamind");
     let sql = "SELECT count(*), sum(amount) FROM ledger";

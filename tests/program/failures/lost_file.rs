@@ -1,4 +1,4 @@
-//! The file of a run is removed while it is played: the game stops, and nothing that was confirmed is lost.
+//! The trajectory of a run is removed while the run is played: the run stops, and no confirmed action is lost.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -41,7 +41,7 @@ fn deleted_trajectory_stops_the_run_and_can_be_restored() {
         words.contains("your decisions are no longer on disk") && !words.contains("disk space"),
         "{words}"
     );
-    // It ends without waiting for more input.
+    // The program ends without waiting for further input.
     let end = next();
     assert_eq!((end["event"].as_str(), end["reason"].as_str()), (Some("end"), Some("record_lost")));
     assert_eq!(child.wait().expect("it ends").code(), Some(3));

@@ -1,7 +1,6 @@
 //! Invalid input and failures against the built program: wrong files, damaged runs, a full disk, no terminal.
 //!
-//! In each case the message names the place and the next step, the exit code is as documented, and nothing that was confirmed is
-//! lost.
+//! In each case, the message names the file and the next step, the exit code is as documented, and no confirmed action is lost.
 
 #[cfg(unix)]
 mod adoption;
@@ -133,7 +132,7 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
     home.run(&["run", "--policy", "nothere", "--days", "28"]).assert_fails(2, &["nothere", "baseline"]);
 }
 
-/// A change of a trajectory of ten lines.
+/// A function that damages a trajectory of ten lines.
 type Damage = fn(&mut Vec<u8>);
 
 fn flip_after(bytes: &mut [u8], line: usize, word: &str) {
@@ -149,16 +148,16 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
     let (id, good) = (run_id(&folder), read_bytes(&folder, "trajectory.jsonl"));
     assert_eq!(split_lines(&good).len(), 10);
     let cases: [(Damage, &[&str]); 9] = [
-        (|bytes| flip_after(bytes, 4, "\"B\":"), &["line 4", "its sum", "Lines 1 to 3 are good"]),
+        (|bytes| flip_after(bytes, 4, "\"B\":"), &["line 4", "its sum", "Lines 1 to 3 are valid"]),
         (|bytes| flip_after(bytes, 1, "\"seed\":"), &["line 1", "its sum"]),
-        (|bytes| flip_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are good"]),
+        (|bytes| flip_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are valid"]),
         (|bytes| flip_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "recover"]),
         (
             |bytes| *bytes = [split_lines(bytes)[..2].concat(), split_lines(bytes)[3..].concat()].concat(),
             &["line 3", "missing"],
         ),
         (|bytes| *bytes = split_lines(bytes)[..6].concat(), &["line 7", "missing", "recover"]),
-        (|bytes| bytes.extend(split_lines(bytes)[9].clone()), &["line 11", "Lines 1 to 10 are good"]),
+        (|bytes| bytes.extend(split_lines(bytes)[9].clone()), &["line 11", "Lines 1 to 10 are valid"]),
         (|bytes| bytes.extend(b"\0\0\0\n"), &["line 11", "not a line of a trajectory"]),
         (Vec::clear, &["line 1", "does not begin with the start of a run"]),
     ];
@@ -197,7 +196,7 @@ fn modified_figure_is_detected_without_the_database() {
 
 #[test]
 fn incomplete_last_line_is_removed() {
-    // Up to the line that ends the second week; later lines were written when the session closed.
+    // The lines up to the end of the second week. Later lines were written when the session was closed.
     let played = || {
         let home = Home::new();
         let folder = home.two_weeks();
@@ -210,7 +209,7 @@ fn incomplete_last_line_is_removed() {
         fs::write(folder.join("trajectory.jsonl"), &good[..good.len() - lost]).expect("written");
         let program_output = home.play(&["--run", &id], "set_prices A=13\n");
         assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
-        // The torn line ended a confirmed week, which is simulated again.
+        // The incomplete line ended a confirmed week, which is simulated again.
         for part in [
             "day 14 of 28",
             "note: The last line of the trajectory was unfinished",
@@ -253,7 +252,7 @@ fn damaged_manifest_is_rebuilt() {
         ),
         (good.replace("days = 28", "days = -3"), format!("run.toml was damaged (line {}", line("days"))),
         (good.replace("mode = \"sandbox\"", "mode = \"god\""), "`baseline`".to_owned()),
-        (good.replace("format = 2", "format = 3"), "run.toml named another format".to_owned()),
+        (good.replace("format = 2", "format = 3"), "run.toml had another format".to_owned()),
         (
             good.replace("parameters_digest = \"", "parameters_digest = \"0"),
             "differed (parameters_digest)".to_owned(),
@@ -312,7 +311,7 @@ fn blocking_files_are_reported() {
     let home = Home::new();
     let folder = home.two_weeks();
     let id = run_id(&folder);
-    // Root can write anywhere, so folders take the place of files.
+    // The root user can write anywhere, so folders are created instead of files to block writing.
     for file in ["lock", "world.db", "trajectory.jsonl"] {
         let (path, aside) = (folder.join(file), folder.join("aside"));
         fs::rename(&path, &aside).expect("moved");
@@ -351,7 +350,7 @@ fn unwritable_folder_is_reported() {
     let folder = home.two_weeks();
     let allow = |mode| fs::set_permissions(&folder, fs::Permissions::from_mode(mode)).expect("changed");
     allow(0o555);
-    // Root can write anyway, so there is nothing to check.
+    // The root user can write to the folder, so the test is skipped.
     if fs::write(folder.join("probe"), "").is_err() {
         fs::set_permissions(folder.join("trajectory.jsonl"), fs::Permissions::from_mode(0o444))
             .expect("changed");
@@ -494,7 +493,9 @@ fn unknown_runs_are_named_with_the_way_to_the_list() {
     }
     assert_eq!(home.run(&["play", "--plain", "--run", "latest"]).exit_code, 0);
     let empty = Home::new();
-    empty.run(&["play", "--plain", "--run", "latest"]).assert_fails(3, &["no runs yet", "`novamind play`"]);
+    empty
+        .run(&["play", "--plain", "--run", "latest"])
+        .assert_fails(3, &["there are no runs", "`novamind play`"]);
 }
 
 #[test]

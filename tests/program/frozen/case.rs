@@ -1,4 +1,4 @@
-//! The cases of a group: command lines with their input and output files.
+//! The cases of a group: command lines with their input and their output files.
 
 use std::fs;
 
@@ -10,7 +10,7 @@ use super::root;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// Name of the file of its expected output.
+    /// Name of the file that contains the expected output.
     pub name: String,
     /// Arguments of the program, separated by spaces. `'…'` keeps spaces. `{NAME}` is the id of the recorded run
     /// `format2-NAME`, `{home}` the working directory.
@@ -21,10 +21,11 @@ pub struct Case {
     /// Whether each input line is sent after the answer to the previous one, because a server may answer out of order.
     #[serde(default)]
     pub in_turn: bool,
-    /// Files and folders that it writes, relative to the working directory. Tar archives are listed with their members.
+    /// Files and folders that the command writes, relative to the working directory. Tar archives are listed with
+    /// their members.
     #[serde(default)]
     pub files: Vec<String>,
-    /// Keys with values that differ each time, in JSON and TOML.
+    /// Keys in JSON and TOML whose values differ in every execution.
     #[serde(default)]
     pub mask: Vec<String>,
 }
@@ -35,7 +36,7 @@ struct Group {
 }
 
 impl Case {
-    /// Returns the arguments.
+    /// Returns the arguments of the command line.
     pub fn arguments(&self) -> Vec<String> {
         let quoted = self.run.split('\'').enumerate();
         let (mut arguments, mut open) = (Vec::new(), None::<String>);

@@ -1,11 +1,11 @@
-//! Every command and every option that chooses a form of output has a case.
+//! Checks that every command and every option that selects an output format has a case.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::case::{cases, groups};
 use crate::support::home::Home;
 
-/// Options that choose a form of output or an output file.
+/// Options that select an output format or an output file.
 const FORMS: [&str; 10] = [
     "--json",
     "--csv",
@@ -38,11 +38,11 @@ const EXCEPTIONS: [(&str, &str); 15] = [
     ("lab golden", "plays 24 seeds at least; its text names no figure that others read"),
 ];
 
-/// The commands and options in the help of a command.
+/// The subcommands and options that the help of a command lists.
 #[derive(Default)]
 struct Help {
     commands: Vec<String>,
-    /// Options of `EDIT_SYNTAX` with their possible values.
+    /// Options of `FORMS` with their possible values.
     forms: BTreeMap<String, Vec<String>>,
 }
 
@@ -88,7 +88,7 @@ impl Help {
     }
 }
 
-/// Collects every command without subcommands, and its forms with each of their values.
+/// Collects every command without subcommands, with its output options and each of their values.
 fn collect_expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     let program_output = home.run(&[path, &["--help"]].concat());
     assert_eq!(program_output.exit_code, 0, "{path:?}: {}", program_output.stderr);
@@ -110,7 +110,7 @@ fn collect_expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     }
 }
 
-/// Collects the command of a case, and its forms with their values.
+/// Collects the command of a case, with its output options and their values.
 fn collect_covered(arguments: &[String], commands: &BTreeSet<String>, found: &mut BTreeSet<String>) {
     let mut name = String::new();
     for word in arguments.iter().take_while(|word| !word.starts_with('-')) {

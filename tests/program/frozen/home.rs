@@ -1,4 +1,4 @@
-//! A home with the recorded runs of format 2, in which cases run.
+//! The home in which cases run, with the recorded runs of format 2.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -54,7 +54,7 @@ impl FrozenHome {
         &self.ids[name]
     }
 
-    /// Returns everything that a case prints and writes, with masks.
+    /// Runs a case and returns its output and the files that it wrote, with masks.
     pub fn output_of(&mut self, case: &Case) -> String {
         let place = self.home.0.path().to_owned();
         let fill = |argument: String| {
@@ -95,10 +95,10 @@ impl FrozenHome {
         output
     }
 
-    /// Appends the contents of a file, a folder or an archive.
+    /// Appends the contents of a file, a folder or an archive to `output`.
     fn write_file(&mut self, path: &Path, output: &mut String) {
         if path.is_dir() {
-            // New runs have random ids; the order of the masked names is the same in every execution.
+            // New runs have random ids, so files are sorted by their masked names.
             let mut inner = sorted(path);
             inner.sort_by_key(|path| self.masks.apply(&path.display().to_string()));
             for path in inner {
@@ -136,7 +136,7 @@ impl FrozenHome {
     }
 }
 
-/// Returns the output of a program if each line is sent after the answer to the previous one. Notifications have no answer.
+/// Sends each line after the answer to the previous line, and returns the output of the program. Notifications have no answer.
 fn run_line_by_line(command: &mut Command, lines: &str) -> ProgramOutput {
     let mut child = command.spawn().expect("the program starts");
     let mut input = child.stdin.take().expect("a pipe");
@@ -155,12 +155,12 @@ fn run_line_by_line(command: &mut Command, lines: &str) -> ProgramOutput {
     ProgramOutput { stdout: out, stderr: err, exit_code: ended.status.code().expect("it ends on its own") }
 }
 
-/// Returns whether a file is derived and not for other programs: the database, the snapshot, the lock with a process id.
+/// Returns whether the contents of a file are not compared: the database, the snapshot, and the lock with a process id.
 fn is_derived(name: &str) -> bool {
     ["world.db", "snapshot.bin", "lock"].iter().any(|end| name.ends_with(end))
 }
 
-/// Returns the contents of a folder, sorted by name.
+/// Returns the paths in a folder, sorted by name.
 fn sorted(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> =
         fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()).collect();
@@ -179,7 +179,7 @@ fn damage_last_week(trajectory: &Path) {
     fs::write(trajectory, format!("{}1{}", &whole[..at], &whole[at..])).expect("written");
 }
 
-/// Copies a folder and excludes the times in its files from masking.
+/// Copies a folder. Times in its files are excluded from masking.
 fn copy_masked(from: &Path, to: &Path, masks: &mut Masks) {
     fs::create_dir_all(to).expect("a folder");
     for path in sorted(from) {

@@ -1,17 +1,18 @@
-//! Masks for values that differ from one test to the next. Everything else is compared unchanged.
+//! Masks for values that differ in every execution of a test. All other text is compared unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Length of a time up to its second: `2026-11-27T13:30:46`.
+/// Length of a time without fractional seconds: `2026-11-27T13:30:46`.
 const SECOND: usize = 19;
 
-/// Fields of new lines of `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` that depend on the machine or the time.
+/// Fields of new lines in `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` whose values depend on the machine
+/// or the time.
 const LINE_FIELDS: [&str; 10] =
     ["prev", "sum", "machine", "boot", "monotonic_ms", "for_ms", "read_ms", "took_ms", "stood_ms", "used_ms"];
 
-/// Replacements for the folder of the test, times that no recorded run has, and ids of new runs and classes.
+/// Masks for the folder of the test, for times that no recorded run contains, and for ids of new runs and classes.
 #[derive(Default)]
 pub struct Masks {
     place: String,
@@ -28,17 +29,17 @@ impl Masks {
         Masks { place, ..Masks::default() }
     }
 
-    /// Excludes the times of a text.
+    /// Excludes the times in a text from masking.
     pub fn keep_moments(&mut self, text: &str) {
         self.seconds.extend(moments(text).map(|(_, moment)| moment[..SECOND].to_owned()));
     }
 
-    /// Excludes an id.
+    /// Excludes an id from masking.
     pub fn keep_id(&mut self, id: &str) {
         self.ids.insert(id.to_owned());
     }
 
-    /// Masks the ids of new runs below a folder, the oldest first.
+    /// Masks the ids of new runs below a folder, starting with the oldest run.
     pub fn find_new_ids(&mut self, below: &Path) {
         let mut new = Vec::new();
         self.new_runs(below, &mut new);
@@ -48,7 +49,7 @@ impl Masks {
         }
     }
 
-    /// Collects the new runs below a folder: time of creation and id.
+    /// Collects the creation time and the id of each new run below a folder.
     fn new_runs(&self, below: &Path, found: &mut Vec<(String, String)>) {
         for folder in fs::read_dir(below).into_iter().flatten().flatten().map(|entry| entry.path()) {
             let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
@@ -81,7 +82,7 @@ impl Masks {
         self.new_ids.entry(id.to_owned()).or_insert(next);
     }
 
-    /// Returns a text with the masks.
+    /// Returns a text with all masks applied.
     pub fn apply(&self, text: &str) -> String {
         let text = text.replace(&self.place, "HOME");
         let text = self.new_ids.iter().fold(text, |text, (id, mask)| text.replace(id, mask));
@@ -89,7 +90,7 @@ impl Masks {
         let text = self.keys.iter().fold(text, |text, key| {
             without_value(without_value(text, &format!("\"{key}\":")), &format!("\n{key} = "))
         });
-        // Recorded lines keep every byte: only a line with a masked time is new.
+        // Recorded lines are not masked. A line is new only if its time is masked.
         let lines = text.split_inclusive('\n');
         lines
             .map(|line| if line.contains("\"at\":\"NOW\"") { masked_line(line) } else { line.to_owned() })
@@ -108,13 +109,13 @@ impl Masks {
     }
 }
 
-/// Returns the times of a text, each with its position.
+/// Returns the RFC 3339 times in a text with their positions.
 fn moments(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let starts = text.match_indices('T').filter_map(|(at, _)| at.checked_sub("0000-00-00".len()));
     starts.filter_map(|at| Some((at, moment_at(text.get(at..)?)?)))
 }
 
-/// Returns the RFC 3339 time at the start of a text.
+/// Returns the RFC 3339 time at the start of a text, or `None` if the text does not start with a time.
 fn moment_at(text: &str) -> Option<&str> {
     let bytes = text.as_bytes();
     let pattern = b"0000-00-00T00:00:00";
@@ -132,7 +133,7 @@ fn masked_line(line: &str) -> String {
     LINE_FIELDS.iter().fold(line.to_owned(), |line, field| without_value(line, &format!("\"{field}\":")))
 }
 
-/// Removes the values that follow a key: plain values of JSON and TOML.
+/// Removes the values of a key from JSON and TOML text.
 fn without_value(mut text: String, key: &str) -> String {
     let mut from = 0;
     while let Some(at) = text[from..].find(key).map(|at| from + at + key.len()) {

@@ -1,7 +1,7 @@
-//! Frozen output: everything that the program prints and writes for other programs, compared byte for byte.
+//! Frozen output: all output and files that the program writes for other programs are compared byte for byte.
 //!
 //! A case is a command line in `tests/data/frozen/cases/GROUP.toml`. Its expected output is `tests/data/frozen/GROUP/NAME.txt`:
-//! standard output, then standard error, the exit code, and the files that it wrote.
+//! standard output, then standard error, the exit code, and the files that the command wrote.
 //! `NOVAMIND_WRITE_FROZEN=1 cargo test --test program frozen` writes the expected outputs.
 
 mod case;
@@ -16,15 +16,15 @@ use std::path::{Path, PathBuf};
 use case::cases;
 use home::FrozenHome;
 
-/// Outputs above this length are stored as their length and BLAKE3 digest.
+/// Length above which an output is stored as its length and BLAKE3 digest, bytes.
 const MAX_STORED_BYTES: usize = 100_000;
 
-/// `tests/data/frozen`.
+/// Returns the path of `tests/data/frozen`.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/frozen")
 }
 
-/// Runs the cases of a group in one home, in their order, and compares each with its expected output.
+/// Runs the cases of a group in one home, in order, and compares each output with the expected output.
 fn check_group(group: &str) {
     let mut home = FrozenHome::new();
     let found =
@@ -42,7 +42,7 @@ fn report(differences: Vec<String>) {
     );
 }
 
-/// Compares an output with the expected one, or writes it. Returns the first line that differs.
+/// Compares an output with the expected output, or writes the expected output. Returns a description of the first difference.
 fn compare(group: &str, name: &str, output: &str) -> Option<String> {
     let path = root().join(group).join(format!("{name}.txt"));
     if std::env::var_os("NOVAMIND_WRITE_FROZEN").is_some() {
@@ -69,14 +69,14 @@ fn compare(group: &str, name: &str, output: &str) -> Option<String> {
     }
 }
 
-/// Returns both texts from shortly before their first difference.
+/// Returns the parts of both texts around their first difference.
 fn differing_lines<'a>(before: &'a str, now: &'a str) -> [String; 2] {
     let same = before.chars().zip(now.chars()).take_while(|(one, other)| one == other).count();
     let part = |line: &'a str| -> String { line.chars().skip(same.saturating_sub(60)).take(160).collect() };
     [part(before), part(now)]
 }
 
-/// Returns a text, or its length and digest if it is long.
+/// Returns a text, or its length and digest if the text is long.
 fn stored_form(text: String) -> String {
     match text.len() {
         0..=MAX_STORED_BYTES => text,

@@ -1,4 +1,4 @@
-//! Small windows, signals, failures, terminals without colors.
+//! The console in small windows, after signals and failures, and in terminals without colors.
 
 use super::pty::Terminal;
 
@@ -41,7 +41,7 @@ fn suspended_program_restores_the_terminal() {
         terminal.wait_for("Action needed");
         terminal.wait_until_raw();
     }
-    // There is no prompt before this one; another program may leave the terminal in any state.
+    // While the program is stopped, another program can leave the terminal in any state.
     terminal.signal("-STOP");
     terminal.wait_until_stopped();
     terminal.set_canonical_mode();
@@ -99,7 +99,7 @@ fn farewell_names_the_resume_command() {
     terminal.type_keys("q");
     let (code, screen) = terminal.wait_for_end();
     assert_eq!(code, 0);
-    assert!(screen.contains("Resume it with `novamind --as P01 --run latest`"), "{screen}");
+    assert!(screen.contains("Resume the run with `novamind --as P01 --run latest`"), "{screen}");
     let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--run", "latest"], (120, 30));
     terminal.wait_for("day 0/500");
     terminal.type_keys("q");

@@ -1,4 +1,4 @@
-//! The program is killed at random moments in the console: everything that the screen had confirmed is saved.
+//! The console is killed at random moments: every action that the screen had confirmed is saved.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ fn only_run(runs: &Path) -> PathBuf {
     folders.into_iter().find(|folder| folder.join("run.toml").exists()).expect("a run")
 }
 
-/// Returns the numbers of accepted calls and weeks in the trajectory.
+/// Returns the number of accepted calls and the number of weeks in the trajectory.
 fn recorded_counts(runs: &Path) -> (usize, usize) {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
     let calls = lines.iter().filter(|line| line.record.accepted_call().is_some()).count();

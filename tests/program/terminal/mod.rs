@@ -1,4 +1,4 @@
-//! The built program in a pseudo terminal: start, play, quit, resume; signals, small windows.
+//! The built program in a pseudoterminal: start, play, quit and resume, signals and small windows.
 
 mod failures;
 mod kill;

@@ -1,4 +1,4 @@
-//! A user plays: weeks, SQL, enterprises, mouse, clipboard.
+//! Tasks of a user in a pseudoterminal: weeks, SQL, enterprises, mouse and clipboard.
 
 use super::pty::{Terminal, play_policy};
 
@@ -48,7 +48,7 @@ fn first_run_starts_the_tour() {
     terminal.wait_for("Tour · 3 of 18");
     terminal.type_keys("8\rj\r45\r\x13");
     terminal.wait_for("Tour · 4 of 18");
-    // F3 skips a step.
+    // Types F3, which skips a step.
     for step in 5..=8 {
         terminal.type_keys("\x1bOR");
         terminal.wait_for(&format!("Tour · {step} of 18"));
@@ -61,7 +61,7 @@ fn first_run_starts_the_tour() {
     terminal.wait_for("Tour · 11 of 18");
     terminal.type_keys("\x1b");
     terminal.wait_for("Tour · 12 of 18");
-    // F4 closes the tour.
+    // Types F4, which closes the tour.
     terminal.type_keys("\x1bOS");
     terminal.wait_until_gone("Tour ·");
     terminal.type_keys("\x03");
@@ -84,7 +84,7 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
     terminal.type_keys("\x1b[15~");
     terminal.wait_for("Result · 1 row");
     terminal.wait_for("plans");
-    // Pasted text is inserted completely, including line ends, and runs nothing.
+    // Pasted text is inserted completely, including line ends, and the statement is not run.
     let slow = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)\nSELECT count(*) FROM n";
     terminal.type_keys("\x0e");
     terminal.wait_until_gone("FROM research_projects");
@@ -123,7 +123,7 @@ fn mouse_can_be_disabled() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
     terminal.wait_for("day 0/500");
-    // A click on the second line opens the screen of that name.
+    // A click on a name in the second line opens the screen of this name.
     let tabs = terminal.contents().lines().nth(1).expect("a second line").to_owned();
     let column = tabs.find("8 Tools").expect("a tab") + 1;
     terminal.type_keys(&format!("\x1b[<0;{};2M\x1b[<0;{};2m", column + 2, column + 2));

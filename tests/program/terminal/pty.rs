@@ -1,4 +1,4 @@
-//! The built program in a pseudo terminal: its screen, its output, its exit.
+//! The built program in a pseudoterminal, with access to its screen, its output and its exit code.
 
 use std::io::{Read, Write};
 use std::num::NonZeroU16;
@@ -12,24 +12,24 @@ fn cells(count: u16) -> NonZeroU16 {
     NonZeroU16::new(count).expect("a size")
 }
 
-/// The program in a terminal.
+/// The program in a pseudoterminal.
 pub struct Terminal {
     child: Box<dyn Child + Send + Sync>,
     master: Box<dyn MasterPty + Send>,
     writer: Box<dyn Write + Send>,
     bytes: Receiver<Vec<u8>>,
     screen: vt100::Parser,
-    /// All output so far.
+    /// All bytes that the program has written.
     written: Vec<u8>,
 }
 
 impl Terminal {
-    /// Starts the program with a folder of runs.
+    /// Starts the program in a pseudoterminal with a folder of runs.
     pub fn start(runs: &Path, arguments: &[&str], size: (u16, u16)) -> Terminal {
         Terminal::start_with(runs, arguments, size, &[])
     }
 
-    /// Starts the program with environment variables.
+    /// Starts the program in a pseudoterminal with environment variables.
     pub fn start_with(
         runs: &Path,
         arguments: &[&str],
@@ -72,28 +72,28 @@ impl Terminal {
         }
     }
 
-    /// Forgets the screen, as if another program had overwritten it.
+    /// Clears the emulated screen, as if another program had overwritten it.
     pub fn clear_screen(&mut self) {
         self.screen.process(b"\x1b[2J");
     }
 
-    /// Types keys.
+    /// Sends the bytes of keys to the program.
     pub fn type_keys(&mut self, keys: &str) {
         self.writer.write_all(keys.as_bytes()).expect("written");
         self.writer.flush().expect("flushed");
     }
 
-    /// Waits until the screen shows a text; fails with the screen.
+    /// Waits until the screen shows a text. A failure prints the screen.
     pub fn wait_for(&mut self, text: &str) {
         self.wait_until(text, |screen, _| screen.contains(text));
     }
 
-    /// Waits until a text has left the screen.
+    /// Waits until the screen no longer shows a text.
     pub fn wait_until_gone(&mut self, text: &str) {
         self.wait_until(text, |screen, _| !screen.contains(text));
     }
 
-    /// Waits until the program has written some bytes, visible or not.
+    /// Waits until the program has written certain bytes, which can be invisible.
     pub fn wait_for_bytes(&mut self, bytes: &[u8]) {
         let name = String::from_utf8_lossy(bytes).into_owned();
         self.wait_until(&name, |_, written| written.windows(bytes.len()).any(|window| window == bytes));
@@ -134,7 +134,7 @@ impl Terminal {
         self.wait_until_true("raw mode", is_raw);
     }
 
-    /// Waits until the process is stopped.
+    /// Waits until the process has been stopped by a signal.
     pub fn wait_until_stopped(&mut self) {
         let process = self.process();
         let state = || {
@@ -185,7 +185,7 @@ impl Terminal {
         self.screen.screen().contents()
     }
 
-    /// Returns all output so far.
+    /// Returns all bytes that the program has written.
     pub fn written(&self) -> &[u8] {
         &self.written
     }
@@ -195,7 +195,7 @@ impl Terminal {
         self.child.process_id().expect("a process").to_string()
     }
 
-    /// Limits the size of files of the process, which acts as a full disk; `unlimited` removes the limit.
+    /// Limits the size of files that the process writes, which acts like a full disk. `unlimited` removes the limit.
     #[cfg(target_os = "linux")]
     pub fn limit_file_size(&self, bytes: &str) {
         let arguments = ["--pid", &self.process(), &format!("--fsize={bytes}:")].map(str::to_owned);
@@ -222,7 +222,7 @@ impl Terminal {
         self.exit_code();
     }
 
-    /// Waits for the end; returns the exit code and the last screen.
+    /// Waits for the end of the process, and returns its exit code and the last screen.
     pub fn wait_for_end(mut self) -> (u32, String) {
         let code = self.exit_code();
         while let Ok(bytes) = self.bytes.recv_timeout(Duration::from_secs(5)) {
@@ -239,7 +239,7 @@ fn terminal_settings(terminal: &Path, arguments: &[&str]) -> String {
     String::from_utf8(answer.expect("stty runs").stdout).expect("text")
 }
 
-/// Plays a policy and saves the run in a folder.
+/// Plays a run with a policy and saves the run in a folder of runs.
 pub fn play_policy(runs: &Path, arguments: &[&str]) {
     let played = std::process::Command::new(env!("CARGO_BIN_EXE_novamind"))
         .arg("run")

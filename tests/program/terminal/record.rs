@@ -1,4 +1,4 @@
-//! Every end of a session is recorded, and typed text survives.
+//! Every end of a session is recorded, and typed text is kept.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ fn only_run(runs: &Path) -> PathBuf {
     folders.into_iter().find(|folder| folder.join("run.toml").exists()).expect("a run")
 }
 
-/// Returns the presence events of the session, with the cause of its end.
+/// Returns the presence events of the run, with the cause of each end of a session.
 fn presence(runs: &Path) -> Vec<(PresenceEvent, Option<LeavingCause>)> {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
     let of = |record: &Record| match record {

@@ -1,4 +1,4 @@
-//! Scripts in the console: typed in several lines, stopped by a key, and stopped when the program quits.
+//! Python scripts in the console, which are typed in several lines, stopped by a key, and stopped when the program quits.
 
 use std::process::Command;
 use std::time::{Duration, Instant};

@@ -5,10 +5,10 @@ use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
 use novamind_study::{Occasion, Study};
 
-/// Returns the points of the design: questions, assignment, forecasts.
+/// Checks the questionnaires, the assignment and the forecasts of the design.
 pub(super) fn design_checks(study: &Study, configuration: &Configuration) -> Vec<CheckItem> {
     let Ok((days, horizons)) = days_and_horizons(study, configuration) else {
-        // An invalid scenario is reported by its own point.
+        // A separate check reports an invalid scenario.
         return Vec::new();
     };
     let mut points: Vec<CheckItem> = check_questionnaires(study, days.div_ceil(7)).into_iter().collect();
@@ -26,7 +26,7 @@ fn days_and_horizons(study: &Study, configuration: &Configuration) -> Result<(u3
     Ok((study.protocol.world.days.unwrap_or(days), params.limits.prediction_horizons_days.clone()))
 }
 
-/// Reports questionnaires that are due after weeks that a session does not have.
+/// Reports questionnaires that are due after the last week of a session.
 fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
     let (mut never, mut words) = (false, Vec::new());
     for questionnaire in
@@ -64,7 +64,7 @@ fn incomplete_block(study: &Study) -> Option<String> {
     })
 }
 
-/// Returns how many forecasts come due within a session, by horizon.
+/// Counts the forecasts whose target day is within a session, by horizon.
 fn check_forecasts(days: u32, horizons: &[u32]) -> CheckOutcome {
     let due = |horizon: u32| days.checked_sub(horizon).map_or(0, |last| last / 7 + 1);
     let words: Vec<String> =

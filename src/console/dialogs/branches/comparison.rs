@@ -25,7 +25,7 @@ pub(super) struct ComparisonView {
     days_per_week: u32,
     figure: usize,
     selected: usize,
-    /// Confidence interval of its difference, computed once rather than in every frame.
+    /// Confidence interval of the selected branch's difference, computed once rather than in every frame.
     confidence_text: Option<String>,
 }
 
@@ -99,7 +99,7 @@ impl ComparisonView {
         let lines = self.lines_per_milestone(area);
         let milestones = self.comparison.milestones(self.days_per_week).len() * lines;
         let table = milestones as u16 + 1;
-        // In a small window the table takes precedence over the first line.
+        // In a small window, the first line is omitted to leave space for the table.
         if area.height > table + self.comparison.branches.len() as u16 {
             let row = split_top(&mut rest, 1);
             let heading = heading(&self.comparison, self.days_per_week);
@@ -204,7 +204,7 @@ impl ComparisonView {
         }
     }
 
-    /// Returns the lines per milestone: two if a figure does not fit into one.
+    /// Returns the number of lines per milestone: two if a figure does not fit into one line.
     fn lines_per_milestone(&self, area: Rect) -> usize {
         let width =
             area.width.saturating_sub(WEEK_COLUMN_WIDTH) / self.comparison.branches.len().max(1) as u16;
@@ -237,7 +237,7 @@ fn is_share(figure: BranchFigure) -> bool {
     matches!(figure.unit(), FigureUnit::Share | FigureUnit::PreciseShare)
 }
 
-/// Splits some rows off the top.
+/// Removes rows from the top of an area and returns them.
 fn split_top(rest: &mut Rect, height: u16) -> Rect {
     let height = height.min(rest.height);
     let taken = Rect { height, ..*rest };

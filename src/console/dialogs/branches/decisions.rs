@@ -10,11 +10,11 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_tui::widgets::table::first_visible_row;
 
-const PARAMETER_EDIT_ERROR: &str = "omit it, and add another value with set KEY VALUE";
+const PARAMETER_EDIT_ERROR: &str = "omit this line, and add another value with set KEY VALUE";
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum DecisionRow {
-    /// Index of an edit that applies to no recorded call.
+    /// Index of an edit that does not change a recorded call.
     Edit(usize),
     /// Index of a recorded decision.
     Recorded(usize),
@@ -22,7 +22,7 @@ enum DecisionRow {
 
 struct DecisionInput {
     field: TextField,
-    /// The recorded line whose call is edited; `None` for an added decision.
+    /// The recorded line whose call is edited, or `None` for an added decision.
     line: Option<u64>,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct DecisionList {
     week: u32,
     last_week: u32,
     days_per_week: u32,
-    /// `None` until the decisions are loaded.
+    /// The recorded decisions, or `None` until they are loaded.
     recorded: Option<Vec<RecordedDecision>>,
     is_rejected: bool,
     alternatives: Vec<Vec<DecisionEdit>>,
@@ -91,7 +91,7 @@ impl DecisionList {
         self.recorded.as_deref().unwrap_or_default()
     }
 
-    /// Edits first, then the recorded decisions from the start week.
+    /// Returns the edits, followed by the recorded decisions from the start week on.
     fn rows(&self) -> Vec<DecisionRow> {
         let edits = self.alternatives[self.current].iter().enumerate();
         let free = edits.filter(|(_, edit)| line_of(edit).is_none()).map(|(at, _)| DecisionRow::Edit(at));
@@ -112,7 +112,7 @@ impl DecisionList {
         self.selected = row.min(self.rows().len().saturating_sub(1));
     }
 
-    /// Handles an action. Returns an error message if the action is not possible.
+    /// Handles an action in the list of decisions. Returns an error message if the action is not possible.
     pub(super) fn handle_action(&mut self, action: Action) -> Result<(), String> {
         match action {
             Action::Commit => return self.commit(),
@@ -168,7 +168,7 @@ impl DecisionList {
         }
     }
 
-    /// Omits or restores the selected decision; removes a selected edit.
+    /// Omits or restores the selected recorded decision, or removes the selected edit.
     fn toggle_selected(&mut self) {
         match self.rows().get(self.selected) {
             Some(DecisionRow::Edit(at)) => drop(self.current_edits().remove(*at)),

@@ -83,7 +83,7 @@ fn typed_decisions_and_alternatives_are_kept() {
     let texts: Vec<String> =
         alternatives.iter().map(|decision_edits| decision_edits[0].to_string()).collect();
     assert_eq!(texts, ["set_prices * 0.9", "keep set_prices"]);
-    // The first esc stops the work, the second one closes the page.
+    // The first esc stops the simulation, and the second esc closes the page.
     assert!(!dialog_action(&mut page, Action::Cancel, &company).closes && !page.asked.is_waiting());
     assert!(dialog_action(&mut page, Action::Close, &company).closes);
 }

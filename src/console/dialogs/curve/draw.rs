@@ -1,4 +1,4 @@
-//! Drawing of the curve explorer: the plans, the responses of leads, and the curve.
+//! Draws the curve explorer: the plans, the responses of leads, and the curve.
 
 use ratatui::layout::Rect;
 
@@ -52,7 +52,7 @@ impl CurveDialog {
         canvas.draw_pane_keys(dialog_area, &self.key_hints(context));
     }
 
-    /// The drag keys come first.
+    /// Returns the key hints. The keys that drag plans are first.
     fn key_hints(&self, context: &ScreenContext<'_>) -> String {
         let label = |action| context.keys.label(action).unwrap_or_default();
         let drags = match self.successful_exploration() {
@@ -130,7 +130,7 @@ impl CurveDialog {
         let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
         let top = plans().map(|plan_point| plan_point.quality).fold(1.0, f64::max);
         let most = opened.max_price();
-        // Unaffordable prices are not drawn: lines end there, and the band extends to its upper edge.
+        // Points above the chart are omitted, so that lines end at its upper edge. The band is limited to that edge.
         let line = |of: fn(&CurvePoint) -> f64, role| {
             let inside = points.iter().filter(|point| of(point) <= top);
             Curve::from_points(inside.map(|point| (point.price, of(point))).collect(), role)
@@ -176,16 +176,16 @@ fn line_of(opened: &CurveExploration, plan: Plan) -> String {
     if changes.is_empty() { words } else { format!("{words} ({})", changes.join(", ")) }
 }
 
-/// Explains the chart as far as space permits.
+/// Returns the lines of the legend that fit into the area.
 fn legend_lines(opened: &CurveExploration, area: Rect) -> Vec<String> {
     if area.height < MIN_ROWS_FOR_LEGEND {
         return Vec::new();
     }
     let unit = if opened.explorer.group.is_enterprise() { "price per seat" } else { "price" };
     let mut words =
-        format!("x: {unit}, y: quality · line: enough for half of the leads · shaded: for 1 to 9 in 10");
+        format!("x: {unit}, y: quality · line: half of the leads accept · shaded: 10 to 90 % accept");
     if !opened.explorer.shows_true_values() {
-        words += " · dim lines: half, at both ends of the error · spread and slope are assumed; studies measure means";
+        words += " · dim lines: the line at both ends of its error · spread and slope are assumed; studies measure means";
     }
     wrap(&words, area.width as usize)
 }

@@ -1,5 +1,5 @@
 //! The curve explorer: the required quality of a group at each price, the plans, and how leads would respond to other
-//! prices and qualities. Nothing is set.
+//! prices and qualities. The explorer does not change settings.
 
 mod draw;
 #[cfg(test)]
@@ -19,7 +19,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_worker::page_questions::CurveQuestion;
 use novamind_worker::question::{OutgoingQuestion, Pending};
 
-/// Step by which qualities are changed; page keys change by ten steps.
+/// Step by which a key changes a quality. Page keys change the quality by ten steps.
 const QUALITY_STEP: f64 = 0.01;
 const MAX_QUALITY: f64 = 2.0;
 
@@ -35,7 +35,7 @@ pub struct CurveDialog {
     asked: Pending<CurveQuestion>,
     /// The curve, or `None` while it is computed.
     exploration: Option<Result<CurveExploration, Rejection>>,
-    /// The dragged plan; `None` for all plans.
+    /// The dragged plan, or `None` if all plans are dragged.
     selected_plan: Option<Plan>,
 }
 
@@ -49,7 +49,7 @@ impl CurveDialog {
     fn set_result(&mut self, explorer: CurveExplorer) -> CurveExploration {
         let plans = explorer.plans;
         let outcome = explorer.outcome(&plans);
-        // Plans with the same quality and price move together.
+        // Plans that all have the same quality and price are dragged together.
         if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
             self.selected_plan = None;
         }
@@ -92,7 +92,7 @@ impl CurveDialog {
         }
     }
 
-    /// Selects the next of A, B, C and all plans.
+    /// Selects the next item in the cycle A, B, C and all plans.
     fn select_next_plan(&mut self) {
         self.selected_plan = match self.selected_plan {
             None => Some(Plan::A),
@@ -135,7 +135,7 @@ impl CurveExploration {
     }
 }
 
-/// Returns the price step in dollars: about a hundred steps over the curve.
+/// Returns the price step in dollars, which divides the curve into about a hundred steps.
 fn price_step(most: f64) -> f64 {
     match most {
         most if most <= 150.0 => 1.0,
@@ -147,7 +147,7 @@ fn price_step(most: f64) -> f64 {
 /// Moves a value by whole steps along the multiples of `step`.
 fn step_to_multiple(value: f64, steps: f64, step: f64) -> f64 {
     let at = value / step;
-    // From between two multiples, the first step goes to the nearest one in its direction.
+    // If the value is between two multiples, the first step ends at the next multiple in its direction.
     let from = if steps > 0.0 { (at + 1e-9).floor() } else { (at - 1e-9).ceil() };
     (from + steps) * step
 }

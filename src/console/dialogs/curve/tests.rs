@@ -1,4 +1,4 @@
-//! Tests of the curve explorer: keys drag plans, the responses change, and nothing is set.
+//! Tests of the curve explorer: keys drag plans, the responses change, and no setting changes.
 
 use super::*;
 use crate::test_kit::{asked, dialog_action, dialog_text, played_session};
@@ -26,7 +26,7 @@ fn adjusting_a_plan_updates_the_outcome() {
     assert_eq!(opened.plans[Plan::A].list_price, list.floor() + 2.0);
     assert_eq!(opened.plans[Plan::B], opened.explorer.plans[Plan::B]);
     assert_ne!(opened.outcome, before);
-    // Drags all plans together, then resets them.
+    // All plans are dragged together, and then reset.
     for _ in 0..3 {
         dialog_action(&mut page, Action::NextPlan, &company);
     }

@@ -1,4 +1,4 @@
-//! Step 3 of the next-week dialog: cash forecasts, an interval per horizon.
+//! Step 3 of the next-week dialog: cash forecasts with an interval for each horizon.
 
 use ratatui::layout::Rect;
 
@@ -17,7 +17,7 @@ impl NextWeekDialog {
     pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let (company, roomy) = (context.company, area.height >= 12);
         let question = format!(
-            "Cash now: {}. Forecast it with ranges that contain the actual value 95 times in 100.",
+            "Cash now: {}. Forecast cash with ranges that contain the actual value 95 times in 100.",
             dollars(company.observation.cash)
         );
         let asked = wrap(&question, area.width as usize);
@@ -32,7 +32,7 @@ impl NextWeekDialog {
                 canvas.draw_aligned(cell_area(row, at), title, Role::Header, Align::Right);
             }
             let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
-            let title = if record.width < 18 { "so far" } else { "your record so far" };
+            let title = if record.width < 18 { "past" } else { "your past forecasts" };
             if company.shows_calibration() {
                 canvas.draw_text(record, title, Role::Header);
             }

@@ -1,4 +1,5 @@
-//! The next-week dialog: review, rationale and forecasts. The user can go back; drafts stay until the week has run.
+//! The next-week dialog: review, rationale and forecasts. The user can go back to earlier steps. Drafts are kept until
+//! the week has run.
 
 mod forecasts;
 mod review;
@@ -30,30 +31,30 @@ enum NextWeekStep {
     Forecasts,
 }
 
-/// The dialog with its drafts.
+/// The next-week dialog and its drafts.
 pub struct NextWeekDialog {
     step: NextWeekStep,
     review: ChangeReview,
     rationale: TextEditor,
-    /// Low, point and high of each horizon.
+    /// Fields for the low, point and high values of each horizon.
     cells: [[TextField; 3]; 4],
     focus: (usize, usize),
     is_typing: bool,
-    /// The cell before it was edited, and whether the projection had filled it.
+    /// Content of the focused cell before it was edited.
     previous_cell: TextField,
     was_naive: bool,
     /// Cells that the projection filled in.
     filled_naively: [[bool; 3]; 4],
     problem: Option<String>,
     tools_with_drafts: Vec<ToolId>,
-    /// In baseline runs the program fills in no rationale.
+    /// Whether the run is a baseline run, in which the program does not fill in the rationale.
     is_baseline: bool,
 }
 
-/// Prompt for the rationale. It contains no words that are counted in rationales.
-const RATIONALE_QUESTION: &str = "Why these decisions, and what will come of them?";
+/// Prompt for the rationale. The prompt contains none of the planning words that are counted in rationales.
+const RATIONALE_QUESTION: &str = "Why these decisions, and what results will follow?";
 const RATIONALE_NEEDED: &str = "a rationale is required: write at least one sentence";
-/// Placeholder of the rationale. It contains no words that are counted in rationales.
+/// Placeholder of the rationale. The placeholder contains none of the planning words that are counted in rationales.
 const RATIONALE_HINT: &str = "what you changed, and your reasons";
 
 const HORIZON_LABELS: [&str; 4] = ["1 week", "4 weeks", "12 weeks", "26 weeks"];
@@ -87,13 +88,13 @@ impl NextWeekDialog {
         self.is_typing = false;
     }
 
-    /// Returns whether there is a draft that could be lost.
+    /// Returns whether the dialog has a draft that could be lost.
     pub fn has_draft(&self) -> bool {
         !self.rationale.is_blank()
             || self.player_cells().any(|(row, column)| !self.cells[row][column].is_empty())
     }
 
-    /// Returns the rationale and the forecast cells as typed.
+    /// Returns the rationale and the texts of the forecast cells.
     pub fn draft(&self) -> (String, [[String; 3]; 4]) {
         let mut cells: [[String; 3]; 4] = Default::default();
         for (row, column) in self.player_cells() {
@@ -102,7 +103,7 @@ impl NextWeekDialog {
         (self.rationale.text(), cells)
     }
 
-    /// Restores a draft.
+    /// Restores the rationale and the forecast cells of a draft.
     pub fn restore_draft(&mut self, rationale: &str, cells: &[[String; 3]; 4]) {
         self.rationale = TextEditor::with_text(rationale);
         self.cells =
@@ -115,7 +116,7 @@ impl NextWeekDialog {
         texts.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(CELL_SEPARATOR)
     }
 
-    /// Returns the number of the step, from 1.
+    /// Returns the number of the current step, counted from 1.
     pub fn step_number(&self) -> usize {
         self.step as usize + 1
     }
@@ -158,14 +159,14 @@ impl NextWeekDialog {
         };
     }
 
-    /// Positions of the cells that the projection did not fill.
+    /// Returns the positions of the cells that the projection did not fill.
     fn player_cells(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..4)
             .flat_map(|row| (0..3).map(move |column| (row, column)))
             .filter(|at| !self.filled_naively[at.0][at.1])
     }
 
-    /// Fills empty cells with the projection. Around a typed point, its interval keeps its width.
+    /// Fills empty cells with the projection. If the point was typed, the interval of the projection is moved to that point.
     fn fill_naive_forecasts(&mut self, company: &DisplayedCompany) {
         for (row, naive) in company.naive_forecasts.all.iter().enumerate() {
             let typed = |column: usize| parse_number(self.cells[row][column].text());
@@ -182,7 +183,7 @@ impl NextWeekDialog {
         self.problem = None;
     }
 
-    /// Parses the forecasts. Returns the first invalid cell as an error.
+    /// Parses the forecasts. The error contains the position of the first invalid cell and the reason.
     fn parse_forecasts(&self, company: &DisplayedCompany) -> Result<Forecasts, ((usize, usize), String)> {
         let mut all = company.naive_forecasts;
         all.filled_naively = self.filled_naively.map(|row| row.contains(&true));
@@ -321,7 +322,7 @@ impl Dialog for NextWeekDialog {
             Action::FillNaiveForecasts if self.step == NextWeekStep::Forecasts => {
                 self.fill_naive_forecasts(context.company)
             }
-            // Without new decisions, one key fills everything and goes to the last step.
+            // Even without decisions this week, one key fills in all texts and goes to the last step.
             Action::FillNaiveForecasts
                 if self.step == NextWeekStep::Review && !context.company.is_baseline() =>
             {

@@ -20,17 +20,17 @@ pub struct ChangeReview {
 }
 
 impl ChangeReview {
-    /// Scrolls a review that is longer than its window.
+    /// Scrolls the review if it does not fit into the window.
     pub fn handle_scroll(&mut self, action: Action, page: usize) {
         self.scroll.handle_action(action, page);
     }
 
-    /// Draws the visible part.
+    /// Draws the visible lines of the review.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany, unsent: &[ToolId]) {
         let lines = lines(canvas, area.width as usize, company, unsent);
         let room = area.height as usize;
         let fits = lines.len() <= room;
-        // One row shows how many lines are hidden.
+        // The last row shows the number of hidden lines.
         let shown = if fits { room } else { room.saturating_sub(1) };
         let from = self.scroll.clamped_first_row(lines.len().saturating_sub(shown));
         canvas.page_rows = (shown as u16).max(1);

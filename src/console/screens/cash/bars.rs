@@ -15,7 +15,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::AxisUnit;
 use novamind_tui::widgets::scale::ticks;
 
-/// Minimum width of a week, with the gap.
+/// Minimum width of the bar of a week including the gap, in columns.
 const MIN_WEEK_WIDTH: u16 = 3;
 const MAX_WEEK_WIDTH: u16 = 9;
 const AXIS_WIDTH: u16 = 8;
@@ -34,7 +34,7 @@ impl Pane<Cash> for BarsPane {
     fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => return ledger_rows(cash.selected_subject_in_week()),
-            // Up and down select the category to compare.
+            // The up and down keys select the category to compare.
             action if !cash.handle_week_action(action) => {
                 cash.table.handle_action(action, context.page_rows);
             }
@@ -67,7 +67,7 @@ impl Pane<Cash> for BarsPane {
     }
 }
 
-/// Draws the bars. `pane` is the index for clicks, whose rows are the weeks.
+/// Draws the bars of all weeks. Clicks are registered for the pane with index `pane`, with the week as the row.
 fn draw(canvas: &mut Canvas<'_>, area: Rect, ledger: &WeeklyLedger, selected: u32, pane: usize) {
     if area.width < AXIS_WIDTH + 2 * MIN_WEEK_WIDTH || area.height < 5 {
         return;
@@ -118,7 +118,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, ledger: &WeeklyLedger, selected: u3
     }
 }
 
-/// Rows above and below the line, and dollars per row.
+/// Rows above and below the zero line, and dollars per row.
 #[derive(Debug, PartialEq)]
 struct BarScale {
     above: u16,
@@ -143,14 +143,14 @@ impl BarScale {
         BarScale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
     }
 
-    /// Returns the row of a value, counted from the top.
+    /// Returns the row in which a value ends, counted from the top.
     fn row(&self, value: f64) -> u16 {
         let rows = (value.abs() / self.dollars).ceil() as u16;
         if value < 0.0 { self.above + rows.min(self.below) } else { self.above - rows.min(self.above) }
     }
 }
 
-/// Draws the zero line, and round values next to the rows in which they end.
+/// Draws the zero line and labels rows with round values.
 fn draw_axis(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
     let line = Rect { y: area.y + scale.above, height: 1, ..area };
     canvas.draw_text(line, &"─".repeat(area.width as usize), Role::Border);
@@ -168,10 +168,10 @@ fn draw_axis(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
     }
 }
 
-/// A category and where it ends in a bar, in eighths of a row from the line.
+/// A category and the end of its segment in a bar, in eighths of a row from the zero line.
 type BarSegmentEnd = (usize, u32);
 
-/// Returns the categories on one side of a bar, from the line outwards.
+/// Returns the segments on one side of a bar, starting at the zero line.
 fn bar_segments(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarSegmentEnd> {
     let mut sum = 0.0;
     let side_categories = CATEGORIES.iter().enumerate().filter(|(_, category)| category.is_income == income);
@@ -182,8 +182,8 @@ fn bar_segments(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) ->
     end.collect()
 }
 
-/// Returns the two parts drawn in a row of eighths: the category next to the line, its size, and the category
-/// beyond it.
+/// Returns the categories to draw in a row: the category nearer to the zero line, its size in eighths, and the
+/// category beyond it.
 fn segments_in_row(parts: &[BarSegmentEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
     let mut start = 0;
@@ -196,7 +196,7 @@ fn segments_in_row(parts: &[BarSegmentEnd], row: u16) -> Option<(usize, u32, Opt
         start = *end;
     }
     let filled: u32 = shares.iter().map(|(_, share)| share).sum();
-    // A cell has two colors, so the smallest of three or more parts are merged into their neighbors.
+    // A cell can show only two colors. While there are more segments, the smallest is merged into its neighbor.
     while shares.len() > 2 || (shares.len() == 2 && filled < 8) {
         let (least, _) = shares.iter().enumerate().min_by_key(|(_, (_, share))| *share)?;
         let (_, share) = shares.remove(least);
@@ -206,8 +206,8 @@ fn segments_in_row(parts: &[BarSegmentEnd], row: u16) -> Option<(usize, u32, Opt
     Some((near, share, shares.get(1).map(|(beyond, _)| *beyond)))
 }
 
-/// Draws the bar of a week: eighths of rows in the color of each category, or whole rows of glyphs if colors
-/// are not available.
+/// Draws the bar of a week in eighths of rows with one color per category. Without colors, each row shows the glyph of
+/// a category.
 fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &BarScale) {
     let coloured = has_category_colors(canvas);
     for income in [true, false] {
@@ -233,8 +233,8 @@ fn has_category_colors(canvas: &Canvas<'_>) -> bool {
     canvas.marker != Marker::Dot && canvas.theme.has_distinct_series_colors(CATEGORY_COUNT)
 }
 
-/// Draws a cell of which some eighths next to the line belong to one category, and the rest to another or
-/// none.
+/// Draws a cell with eighths of one category next to the zero line. The rest of the cell shows the category beyond it
+/// or stays empty.
 fn draw_eighths(
     canvas: &mut Canvas<'_>,
     cell: Rect,
@@ -244,7 +244,8 @@ fn draw_eighths(
 ) {
     const BLOCKS: [&str; 9] = [" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
     let colour = |category: usize| canvas.style(Role::Series(category)).fg;
-    // Block glyphs fill from below. Below the line, the block is the part that the near category leaves free.
+    // Block glyphs are filled from the bottom. Below the zero line, the glyph draws the eighths that the nearer
+    // category does not use.
     let lower = if up { eighths } else { 8 - eighths };
     let style = match (up, beyond) {
         _ if eighths >= 8 => Style { fg: colour(near), ..Style::new() },
@@ -265,7 +266,7 @@ fn draw_net_label(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
     canvas.draw_aligned(place, &truncate_to_width(&text, place.width as usize), role, Align::Right);
 }
 
-/// Returns the lines of the legend: categories with entries, and their text.
+/// Returns the lines of the legend. Each item is the index of a used category and its label.
 fn legend_lines(ledger: &WeeklyLedger, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
@@ -273,7 +274,7 @@ fn legend_lines(ledger: &WeeklyLedger, width: usize) -> Vec<Vec<(usize, String)>
         if !ledger.is_used(at) {
             continue;
         }
-        // The glyph of the category is drawn over the first column.
+        // The glyph of the category is drawn over the first space.
         let text = format!("  {}", category.name());
         let length = text.chars().count() + 2;
         if used + length > width + 2 || lines.is_empty() {

@@ -1,4 +1,4 @@
-//! Cash by day with the selected week, and the change by week.
+//! A chart of cash by day with the selected week, and bars of the change by week.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -49,7 +49,7 @@ impl Pane<Cash> for CurvePane {
         PaneBorder { title: title.to_owned(), note, keys: week_keys(context), ..PaneBorder::default() }
     }
 
-    /// Draws the curve, and the change of every week below it if it fits.
+    /// Draws the cash curve, and the weekly changes below the curve if they fit.
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let (company, week) = (context.company, cash.week());
         let changes = if placement.area.height >= 11 { placement.area.height / 3 } else { 0 };

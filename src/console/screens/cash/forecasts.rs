@@ -45,7 +45,7 @@ impl Pane<Cash> for ForecastsPane {
         let horizons = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
         let weeks = cash.forecasts.horizon() / 7;
         let title = format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" });
-        // Do not show a figure that is cut off.
+        // Only a note that fits completely is shown.
         let room = note_width(area, &title);
         let scores = cash.forecasts.score_texts(context.company);
         let note = scores.into_iter().find(|note| note.width() <= room).unwrap_or_default();
@@ -61,7 +61,7 @@ impl Pane<Cash> for ForecastsPane {
         let (outlook, inside) = (&cash.forecasts, placement.area);
         if outlook.forecasts.is_empty() {
             let text = format!(
-                "No forecasts yet. You file four before each week ({}).",
+                "No forecasts yet. You make four before each week ({}).",
                 context.hint(Action::NextWeek)
             );
             canvas.draw_text(inside, &text, Role::Dim);
@@ -93,7 +93,7 @@ impl ForecastsState {
         self.horizons.get(self.horizon).copied().unwrap_or(7)
     }
 
-    /// Returns the forecasts of the shown horizon, in order of filing.
+    /// Returns the forecasts with the displayed horizon, in the order of submission.
     fn forecasts_of_horizon(&self) -> impl DoubleEndedIterator<Item = &ScoredForecast> {
         let horizon = self.horizon();
         self.forecasts.iter().filter(move |filed| filed.forecast.horizon_days == horizon)
@@ -128,13 +128,13 @@ impl ForecastsState {
         self.table.handle_action(Action::First, page);
     }
 
-    /// Returns the forecasts in table order: due forecasts, newest first, then open ones.
+    /// Returns the forecasts in table order: due forecasts, the newest first, followed by open forecasts.
     fn forecasts_in_table_order(&self) -> impl Iterator<Item = &ScoredForecast> {
         let known = self.forecasts_of_horizon().filter(|one| one.outcome.is_some()).rev();
         known.chain(self.forecasts_of_horizon().filter(|one| one.outcome.is_none()))
     }
 
-    /// Returns the selected forecast, with a query for its rows.
+    /// Returns the selected forecast as a figure, with a query for its source rows.
     fn figure(&self) -> Option<Figure> {
         let filed = self.forecasts_in_table_order().nth(self.table.selected()?)?;
         let sql = format!(
@@ -146,7 +146,7 @@ impl ForecastsState {
         Some(Figure { title, term: "forecast", sql: Some(sql), week_quantity: None })
     }
 
-    /// Returns the results of the horizon, longest wording first.
+    /// Returns descriptions of the scores at the displayed horizon, the longest first.
     fn score_texts(&self, company: &DisplayedCompany) -> Vec<String> {
         match company.forecast_scores.get(self.horizon).filter(|score| score.scored > 0) {
             Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
@@ -155,12 +155,12 @@ impl ForecastsState {
                     (format!("{} of {} inside", score.covered, score.scored), percent(score.mean_error, 1));
                 vec![format!("{inside} · mean error {miss}"), format!("{inside} · error {miss}"), inside]
             }
-            None => vec!["none due yet".to_owned()],
+            None => vec!["no forecast due".to_owned()],
         }
     }
 
     fn draw_curve(&self, canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany) {
-        // Open forecasts of long horizons would compress the past.
+        // Open forecasts with long horizons are omitted, because they would compress the past.
         let until = f64::from(company.observation.day) * 1.15 + 14.0;
         let near = || self.forecasts_of_horizon().filter(|filed| f64::from(filed.due_day()) <= until);
         let day = |filed: &ScoredForecast| f64::from(filed.due_day());

@@ -1,4 +1,4 @@
-//! The ledger of a week: every category with its change, mean and share.
+//! The ledger of a week: the amount, change, mean and share of every category.
 
 use ratatui::layout::Rect;
 
@@ -65,7 +65,7 @@ impl Pane<Cash> for LedgerPane {
     }
 }
 
-/// Returns the subject of the selected row, in the weeks of the selected column.
+/// Returns the subject of the selected row and the weeks of the selected column.
 fn selected(cash: &Cash) -> Option<SelectedSubject> {
     let (subject, week) = (cash.subject()?, cash.week());
     let weeks = match cash.table.selected_column() {
@@ -84,7 +84,7 @@ fn week_label(week: u32, company: &DisplayedCompany) -> String {
     format!("week {week} · days {from} to {}", to.min(company.observation.day.max(from)))
 }
 
-/// Returns the table of a week: columns, subjects of the rows, rows.
+/// Returns the ledger table of a week: its columns, the subjects of its rows, and its rows.
 pub fn table_of(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
     let before = week.saturating_sub(1);
     let columns = vec![
@@ -96,7 +96,7 @@ pub fn table_of(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<Ledg
         TableColumn::numeric("run total"),
         TableColumn::numeric("share"),
     ];
-    // Sums come before their parts, because small windows cut the end.
+    // Totals are listed before their components, because small windows cut off the last rows.
     let mut subjects = vec![LedgerSubject::Net];
     for income in [true, false] {
         let used = |at: &usize| CATEGORIES[*at].is_income == income && ledger.is_used(*at);
@@ -116,7 +116,7 @@ fn row_of(subject: &LedgerSubject, all: &[Amounts; 4], week: u32) -> Vec<TableCe
         LedgerSubject::Costs => (false, Role::Strong),
         LedgerSubject::Income | LedgerSubject::Net => (true, Role::Strong),
     };
-    // The change of a cost refers to its absolute value.
+    // For a cost, a positive change means that the cost increased.
     let change = if income { now - before } else { before - now };
     let change_role = match change {
         0.0 => Role::Dim,

@@ -25,19 +25,19 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::DisplayedCompany;
 
-/// Panes in tab order.
+/// Panes of the cash screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum CashPane {
-    /// The week by category.
+    /// Amounts of the selected week by category.
     #[default]
     Ledger,
-    /// Bars of all weeks.
+    /// Income and cost bars of all weeks.
     Weeks,
     /// Forecasts and outcomes.
     Forecasts,
-    /// Change of cash within the week.
+    /// Change of cash during the selected week.
     Waterfall,
-    /// Cash by day.
+    /// Curve of cash by day.
     Curve,
 }
 
@@ -49,7 +49,7 @@ const MIN_WIDE_WIDTH: u16 = 176;
 pub struct Cash {
     focus: CashPane,
     ledger: WeeklyLedger,
-    /// The selected week; `None` for the last one.
+    /// The selected week, or `None` for the last week.
     selected_week: Option<u32>,
     table: Table,
     subjects: Vec<LedgerSubject>,
@@ -85,7 +85,7 @@ impl Cash {
         self.rebuild_table();
     }
 
-    /// Handles keys that change the week; returns false for other actions.
+    /// Handles actions that change the selected week. Returns false for other actions.
     fn handle_week_action(&mut self, action: Action) -> bool {
         match action {
             Action::Left => self.move_week(-1),
@@ -106,7 +106,7 @@ impl Cash {
         Some((self.subject()?, (self.week(), self.week())))
     }
 
-    /// Returns the steps from the previous week's cash to the selected week's.
+    /// Returns the steps from the cash of the previous week to the cash of the selected week.
     fn steps(&self, company: &DisplayedCompany) -> Vec<CashStep> {
         cash_steps(&self.ledger, company, self.week(), usize::MAX)
     }
@@ -122,7 +122,7 @@ impl Cash {
         let figure =
             Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), week_quantity: None };
         let quantity = subject.figure().and_then(WeekQuantity::for_company);
-        // Purchases since the last week belong to a week that has not been simulated.
+        // Only simulated weeks have weekly quantities. Purchases since the last week belong to the next week.
         Some(figure.with_week_quantity(quantity.filter(|_| to <= self.ledger.last_week()), to))
     }
 }
@@ -178,7 +178,7 @@ impl PaneScreen for Cash {
         if area.width >= 104 && area.height >= 30 {
             return self.draw_large_layout(canvas, area, context);
         }
-        // In small windows the focused pane gets the larger part.
+        // In small windows, the focused pane is larger.
         let rows = self.table.rows().len() as u16 + 3;
         let (upper, below) = match self.focus {
             CashPane::Ledger => {
@@ -212,7 +212,7 @@ impl Cash {
             draw_pane(self, CashPane::Waterfall, canvas, steps, context);
             draw_pane(self, CashPane::Curve, canvas, curve, context);
         } else {
-            // The curve replaces the waterfall while it has the focus.
+            // The curve replaces the waterfall while the curve has the focus.
             let front = if self.focus == CashPane::Curve { CashPane::Curve } else { CashPane::Waterfall };
             draw_pane(self, front, canvas, right_area, context);
         }

@@ -11,7 +11,7 @@ use novamind_worker::company::DisplayedCompany;
 #[derive(Debug, PartialEq, Eq)]
 pub struct CategoryDisplay {
     pub category: Category,
-    /// Glyph in bars; unique, for terminals without colors or block glyphs.
+    /// Unique glyph of the category in bars, for terminals without colors or block glyphs.
     pub glyph: char,
     pub is_income: bool,
 }
@@ -28,7 +28,7 @@ const fn category_display(category: Category, glyph: char, income: bool) -> Cate
 
 pub const CATEGORY_COUNT: usize = Category::ALL.len();
 
-/// All categories, income first.
+/// All ledger categories, income first.
 pub static CATEGORIES: [CategoryDisplay; CATEGORY_COUNT] = [
     category_display(Category::SubscriptionPayment, '█', true),
     category_display(Category::AdRevenue, '░', true),
@@ -44,14 +44,14 @@ pub static CATEGORIES: [CategoryDisplay; CATEGORY_COUNT] = [
     category_display(Category::GroupResearch, '▼', false),
 ];
 
-/// Dollars by category; costs are negative.
+/// Dollars by category, with negative amounts for costs.
 pub type Amounts = [f64; CATEGORY_COUNT];
 
 /// Dollars by week and category from the first week, without the opening cash.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WeeklyLedger {
     weeks: BTreeMap<u32, Amounts>,
-    /// The last simulated week; later purchases belong to the next one.
+    /// The last simulated week. Later purchases belong to the next week.
     last_week: u32,
 }
 
@@ -71,7 +71,7 @@ impl WeeklyLedger {
         self.last_week
     }
 
-    /// Returns the week with the purchases since the last simulated one.
+    /// Returns the next week to simulate, which contains the purchases since the last simulated week.
     pub fn open_week(&self) -> u32 {
         self.weeks.keys().next_back().copied().unwrap_or(0)
     }
@@ -80,7 +80,7 @@ impl WeeklyLedger {
         self.weeks.get(&week).copied().unwrap_or([0.0; CATEGORY_COUNT])
     }
 
-    /// Returns the mean of up to four weeks that end with the given week.
+    /// Returns the mean amounts of up to four weeks, the last of which is the given week.
     pub fn mean_of_four(&self, week: u32) -> Amounts {
         let from = week.saturating_sub(3).max(1);
         let count = f64::from((week + 1).saturating_sub(from).max(1));
@@ -99,7 +99,7 @@ impl WeeklyLedger {
         total
     }
 
-    /// Returns whether a category has any entry.
+    /// Returns whether a category has any amount in the run.
     pub fn is_used(&self, category: usize) -> bool {
         self.weeks.values().any(|amounts| amounts[category] != 0.0)
     }
@@ -122,13 +122,13 @@ fn category_amounts(booked: &CategoryTotals) -> Amounts {
     std::array::from_fn(|at| booked.total_of(CATEGORIES[at].category))
 }
 
-/// Returns the sum of the income or of the costs.
+/// Returns the sum of all income categories or of all cost categories.
 pub fn sum_side(amounts: &Amounts, income: bool) -> f64 {
     let side_amounts = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.is_income == income);
     side_amounts.map(|(amount, _)| amount).sum()
 }
 
-/// Returns the first and last day of a week; week 0 is the day before the first.
+/// Returns the first and last day of a week. Week 0 consists of day 0 only.
 pub fn days_of_week(week: u32) -> (u32, u32) {
     match week {
         0 => (0, 0),
@@ -136,7 +136,8 @@ pub fn days_of_week(week: u32) -> (u32, u32) {
     }
 }
 
-/// Returns the cash at the end of the previous week, and at the end of the week (now, if it is open).
+/// Returns the cash at the end of the previous week and at the end of the week. For the open week, the second value is
+/// the current cash.
 pub fn cash_before_and_after(company: &DisplayedCompany, week: u32) -> Option<(f64, f64)> {
     let ended = |week: u32| company.weeks.get(week.checked_sub(1)? as usize).map(|figures| figures.cash);
     let before = match week.checked_sub(1)? {
@@ -150,16 +151,15 @@ pub fn cash_before_and_after(company: &DisplayedCompany, week: u32) -> Option<(f
 #[derive(Debug, Clone, PartialEq)]
 pub struct CashStep {
     pub name: String,
-    /// Cash before the step. For a level, both values are equal.
+    /// Cash before the step. For a level, `from` and `to` are equal.
     pub from: f64,
     pub to: f64,
-    /// Whether it is the initial or final cash.
+    /// Whether the step is a level: the initial or final cash of the week.
     pub is_level: bool,
     pub subject: LedgerSubject,
 }
 
-/// Returns the steps of a week in at most `most` rows: income first, then costs by size; the smallest costs
-/// are combined.
+/// Returns the steps of a week in at most `most` rows: income first, then costs by size. The smallest costs are combined.
 pub fn cash_steps(ledger: &WeeklyLedger, company: &DisplayedCompany, week: u32, most: usize) -> Vec<CashStep> {
     let Some((before, after)) = cash_before_and_after(company, week) else { return Vec::new() };
     let amounts = ledger.week(week);
@@ -222,7 +222,7 @@ pub enum LedgerSubject {
     Category(usize),
     Income,
     Costs,
-    /// Income minus costs.
+    /// The net result: income minus costs.
     Net,
 }
 
@@ -247,7 +247,7 @@ impl LedgerSubject {
         }
     }
 
-    /// Returns the weekly figure that it corresponds to.
+    /// Returns the weekly figure that corresponds to the subject.
     pub fn figure(self) -> Option<WeekFigure> {
         match self {
             LedgerSubject::Category(at) => WeekFigure::for_category(CATEGORIES[at].category),

@@ -1,4 +1,4 @@
-//! The change from last week's cash to this week's, as bars.
+//! Bars from the cash of the previous week to the cash of the selected week.
 
 use ratatui::layout::Rect;
 
@@ -64,8 +64,8 @@ impl Pane<Cash> for WaterfallPane {
     }
 
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
-        // Without the focus the pane shows the whole waterfall with small steps combined; with it, every step
-        // can be selected.
+        // Without the focus, the pane shows the complete waterfall with small steps combined. With the focus, every
+        // step can be selected.
         let most = if placement.focused { usize::MAX } else { placement.area.height.saturating_sub(1) as usize };
         let steps = cash_steps(&cash.ledger, context.company, cash.week(), most);
         let selected = placement.focused.then(|| cash.selected_step.min(steps.len().saturating_sub(1)));
@@ -79,7 +79,7 @@ fn selected(cash: &Cash, company: &DisplayedCompany) -> Option<SelectedSubject> 
     Some((step.subject, (week, week)))
 }
 
-/// Draws one step per row. Bars begin at the lowest level, because changes would be too small otherwise.
+/// Draws one step per row. Bars start at the lowest level unless zero is near, so that changes are visible.
 fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Option<usize>, pane: usize) {
     if steps.is_empty() {
         canvas.draw_text(area, canvas.empty_chart_text, Role::Dim);
@@ -93,13 +93,13 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
         .flat_map(|step| [step.from, step.to])
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
     let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
-    // A row states where bars start if that is not zero.
+    // If bars do not start at zero, an additional row states their start.
     let is_labelled = floor != 0.0 && bars >= 24 && area.height > 1;
     let area = Rect { height: area.height - u16::from(is_labelled), ..area };
     let from = first_visible_row(selected.unwrap_or(0), area.height as usize, steps.len());
     let span = (most - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
-    // The lowest level keeps a visible minimum width.
+    // The bar of the lowest level keeps a width of at least one cell.
     let place = |level: f64| 1 + ((level - floor) / span * (room - 1.0).max(0.0)).round() as u16;
     for (row, (at, step)) in row_rects(area).zip(steps.iter().enumerate().skip(from)) {
         let here = selected == Some(at);

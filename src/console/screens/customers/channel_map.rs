@@ -1,4 +1,4 @@
-//! Leads per $1,000 by channel and group, as numbers with shading.
+//! Leads per $1,000 by channel and group, as numbers with shaded cells.
 
 use ratatui::layout::Rect;
 
@@ -62,7 +62,7 @@ impl Pane<Customers> for ChannelMapPane {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ChannelMapCell {
     pub channel: usize,
-    /// Index of the group among the known ones.
+    /// Index of the group in the list of known groups.
     pub group: usize,
 }
 
@@ -81,12 +81,13 @@ impl ChannelMapCell {
     }
 }
 
-/// Rows that the map needs inside its border.
+/// Height of the map without its border, in rows.
 pub const MAP_HEIGHT: u16 = Channel::ALL.len() as u16 + 2;
 const NAME_WIDTH: u16 = 18;
 const CELL_WIDTH: u16 = 9;
 
-/// Draws the map. The shade compares channels within a group because groups differ too much.
+/// Draws the map of channels and groups. Shades compare the channels within one group, because differences between
+/// groups are too large.
 fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -149,7 +150,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     };
     let share = if best > 0.0 { value / best } else { 0.0 };
     let (glyph, role) = match share {
-        // Too few leads to compare.
+        // The channel has too few leads for a comparison.
         share if share > 1.0 || best == 0.0 => (" ", Role::Dim),
         share if share >= 0.999 => ("█", Role::Good),
         share if share >= 0.5 => ("▓", Role::Text),
@@ -163,7 +164,7 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, value: Option<f64>, best: f64,
     canvas.draw_text(Rect { x: cell.x + CELL_WIDTH - 1, width: 1, ..cell }, glyph, role);
 }
 
-/// Returns the selected figure, with a query for its rows.
+/// Returns the figure of a cell, with a query for its source rows.
 fn figure(company: &DisplayedCompany, place: ChannelMapCell) -> Option<Figure> {
     let (channel, group) = (Channel::ALL.get(place.channel)?, company.observation.known_groups.get(place.group)?);
     let sql = format!(
@@ -185,12 +186,12 @@ fn cell_summary(company: &DisplayedCompany, market: &CustomerData, place: Channe
     let (measured, now) = (market.channel_measurement(*channel, *group), ad_budget(company, *channel, *group));
     let pair = format!("{} → {}", channel.id(), group.id());
     if measured.spend <= 0.0 {
-        return format!("{pair}: nothing spent in 28 days; set now {}/day", dollars(now));
+        return format!("{pair}: no ads in 28 days; budget now {}/day", dollars(now));
     }
     let each = match measured.leads {
         leads if leads > 0.0 => format!(", ${} each", grouped_number(measured.spend / leads, 2)),
         _ => String::new(),
     };
     let leads = format_count(measured.leads, "lead");
-    format!("{pair}: {leads} for {}{each}; set now {}/day", dollars(measured.spend), dollars(now))
+    format!("{pair}: {leads} for {}{each}; budget {}/day", dollars(measured.spend), dollars(now))
 }

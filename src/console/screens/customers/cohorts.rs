@@ -1,4 +1,4 @@
-//! Retention by sign-up week: a triangle of cohorts and weeks since sign-up.
+//! Retention by sign-up week: a triangular table of cohorts and weeks since sign-up.
 
 use std::collections::BTreeMap;
 
@@ -70,7 +70,7 @@ pub struct Cohort {
 }
 
 impl Cohort {
-    /// Returns the share still subscribed at the end of a week.
+    /// Returns the share of the cohort that is still subscribed at the end of a week.
     pub fn retention(&self, week: u32) -> f64 {
         let gone: f64 = self.cancelled_by_week.range(..=week).map(|(_, left)| left).sum();
         if self.size > 0.0 { 1.0 - gone / self.size } else { 0.0 }
@@ -90,14 +90,14 @@ impl Cohorts {
             let cohort = all.0.entry(group).or_default().entry(week).or_default();
             cohort.size += count;
             if left > 0 {
-                // A cancellation cannot precede the sign-up.
+                // The week of a cancellation is at least the week of the sign-up.
                 *cohort.cancelled_by_week.entry(left.max(week)).or_default() += count;
             }
         }
         all
     }
 
-    /// Returns the sign-up weeks of a group, newest first.
+    /// Returns the sign-up weeks of a group with their cohorts, the newest first.
     fn weeks(&self, group: Group) -> Vec<(u32, &Cohort)> {
         let cohorts = self.0.get(&group).into_iter().flatten();
         let mut weeks: Vec<(u32, &Cohort)> = cohorts.map(|(week, cohort)| (*week, cohort)).collect();
@@ -105,7 +105,7 @@ impl Cohorts {
         weeks
     }
 
-    /// Returns the mean share kept after `since` weeks, over the cohorts that are at least that old.
+    /// Returns the mean retention after `since` weeks, over all cohorts that are at least `since` weeks old.
     fn mean_retention(&self, group: Group, since: u32, now: u32) -> Option<f64> {
         let old = self.weeks(group).into_iter().filter(|(week, _)| week + since <= now);
         let (kept, size) = old.fold((0.0, 0.0), |(kept, size), (week, cohort)| {
@@ -114,7 +114,7 @@ impl Cohorts {
         (size > 0.0).then(|| kept / size)
     }
 
-    /// Summarizes the triangle in at most `room` columns.
+    /// Formats the mean retention after 4, 8 and 12 weeks in at most `room` columns.
     pub fn summary(&self, group: Group, now: u32, room: usize) -> String {
         let mean = |since| self.mean_retention(group, since, now).map(|kept| (since, kept));
         let texts: Vec<String> = [4, 8, 12]
@@ -154,8 +154,8 @@ impl CohortCell {
         self.weeks_since = self.weeks_since.min(most as usize);
     }
 
-    /// Returns the selected share, with a query for the customers who were still subscribed at the end of the
-    /// week.
+    /// Returns the retention in the cell as a figure, with a query for the customers who were still subscribed at the
+    /// end of the week.
     pub fn figure(self, cohorts: &Cohorts, group: Group) -> Option<Figure> {
         let (week, cohort) = *cohorts.weeks(group).get(self.cohort)?;
         let until = week + self.weeks_since as u32;
@@ -176,7 +176,7 @@ impl CohortCell {
     }
 }
 
-/// Returns the glyph of a share; fuller glyphs mean higher retention.
+/// Returns the glyph of a retention share. Darker glyphs mean higher retention.
 fn shade_symbol(share: f64) -> &'static str {
     match share {
         share if share >= 0.9 => "█",
@@ -187,7 +187,7 @@ fn shade_symbol(share: f64) -> &'static str {
     }
 }
 
-/// Draws the triangle. For clicks, the row is a thousand times the cohort index plus the week.
+/// Draws the triangular table. The row index of a click is 1,000 times the cohort index plus the week.
 fn draw(
     canvas: &mut Canvas<'_>,
     area: Rect,

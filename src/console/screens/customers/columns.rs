@@ -1,4 +1,4 @@
-//! Columns of the table of groups, and the rows behind each figure.
+//! Columns of the table of groups, and the queries for the source rows of each figure.
 
 use super::true_values::TrueValue;
 use super::model::{GroupFacts, CustomerData, total_ad_budget, development_budget};
@@ -37,7 +37,7 @@ enum GroupColumn {
     Name,
 }
 
-/// Columns with headings and glossary terms, most used first.
+/// Columns with headings and glossary terms, in display order.
 static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::Group, "group", "customer-group"),
     (GroupColumn::GroupKind, "kind", "customer-group"),
@@ -64,7 +64,7 @@ static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::Name, "name", "customer-group"),
 ];
 
-/// Returns the visible columns; those with true values need an open x-ray.
+/// Returns the visible columns. Columns with true values are visible only while true values are shown.
 fn visible_columns(company: &DisplayedCompany) -> impl Iterator<Item = &'static (GroupColumn, &'static str, &'static str)> {
     let has_hidden = company.hidden_values.is_some();
     COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, GroupColumn::TrueValue(_)))
@@ -79,8 +79,8 @@ pub fn columns(company: &DisplayedCompany) -> Vec<TableColumn> {
     visible_columns(company).map(column).collect()
 }
 
-/// Returns the lowest and highest market share by the group's market study: individuals for individual
-/// groups, enterprises otherwise.
+/// Returns the lowest and highest market share of the company in a group, according to the market cap that the market
+/// study estimated.
 fn market_share(group: Group, facts: &GroupFacts, company: &DisplayedCompany) -> Option<(f64, f64)> {
     let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.max_relative_error);
     let (least, most) = true_value_range(market as f64, noise);
@@ -130,7 +130,7 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
         },
         GroupColumn::Leads => count_cell(flow.leads),
         GroupColumn::NewCustomers => new_customers_cell(facts, week),
-        // Enterprises sign weeks after they arrive, so a conversion of this week's leads is meaningless.
+        // Enterprises sign weeks after they arrive, so the conversion of one week's leads is meaningless.
         GroupColumn::Conversion => {
             let converted = (flow.leads > 0.0 && !large).then(|| flow.signups / flow.leads);
             optional_cell(converted, &|share| percent(share, 1))
@@ -170,7 +170,7 @@ fn new_customers_cell(facts: &GroupFacts, week: u32) -> TableCell {
     TableCell::from_number(now, format!("{glyph}{}", grouped_number(now, 0))).with_role(role)
 }
 
-/// Returns the figure of a group in a column, with a query for its rows.
+/// Returns the figure of a group in a column, with a query for its source rows.
 pub fn figure(group: Group, column: usize, company: &DisplayedCompany) -> Option<Figure> {
     let (what, head, term) = *visible_columns(company).nth(column)?;
     let week = company.observation.week;
@@ -194,7 +194,7 @@ pub fn figure(group: Group, column: usize, company: &DisplayedCompany) -> Option
     Some(figure.with_week_quantity(week_quantity(what, group), week))
 }
 
-/// Returns the weekly figure that a column shows for a group; for the name columns, the number of customers.
+/// Returns the weekly quantity that a column shows for a group. Name columns return the number of customers.
 fn week_quantity(what: GroupColumn, group: Group) -> Option<WeekQuantity> {
     let figure = match what {
         GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Name | GroupColumn::Customers => WeekFigure::Subscribers,
@@ -209,7 +209,7 @@ fn week_quantity(what: GroupColumn, group: Group) -> Option<WeekQuantity> {
     WeekQuantity::for_group(figure, group)
 }
 
-/// Selects customers with their subscriptions by a condition.
+/// Returns a query for the customers of a group, with their subscriptions, that meet a condition.
 fn customers_statement(group: Group, condition: &str) -> String {
     format!(
         "SELECT c.customer_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count, s.effective_price,\n    \
@@ -218,7 +218,8 @@ fn customers_statement(group: Group, condition: &str) -> String {
     )
 }
 
-/// Selects sign-ups in a range of days: individuals by arrival, enterprises by the day of their deal.
+/// Returns a query for the sign-ups in a range of days. Individuals sign up on the day of arrival, enterprises on the
+/// day of their deal.
 fn signups_statement(group: Group, (from, to): (u32, u32)) -> String {
     let day = if group.is_enterprise() { "s.start_day" } else { "c.created_day" };
     customers_statement(
@@ -227,7 +228,7 @@ fn signups_statement(group: Group, (from, to): (u32, u32)) -> String {
     )
 }
 
-/// Selects the leads, new customers or cancellations of a week.
+/// Returns a query for the leads, new customers or cancellations of a week.
 pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
     let days = ((7 * week).saturating_sub(6), 7 * week);
     match flow {

@@ -1,4 +1,4 @@
-//! Cost of a lead and of a first bill by channel and group: the last four weeks next to the cheapest earlier
+//! Cost of a lead and of a first bill by channel and group. The last four weeks are compared with the cheapest earlier
 //! four weeks.
 
 use ratatui::layout::Rect;
@@ -17,7 +17,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::company::DisplayedCompany;
 
-/// Pairs of channel and group with advertising.
+/// Pane with the costs of each pair of channel and group that has advertising.
 pub struct CostsPane;
 
 impl Pane<Customers> for CostsPane {
@@ -50,7 +50,7 @@ impl Pane<Customers> for CostsPane {
 
     fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match customers.costs.summary() {
-            note if note.is_empty() => "last 4 weeks · cheapest 4 weeks before".to_owned(),
+            note if note.is_empty() => "last 4 weeks · cheapest earlier 4 weeks".to_owned(),
             note => note,
         };
         let keys = context.hints(&[Action::Open, Action::Sort, Action::Filter]);
@@ -70,14 +70,14 @@ fn selected<'a>(customers: &Customers, company: &'a DisplayedCompany) -> Option<
     company.lead_costs.get(customers.costs.selected()?)
 }
 
-/// Returns the columns of the table.
+/// Returns the columns of the cost table.
 pub fn columns() -> Vec<TableColumn> {
     let words = ["channel", "group"].map(TableColumn::text);
     let numbers = ["leads", "spend", "$/lead", "was", "$/first bill", "was"].map(TableColumn::numeric);
     words.into_iter().chain(numbers).collect()
 }
 
-/// Returns the row of a pair.
+/// Returns the table row of a channel and group.
 pub fn row_of(pair: &LeadCost) -> Vec<TableCell> {
     let each = |value: Option<f64>| match value {
         Some(value) => TableCell::from_number(value, cents(value)),
@@ -97,7 +97,7 @@ pub fn row_of(pair: &LeadCost) -> Vec<TableCell> {
     ]
 }
 
-/// Selects leads, spend and first bills of a pair by week.
+/// Returns a query for the leads, spending and first bills of a channel and group by week.
 pub fn statement(channel: Channel, group: Group) -> String {
     let channel = channel.id();
     format!(

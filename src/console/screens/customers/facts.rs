@@ -1,4 +1,4 @@
-//! Known facts about a group: plans, sources, money. Every line with a figure can be selected.
+//! Known facts about a group: plans, acquisition sources and money. Every line with a figure can be selected.
 
 use ratatui::layout::Rect;
 
@@ -92,7 +92,7 @@ struct FactLine {
     label: String,
     value: String,
     role: Role,
-    /// The figure on the line; `None` for a heading.
+    /// The figure on the line, or `None` for a heading.
     figure: Option<Figure>,
 }
 
@@ -104,7 +104,7 @@ fn figure_line(words: String, figures: String, title: String, term: &'static str
     FactLine { label: words, value: figures, role: Role::Text, figure: Some(Figure { title, term, sql, week_quantity: None }) }
 }
 
-/// Returns the lines of a group; bars are `bars` cells wide.
+/// Returns the lines of facts about a group. Bars are `bars` cells wide.
 fn facts(
     company: &DisplayedCompany,
     market: &CustomerData,
@@ -112,7 +112,7 @@ fn facts(
     group: Group,
     bars: usize,
 ) -> Vec<FactLine> {
-    // Money comes last: small windows cut the end, and it changes least.
+    // Money is last, because small windows cut off the last lines and money changes least.
     let mut lines = enterprise_lines(company, group);
     lines.extend(plans(facts, group, bars));
     lines.extend(sources(company, facts, group));
@@ -132,8 +132,8 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
     let of_group = format!("\nWHERE c.group_id = '{group}'");
     let mut lines = vec![heading_line("enterprises, whole run", String::new())];
     for (name, count, sql) in [
-        ("came", funnel.enterprises, arrivals_sql.clone()),
-        ("no plan good enough", funnel.lost_before_request(), arrivals_sql),
+        ("arrived", funnel.enterprises, arrivals_sql.clone()),
+        ("no suitable plan", funnel.lost_before_request(), arrivals_sql),
         ("asked for an offer", funnel.requests, format!("{asked}{of_group}")),
         (
             "signed",
@@ -164,7 +164,7 @@ fn plans(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
         let title = format!("customers of {group} on plan {plan}");
         figure_line(format!("  {plan} {}", bar(share, bars)), figures, title, "plan", Some(sql))
     };
-    let mut lines = vec![heading_line("plans now", String::new())];
+    let mut lines = vec![heading_line("current plans", String::new())];
     lines.extend(Plan::ALL.iter().zip(&facts.plans).map(line));
     lines
 }
@@ -224,7 +224,7 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
         ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
         lines.push(figure_line(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
-        // Uses the query of the churn column.
+        // The churn line has the same query as the churn column.
         if let Some(FactLine { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
             figure.week_quantity = explained;
         }

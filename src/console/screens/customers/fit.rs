@@ -1,4 +1,4 @@
-//! Fit of the open group: estimated requirements next to each plan, leads, and what is missing.
+//! Fit of the open group: estimated requirements compared with each plan, leads, and the gaps of each plan.
 
 use ratatui::layout::Rect;
 
@@ -35,7 +35,7 @@ impl Pane<Customers> for FitPane {
              ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\nGROUP BY 1, 2\nORDER BY 1 DESC, 2"
         );
         let title = format!("fit of {group} and its leads by week");
-        // Enterprises sign weeks after they arrive.
+        // Enterprises sign weeks after they arrive, so their conversion in one week is meaningless.
         let quantity =
             WeekQuantity::for_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
         let figure = Figure { title, term: "fit", sql: Some(sql), week_quantity: None };
@@ -106,7 +106,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
         )
     }));
     let smallest = if company { " (smallest)" } else { "" };
-    lines.push(line(format!("quota    typical use {} a day{smallest}", fit.usage.format_units()), Role::Header));
+    lines.push(line(format!("quota    usage {} a day{smallest}", fit.usage.format_units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact_number(fit.plans[plan].quota)));
     lines.push(line(format!(" {} a day", quotas.join(" · ")), shared_role(fit, FitCriterion::Quota)));
     let mut add_rows = |name: &str, text: &str, role: Role| {
@@ -142,7 +142,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines
 }
 
-/// Returns the role of a line that all plans share.
+/// Returns the display role of a line that describes all plans.
 fn shared_role(fit: &Fit, concern: FitCriterion) -> Role {
     match Plan::ALL.iter().any(|plan| fit.certain_gap(*plan, concern).is_some()) {
         true => Role::Bad,
@@ -150,7 +150,7 @@ fn shared_role(fit: &Fit, concern: FitCriterion) -> Role {
     }
 }
 
-/// Returns a plan next to a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
+/// Returns a line that compares a plan with a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
 fn bar_line(
     fit: &Fit,
     (plan, concern): (Plan, FitCriterion),
@@ -170,7 +170,7 @@ fn bar_line(
     line(format!(" {plan} {name:<4} {bar} {shown:>9} {verdict}"), role)
 }
 
-/// Returns a bar up to a figure, followed by the part of the range above it.
+/// Returns a bar up to a figure, followed by the part of the range above the figure.
 fn range_bar(figure: f64, range: TrueValueRange, most: f64, cells: usize) -> String {
     let per_cell = if most > 0.0 { most / cells as f64 } else { 1.0 };
     let cell = |at: usize| {
@@ -185,7 +185,7 @@ fn range_bar(figure: f64, range: TrueValueRange, most: f64, cells: usize) -> Str
     (0..cells).map(cell).collect()
 }
 
-/// Compares a plan with a requirement, as text and role.
+/// Compares a plan with a requirement. Returns a text and its display role.
 fn fit_verdict(fit: &Fit, plan: Plan, concern: FitCriterion) -> (String, Role) {
     if fit.plans[plan].list_price <= 0.0 {
         return ("no price".to_owned(), Role::Dim);

@@ -14,7 +14,7 @@ use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_visible_row;
 
-/// Tools with a setting for the group, and what each sets.
+/// Tools that have a setting for the group, and labels of these settings.
 const GROUP_TOOLS: [(ToolId, &str); 6] = [
     (ToolId::SetTargetedAdSpend, "ads"),
     (ToolId::SetTargetedDevSpend, "development"),
@@ -24,7 +24,7 @@ const GROUP_TOOLS: [(ToolId, &str); 6] = [
     (ToolId::SetAdsStrength, "ads shown"),
 ];
 
-/// Links that are not tools: the market study and the customers.
+/// Links that do not open a tool: the group's market study and its customers.
 const OTHER_ACTIONS: [(&str, &str); 2] = [("Market", "order a study"), ("SQL", "its customers")];
 
 pub const ACTION_COUNT: usize = GROUP_TOOLS.len() + OTHER_ACTIONS.len();

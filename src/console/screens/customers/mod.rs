@@ -36,7 +36,7 @@ use novamind_tui::widgets::Table;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::readings::Reading;
 
-/// Panes of the screen.
+/// Panes of the customers screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CustomersPane {
     /// Table of the known groups.
@@ -52,17 +52,17 @@ pub enum CustomersPane {
     Fit,
     /// Delivered and required quality by week.
     Quality,
-    /// Facts about the group.
+    /// Known facts about the open group.
     Facts,
-    /// Its weeks.
+    /// Customers and their changes in the open group by week.
     Weeks,
-    /// Retention by cohort.
+    /// Retention in the open group by cohort.
     Cohorts,
-    /// Estimates of its market study.
+    /// Estimates of the open group's market study.
     Study,
 }
 
-/// Panes without an open group, then panes of an open group.
+/// Panes that are shown while no group is open.
 const LIST_PANES: [CustomersPane; 3] = [CustomersPane::Groups, CustomersPane::Channels, CustomersPane::Costs];
 const GROUP_PANES: [CustomersPane; 7] = [
     CustomersPane::Actions,
@@ -84,13 +84,13 @@ pub struct Customers {
     costs: Table,
     map_cell: channel_map::ChannelMapCell,
     cohorts: Cohorts,
-    /// Index of the open group among the known ones.
+    /// Index of the open group in the list of known groups.
     open_group: Option<usize>,
     group_state: OpenGroupState,
 }
 
 impl Customers {
-    /// Opens a group if it is known.
+    /// Opens a group if the group is known.
     pub fn show_group(&mut self, group: Group, company: &DisplayedCompany) {
         self.focus = CustomersPane::Groups;
         self.open_group = company.observation.known_groups.iter().position(|known_group| *known_group == group);
@@ -220,13 +220,13 @@ impl PaneScreen for Customers {
         let map = (channel_map::MAP_HEIGHT + 2).min(area.height / 2);
         let list = (context.company.observation.known_groups.len() as u16 + 3).min(area.height - map);
         let rest = area.height - map - list;
-        // A preview of the selected group takes the remaining rows if it fits.
+        // A preview of the selected group uses the remaining rows if there are enough.
         let (list, rest) = if rest >= 14 { (list, rest) } else { (list + rest, 0) };
         let [table, channels, preview] =
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
         draw_pane(self, CustomersPane::Groups, canvas, table, context);
-        // Both halves if they fit, otherwise the focused one.
+        // Both panes are shown if they fit, otherwise only the focused pane.
         if channels.width >= 150 {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [left, right] = Layout::horizontal(halves).areas(channels);

@@ -1,4 +1,4 @@
-//! Customer figures collected from the readings.
+//! Customer figures that are collected from query results.
 
 use std::collections::BTreeMap;
 
@@ -12,12 +12,12 @@ use novamind_worker::readings::Reading;
 
 pub const CURVE_WEEKS: u32 = 12;
 
-/// Subscriptions of a group to a plan.
+/// Subscribers of one group on one plan.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlanSubscribers {
     pub customers: f64,
     pub seats: f64,
-    /// Dollars a month.
+    /// Revenue in dollars per month.
     pub monthly_revenue: f64,
     /// Units used on the last day.
     pub units: f64,
@@ -27,7 +27,7 @@ pub struct PlanSubscribers {
     pub active_30_days_ago: f64,
 }
 
-/// Changes in one week of a group.
+/// Customer changes of a group in one week.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WeekFlow {
     pub leads: f64,
@@ -41,7 +41,7 @@ pub struct GroupFacts {
     pub weeks: BTreeMap<u32, WeekFlow>,
     /// Leads and sign-ups of the last weeks by acquisition source.
     pub sources: BTreeMap<String, (f64, f64)>,
-    /// Subscriptions active 30 days ago that have ended since.
+    /// Number of subscriptions that were active 30 days ago and have ended since.
     pub lost_in_30_days: f64,
 }
 
@@ -54,19 +54,19 @@ impl GroupFacts {
         self.weeks.get(&week).copied().unwrap_or_default()
     }
 
-    /// Returns the sum over the last `count` weeks.
+    /// Returns the sum of a figure over the last `count` weeks.
     pub fn sum_of_last_weeks(&self, week: u32, count: u32, figure: impl Fn(&WeekFlow) -> f64) -> f64 {
         let from = (week + 1).saturating_sub(count);
         self.weeks.range(from..=week.max(from)).map(|(_, flow)| figure(flow)).sum()
     }
 
-    /// Returns a figure of the last weeks, oldest first, without weeks before the start.
+    /// Returns the values of a figure in the last weeks, the oldest first. Weeks before the start are omitted.
     pub fn weekly_values(&self, week: u32, figure: impl Fn(&WeekFlow) -> f64) -> Vec<(u32, f64)> {
         let from = (week + 1).saturating_sub(CURVE_WEEKS).max(1);
         (from..=week).map(|week| (week, figure(&self.week(week)))).collect()
     }
 
-    /// Returns the subscriptions at the end of each of the last weeks, computed backwards from today's.
+    /// Returns the subscriptions at the end of each recent week, computed backwards from the current number.
     pub fn subscriptions_by_week(&self, week: u32) -> Vec<(u32, f64)> {
         let mut stock = self.sum(|plan_subscribers| plan_subscribers.customers);
         let mut all = Vec::new();
@@ -85,20 +85,20 @@ impl GroupFacts {
         (before > 0.0).then(|| self.lost_in_30_days / before)
     }
 
-    /// Returns the dollars per month and seat.
+    /// Returns the revenue in dollars per month and seat.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         let seats = self.sum(|plan_subscribers| plan_subscribers.seats);
         (seats > 0.0).then(|| self.sum(|subscribers| subscribers.monthly_revenue) / seats)
     }
 
-    /// Returns the units per seat on the last day.
+    /// Returns the usage on the last day in units per seat.
     pub fn usage(&self) -> Option<f64> {
         let users = self.sum(|plan_subscribers| plan_subscribers.users);
         (users > 0.0).then(|| self.sum(|subscribers| subscribers.units) / users)
     }
 }
 
-/// Leads and spend of a channel in a group.
+/// Leads and advertising spending of a channel in a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ChannelMeasurement {
     pub leads: f64,
@@ -106,7 +106,7 @@ pub struct ChannelMeasurement {
 }
 
 impl ChannelMeasurement {
-    /// Returns the leads per $1,000; `None` if nothing was spent.
+    /// Returns the leads per $1,000, or `None` if no money was spent.
     pub fn leads_per_thousand(&self) -> Option<f64> {
         (self.spend > 0.0).then(|| self.leads / self.spend * 1000.0)
     }
@@ -123,12 +123,12 @@ impl CustomerData {
         self.groups.get(&group).cloned().unwrap_or_default()
     }
 
-    /// Returns the results of a channel in a group over the last four weeks.
+    /// Returns the leads and spending of a channel in a group over the last four weeks.
     pub fn channel_measurement(&self, channel: Channel, group: Group) -> ChannelMeasurement {
         self.channels.get(&(channel.index(), group)).copied().unwrap_or_default()
     }
 
-    /// Returns the dollars spent on ads for a group in the last four weeks.
+    /// Returns the advertising spending for a group in the last four weeks, in dollars.
     pub fn ad_spend(&self, group: Group) -> f64 {
         Channel::ALL.iter().map(|channel| self.channel_measurement(*channel, group).spend).sum()
     }

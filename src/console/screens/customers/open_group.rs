@@ -15,12 +15,12 @@ use novamind_tui::canvas::Canvas;
 #[derive(Debug)]
 pub struct OpenGroupState {
     pub focus: CustomersPane,
-    /// Selected link.
+    /// Index of the selected link.
     pub action: usize,
     pub fact_line: usize,
-    /// Weeks before the last one.
+    /// Number of weeks between the selected week and the last week.
     pub weeks_back: u32,
-    /// Selected flow: leads, new or cancelled.
+    /// Index of the selected flow: leads, new customers or cancellations.
     pub flow: usize,
     /// Selected cell of the cohorts.
     pub cohort: cohorts::CohortCell,
@@ -68,10 +68,10 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
         draw(facts, Facts);
         draw(go, Actions);
     } else if matches!(focus, Cohorts | Fit | Quality) {
-        // The triangle, bars and curves need the full width.
+        // The cohort table, bars and curves need the full width.
         draw(area, focus);
     } else if area.width < 70 {
-        // Texts side by side would be cut.
+        // The window is too narrow for two texts next to each other.
         let [above, below] = split(area, area.height.saturating_sub(6));
         draw(above, if matches!(focus, Study | Weeks) { focus } else { Fit });
         draw(below, if focus == Facts { Facts } else { Actions });
@@ -85,7 +85,7 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
     }
 }
 
-/// Draws a preview of the selected group below the list. It is not clickable.
+/// Draws a preview of the selected group below the list. The preview is not clickable.
 pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
     let right = Constraint::Length(46.min(area.width / 2));

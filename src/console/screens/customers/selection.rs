@@ -1,10 +1,10 @@
-//! Keys shared by the panes of an open group: movement, and opening the rows behind a figure.
+//! Actions that the panes of an open group share: moving the selection, and opening the source rows of a figure.
 
 use crate::action::Action;
 use crate::context::Figure;
 use crate::effect::Effect;
 
-/// Returns the index in a list after a movement.
+/// Returns the selected index of a list after a navigation action.
 pub fn move_index(at: usize, last: usize, action: Action) -> usize {
     match action {
         Action::Up => at.min(last).saturating_sub(1),

@@ -1,4 +1,4 @@
-//! True values of groups in the table, if the x-ray is open.
+//! True values of groups in the table of groups. A key shows and hides true values.
 
 use novamind_base::formatting::grouped_number;
 use novamind_insight::TrueGroupValues;
@@ -16,7 +16,7 @@ pub enum TrueValue {
 }
 
 impl TrueValue {
-    /// Returns the name in titles, such as `true satisfaction`.
+    /// Returns the name of the value for titles, for example `true satisfaction`.
     pub fn title(self) -> &'static str {
         match self {
             TrueValue::Satisfaction => "true satisfaction",

@@ -1,4 +1,4 @@
-//! Weeks of a group: customers, leads, sign-ups and cancellations.
+//! Charts of a group by week: customers, leads, sign-ups and cancellations.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -19,7 +19,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{note_width, summary, zero_if_near};
 use novamind_tui::widgets::{XAxis, Curve, Plot, YAxis, AxisUnit};
 
-/// Selectable flows with their terms and figures.
+/// Selectable flows with their names, glossary terms and weekly figures.
 const FLOWS: [(&str, &str, WeekFigure); 3] = [
     ("leads", "lead", WeekFigure::Leads),
     ("new customers", "conversion", WeekFigure::NewSubscribers),
@@ -66,7 +66,7 @@ impl Pane<Customers> for WeeksPane {
         let [left, right] = [Action::Left, Action::Right].map(label);
         let [up, down] = [Action::Up, Action::Down].map(label);
         let note = customers.group(context.company).map_or(String::new(), |group| {
-            // Without the focus the pane summarizes all flows of the last week.
+            // Without the focus, the pane summarizes all flows of the last week.
             let focused = customers.has_focus(CustomersPane::Weeks);
             let (week, flow) = match focused {
                 true => (self.week(customers, context), customers.group_state.flow),
@@ -127,7 +127,7 @@ fn draw_plot(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], mark: Option<
     Plot { curves: lines, band: None, marked_x: mark, x: &x, y: &y }.draw(canvas, area);
 }
 
-/// Describes a week: the selected flow with its change, or all flows.
+/// Describes the selected flow of a week with its change, or all flows if they are shown together.
 fn flow_summary(facts: &GroupFacts, week: u32, flow: usize, room: usize) -> String {
     let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
     let of = |week_flow: &WeekFlow| [week_flow.leads, week_flow.signups, week_flow.cancellations];

@@ -1,4 +1,4 @@
-//! Estimated compute cost of an enterprise's seats, from figures that the player can see.
+//! Estimated compute cost of an enterprise's seats, computed from figures that the player can see.
 
 use super::model::Thread;
 use novamind_rules::{PlanEconomics, SeatUsage};
@@ -6,10 +6,10 @@ use novamind_session::identifiers::{Group, Plan};
 use novamind_tools::ToolId;
 use novamind_worker::company::DisplayedCompany;
 
-/// Days per month, as on the product screen.
+/// Days per month for estimates, the same as on the product screen.
 const DAYS_PER_MONTH: f64 = 30.0;
 
-/// Returns the sales figures for the rules.
+/// Returns the prices, quotas, unit costs and usage that rules read.
 pub fn rules_market(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEconomics {
     let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.setting(tool, plan.id()));
     let studied = company.insights.iter().map(|(group, group_insights)| (*group, group_insights.estimates.usage_volume));
@@ -22,8 +22,7 @@ pub fn rules_market(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEconom
     }
 }
 
-/// Returns the units per day and seat of a group, with the source: usage on the last day, otherwise the
-/// market study.
+/// Returns the usage of a group in units per day and seat, and the source: the last day, otherwise the market study.
 pub fn usage_per_seat(usage: &SeatUsage, company: &DisplayedCompany, group: &str) -> Option<(f64, String)> {
     if let Some(units) = usage.measured_usage(group) {
         return Some((units, format!("{group} on the last day")));
@@ -33,13 +32,13 @@ pub fn usage_per_seat(usage: &SeatUsage, company: &DisplayedCompany, group: &str
     Some((insights.estimates.usage_volume, words))
 }
 
-/// Money of one line of an offer, $ per month.
+/// Revenue and compute cost of one offer line, $ per month.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfferEconomics {
-    /// Payment of the enterprise.
+    /// Monthly payment of the enterprise.
     pub monthly_revenue: f64,
     pub compute_cost: Option<f64>,
-    /// Quota of the plan and estimated usage, units per day, if the quota is lower. All seats of an
+    /// Quota of the plan and estimated usage in units per day, if the quota is lower than the usage. All seats of an
     /// enterprise share one quota.
     pub quota_shortfall: Option<(f64, f64)>,
 }

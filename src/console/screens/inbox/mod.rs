@@ -1,5 +1,4 @@
-//! Negotiations with enterprises: waiting threads, messages, and offers to one enterprise or, by a rule, to
-//! many.
+//! Negotiations with enterprises: waiting threads, messages, and offers to one enterprise or to several at once.
 
 mod estimate;
 mod thread_list;
@@ -41,21 +40,21 @@ use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::readings::Reading;
 
-/// Panes of the screen.
+/// Panes of the inbox screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum InboxPane {
-    /// Threads of a view.
+    /// List of the threads in the current view.
     #[default]
     List,
     /// Messages of the thread, or the preview of a bulk offer.
     Thread,
     /// The offer being edited.
     Offer,
-    /// Outcomes of first offers, in place of the list.
+    /// Outcomes of first offers, which replace the list.
     Outcomes,
 }
 
-/// Panes in tab order: with the list of threads, and with the outcomes.
+/// Panes in tab order while the list of threads is shown.
 const LIST_PANES: [InboxPane; 3] = [InboxPane::List, InboxPane::Thread, InboxPane::Offer];
 const OUTCOME_PANES: [InboxPane; 3] = [InboxPane::Outcomes, InboxPane::Thread, InboxPane::Offer];
 
@@ -69,7 +68,7 @@ const OFFER_HINTS: [Action; 6] = [
     Action::Close,
 ];
 
-/// Actions that need a thread.
+/// Actions that require a selected thread.
 const THREAD_ACTIONS: [Action; 8] = [
     Action::Mark,
     Action::MarkAll,
@@ -86,10 +85,10 @@ const OFFER_HEIGHT: u16 = 10;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum InboxView {
-    /// The player must answer.
+    /// Threads in which the player must answer.
     #[default]
     WaitingForPlayer,
-    /// The enterprise must answer.
+    /// Threads in which the enterprise must answer.
     WaitingForCustomer,
     Closed,
 }
@@ -122,22 +121,22 @@ pub struct Inbox {
     /// Plans that enterprises named with their prices.
     asked_plans: novamind_rules::RequestedPlans,
     rules_form: Option<RulesForm>,
-    /// Outcomes of first offers, while they replace the list.
+    /// Outcomes of first offers, or `None` while the list is shown.
     outcomes: Option<FirstOfferOutcomes>,
     last_rules: Option<String>,
     table: Table,
-    /// Indexes of the listed threads among all threads.
+    /// Indexes of the listed threads in the list of all threads.
     rows: Vec<usize>,
     marked: BTreeSet<u32>,
     drafts: BTreeMap<u32, OfferDraft>,
-    /// Offer to the marked threads.
+    /// Draft of the offer to all marked threads.
     rule: Option<OfferDraft>,
     /// Last sent offer that can be reused for other enterprises.
     last_offer: Option<OfferDraft>,
     selected_term: usize,
-    /// Its value while the user types.
+    /// Input field for the value of the selected term, while the user types.
     value_field: Option<TextField>,
-    /// Rows scrolled: backwards in a thread, forwards in a preview.
+    /// Number of scrolled rows: backwards in a thread, forwards in a preview.
     scroll: u16,
 }
 
@@ -152,13 +151,14 @@ impl Inbox {
         self.rebuild_table(place);
     }
 
-    /// Returns the numbers of the listed threads, and of the selected one.
+    /// Returns the numbers of the listed threads and the number of the selected thread.
     fn list_position(&self) -> (Vec<u32>, Option<u32>) {
         let shown = self.table.visible_rows().iter().filter_map(|row| self.thread_in_row(*row)).collect();
         (shown, self.selected_thread().map(|thread| thread.number))
     }
 
-    /// Rebuilds the table. The selection stays on its thread or moves to the next one.
+    /// Rebuilds the table of threads. The selected thread stays selected. If that thread is no longer listed, the next
+    /// thread is selected.
     fn rebuild_table(&mut self, (shown, here): (Vec<u32>, Option<u32>)) {
         let threads = &self.threads.threads;
         self.rows = (0..threads.len()).filter(|at| self.view.includes(threads[*at].state)).collect();
@@ -204,7 +204,7 @@ impl Inbox {
         self.threads.threads.get(*self.rows.get(self.table.selected()?)?)
     }
 
-    /// Returns the recipients of an offer: the marked threads, otherwise the selected one.
+    /// Returns the threads that receive an offer: all marked threads, otherwise the selected thread.
     fn targets(&self) -> Vec<&Thread> {
         if self.marked.is_empty() {
             return self.selected_thread().into_iter().collect();
@@ -467,13 +467,13 @@ impl PaneScreen for Inbox {
             }
             return;
         }
-        // The offer needs all its columns; the list can drop its last ones.
+        // The offer needs all its columns. The list can omit its last columns.
         let right = (area.width * 43 / 100).max(offer_pane::MIN_FULL_WIDTH + 2);
         let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
         draw_pane(self, first, canvas, list, context);
-        // Messages are drawn above the preview if both fit.
+        // The messages of the thread are drawn above the preview if both fit.
         let constraint = match !self.marked.is_empty() && above.height >= 20 {
             true => Constraint::Percentage(45),
             false => Constraint::Length(0),

@@ -1,4 +1,4 @@
-//! Negotiation threads with the information that the player may have.
+//! Negotiation threads with the information that is available to the player.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,34 +11,34 @@ use novamind_worker::readings::Reading;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreadMessage {
     pub number: u32,
-    /// `customer`, `agent` or `system`.
+    /// Sender of the message: `customer`, `agent` or `system`.
     pub sender: String,
-    /// Message; empty for offers.
+    /// Text of the message, which is empty for offers.
     pub text: String,
     /// Plans and prices that the player offered.
     pub offers: Vec<(Plan, f64)>,
     pub price: Option<f64>,
     pub day: u32,
-    /// Reason for closing the thread; empty if it stays open.
+    /// Reason for closing the thread, which is empty if the message did not close the thread.
     pub closing_reason: String,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ThreadState {
-    /// The enterprise waits for the player, for this number of days.
+    /// The enterprise waits for the player, with this number of days left.
     WaitingForPlayer(u32),
     /// The player waits for the enterprise.
     WaitingForCustomer,
     Accepted,
-    /// The player ended it.
+    /// The player ended the thread.
     Rejected,
-    /// It ended without a closing row: the subscription shows that the enterprise left.
+    /// The thread ended without a closing message. The subscription shows that the enterprise left.
     #[default]
     Lost,
 }
 
 impl ThreadState {
-    /// Returns whether it accepts offers.
+    /// Returns whether the thread accepts offers.
     pub fn is_open(self) -> bool {
         matches!(self, ThreadState::WaitingForPlayer(_) | ThreadState::WaitingForCustomer)
     }
@@ -46,7 +46,7 @@ impl ThreadState {
     pub fn label(self) -> &'static str {
         match self {
             ThreadState::WaitingForPlayer(_) => "waiting for you",
-            ThreadState::WaitingForCustomer => "waiting for them",
+            ThreadState::WaitingForCustomer => "awaiting reply",
             ThreadState::Accepted => "agreed",
             ThreadState::Rejected => "ended by you",
             ThreadState::Lost => "lost",
@@ -65,9 +65,9 @@ pub struct Thread {
     pub kind: String,
     pub seats: f64,
     pub state: ThreadState,
-    /// Its rows, oldest first.
+    /// Messages of the thread, the oldest first.
     pub messages: Vec<ThreadMessage>,
-    /// Fields for rules, while it waits for the player.
+    /// Fields that rules can use, while the thread waits for the player.
     pub waiting_thread: Option<ThreadContext>,
 }
 
@@ -87,7 +87,7 @@ impl Thread {
         }
     }
 
-    /// Returns the last price that the enterprise named, with the plan if its message names one.
+    /// Returns the last price that the enterprise named, and the plan if the message names a plan.
     pub fn asked_price(&self) -> Option<(Option<Plan>, f64)> {
         if let Some(thread_context) = &self.waiting_thread {
             return Some((thread_context.asked_plan, thread_context.waiting.asked?));
@@ -96,7 +96,7 @@ impl Thread {
         Some((first_plan_in(&turn.text).or_else(|| self.single_offered_plan()), turn.price?))
     }
 
-    /// Returns the plan for its price, or the plan whose price it asks about.
+    /// Returns the plan that belongs to the asked price, or the plan whose price the enterprise asks about.
     pub fn asked_plan(&self) -> Option<Plan> {
         match &self.waiting_thread {
             Some(thread_context) => thread_context.asked_plan,
@@ -111,7 +111,7 @@ impl Thread {
         }
     }
 
-    /// Describes how a failed thread ended; `None` if it is open or one of its rows says so.
+    /// Describes how a lost thread ended. Returns `None` if the thread is not lost.
     pub fn lost_reason(&self) -> Option<String> {
         if self.state != ThreadState::Lost {
             return None;
@@ -122,7 +122,7 @@ impl Thread {
                 let offers = super::offer::format_offers(&last.offers);
                 format!("{} declined {offers} of day {} without giving a reason.", self.customer_label(), last.day)
             }
-            _ => format!("{} got no answer to its message of day {}.", self.customer_label(), last.day),
+            _ => format!("{} received no answer to the message of day {}.", self.customer_label(), last.day),
         })
     }
 
@@ -139,15 +139,15 @@ impl Thread {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Enterprise {
     pub group: String,
-    /// Size and industry.
+    /// Size and industry of the enterprise.
     pub industry: String,
-    /// Culture, decision process and main concern.
+    /// Culture, decision process and main concern of the enterprise.
     pub traits: [String; 3],
     pub status: String,
     pub plan: String,
-    /// Price per seat and month.
+    /// Price in $ per seat and month.
     pub price: f64,
-    /// Day on which it subscribed or asked.
+    /// Day on which the enterprise subscribed or asked for an offer.
     pub since_day: u32,
 }
 
@@ -155,7 +155,7 @@ pub struct Enterprise {
 pub struct ThreadStore {
     recorded: BTreeMap<u32, Thread>,
     enterprises: BTreeMap<u32, Enterprise>,
-    /// Waiting threads first, by deadline, then the others, newest first.
+    /// Waiting threads by deadline, followed by all other threads, the newest first.
     pub threads: Vec<Thread>,
 }
 
@@ -172,11 +172,11 @@ impl ThreadStore {
         self.enterprises.get(&customer)
     }
 
-    /// Combines the threads with the waiting ones and sorts them.
+    /// Merges the threads that wait for the player into the list, and sorts the list.
     pub fn merge_waiting(&mut self, waiting: Vec<ThreadContext>, names: &EnterpriseNames) {
         let mut left = self.recorded.clone();
         let mut threads: Vec<Thread> = waiting.into_iter().map(|thread_context| thread_from_waiting(thread_context, &mut left)).collect();
-        // An enterprise has at most one open thread, its newest.
+        // Only the newest thread of an enterprise can be open.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
             let firm = self.enterprises.get(&thread.customer);
@@ -227,7 +227,7 @@ fn state_of(thread: &Thread, firm: Option<&Enterprise>) -> ThreadState {
 
 fn parse_threads(rows: &QueryResult) -> BTreeMap<u32, Thread> {
     let mut threads: BTreeMap<u32, Thread> = BTreeMap::new();
-    // The reading is sorted newest first.
+    // The query result starts with the newest row.
     for row in rows.rows.iter().rev() {
         let number = number_at(row, 0) as u32;
         let thread = threads.entry(number).or_default();
@@ -235,7 +235,7 @@ fn parse_threads(rows: &QueryResult) -> BTreeMap<u32, Thread> {
         thread.number = number;
         thread.customer = number_at(row, 1) as u32;
         thread.kind = text_at(row, 2).to_owned();
-        // The player's rows have a seat count of 1.
+        // Rows of the player contain a seat count of 1, which is not the enterprise's.
         thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
         thread.messages.push(ThreadMessage {
             number: number_at(row, 3) as u32,

@@ -5,7 +5,7 @@ use super::model::Thread;
 use novamind_base::formatting::grouped_number;
 use novamind_session::identifiers::Plan;
 
-/// Terms per offer; the maximum for one message.
+/// Maximum number of terms in one offer.
 pub const MAX_TERMS: usize = 3;
 
 /// The plan of a term.
@@ -13,18 +13,18 @@ pub const MAX_TERMS: usize = 3;
 pub enum PlanChoice {
     Unused,
     Fixed(Plan),
-    /// The plan that the enterprise named with its price.
+    /// The plan that the enterprise named with its asked price.
     NamedByCustomer,
 }
 
-/// Basis of the value of a term.
+/// Unit and reference price of a term's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PriceBasis {
     /// Dollars per month and seat.
     Dollars,
-    /// Percent of the plan's list price.
+    /// Percentage of the plan's list price.
     ListPrice,
-    /// Percent of the asked price.
+    /// Percentage of the asked price.
     AskedPrice,
 }
 
@@ -42,7 +42,7 @@ impl PriceBasis {
 pub struct OfferTerm {
     pub plan: PlanChoice,
     pub basis: PriceBasis,
-    /// Dollars or percent.
+    /// Value in dollars or percent, according to `basis`.
     pub value: f64,
 }
 
@@ -57,7 +57,7 @@ impl OfferTerm {
         }
     }
 
-    /// Returns its value as text for the input field.
+    /// Returns the value of the term as text for the input field.
     pub fn value_text(&self) -> String {
         let decimals = if self.value.fract() == 0.0 && self.basis != PriceBasis::Dollars { 0 } else { 2 };
         grouped_number(self.value, decimals)
@@ -73,7 +73,7 @@ impl OfferTerm {
         };
     }
 
-    /// Selects the next basis and resets the value, because dollars and percent are not interchangeable.
+    /// Selects the next price basis and resets the value, because a value in dollars is not valid in percent.
     pub fn cycle_basis(&mut self, price: Option<f64>) {
         (self.basis, self.value) = match self.basis {
             PriceBasis::ListPrice => (PriceBasis::AskedPrice, self.value),
@@ -82,8 +82,7 @@ impl OfferTerm {
         };
     }
 
-    /// Returns the plan and price for a thread; `None` if the term is unused or its reference price is
-    /// missing.
+    /// Returns the plan and price for a thread, or `None` if the term is unused or has no reference price.
     pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
         let asked = thread.asked_price();
         let plan = match self.plan {
@@ -100,7 +99,7 @@ impl OfferTerm {
     }
 }
 
-/// An offer to one enterprise, or a rule for many.
+/// A draft of an offer to one or several enterprises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OfferDraft(pub [OfferTerm; MAX_TERMS]);
 
@@ -114,8 +113,8 @@ impl OfferDraft {
         OfferDraft([OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 }, UNUSED_TERM, UNUSED_TERM])
     }
 
-    /// Returns the initial offer to an enterprise: its asked price, otherwise the list price of the plan
-    /// that it asks about.
+    /// Returns the initial offer to an enterprise: the asked price, otherwise the list price of the plan that the
+    /// enterprise asks about.
     pub fn initial_for(thread: &Thread) -> OfferDraft {
         match (thread.asked_plan(), thread.asked_price()) {
             (Some(_), Some(_)) => OfferDraft::at_asked_price(),
@@ -124,7 +123,7 @@ impl OfferDraft {
         }
     }
 
-    /// Returns whether it can be reused for other enterprises.
+    /// Returns whether the offer can be reused for other enterprises.
     pub fn is_reusable(&self) -> bool {
         self.0.iter().all(|term| term.plan == PlanChoice::Unused || term.basis != PriceBasis::Dollars)
     }
@@ -132,7 +131,7 @@ impl OfferDraft {
     /// Returns the plans and prices for a thread.
     ///
     /// # Errors
-    /// The reason why nothing can be sent.
+    /// The reason why no offer can be sent.
     pub fn resolve(&self, thread: &Thread, lists: [f64; 3]) -> Result<Vec<(Plan, f64)>, String> {
         let terms: Vec<(Plan, f64)> = self.0.iter().filter_map(|term| term.price(thread, lists)).collect();
         match terms.iter().find(|(_, price)| *price <= 0.0) {
@@ -140,13 +139,13 @@ impl OfferDraft {
             None if terms.is_empty() && self.0.iter().all(|term| term.plan == PlanChoice::Unused) => {
                 Err("no plan is chosen".to_owned())
             }
-            None if terms.is_empty() => Err("they named no price".to_owned()),
+            None if terms.is_empty() => Err("no asked price".to_owned()),
             None => Ok(terms),
         }
     }
 }
 
-/// Returns an offer in short form: `B $38.00 · C $61.00`.
+/// Formats an offer in short form: `B $38.00 · C $61.00`.
 pub fn format_offers(offers: &[(Plan, f64)]) -> String {
     let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped_number(*price, 2));
     offers.iter().map(one).collect::<Vec<_>>().join(" · ")

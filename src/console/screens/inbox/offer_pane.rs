@@ -1,4 +1,4 @@
-//! The offer being edited: terms, value and notes.
+//! Pane of the offer that the user edits: terms, values and notes.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -20,7 +20,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_tui::widgets::field::NUMBER_HINT;
 
-/// Width at which a line of the offer has all its columns.
+/// Width at which a line of the offer shows all columns except the comparison.
 pub const MIN_FULL_WIDTH: u16 = 59;
 
 /// Additional width for the comparison with the asked price.
@@ -136,7 +136,7 @@ impl Pane<Inbox> for OfferPane {
     }
 }
 
-/// Returns the column headings that fit.
+/// Returns the column headings that fit into a width.
 fn column_heads(width: u16, batch: bool) -> String {
     let mut worth = if batch { String::new() } else { format!(" {:>8} {:>9}", "per seat", "per mo.") };
     if !batch && width >= MIN_FULL_WIDTH {
@@ -145,7 +145,7 @@ fn column_heads(width: u16, batch: bool) -> String {
     if !batch && width >= MIN_FULL_WIDTH + COMPARISON_WIDTH {
         worth += &format!(" {:>9}", "vs. ask");
     }
-    format!("plan   of     {:>8}{worth}", "value")
+    format!("plan   basis  {:>8}{worth}", "value")
 }
 
 fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> Vec<(String, Role)> {
@@ -155,7 +155,7 @@ fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> V
             let lines = wrap(&summary(&planned), width as usize).into_iter();
             lines.map(|line| (line, Role::Strong)).collect()
         }
-        Some((_, Err(why))) => vec![(format!("can't send: {why}"), Role::Warning)],
+        Some((_, Err(why))) => vec![(format!("cannot send: {why}"), Role::Warning)],
         Some((thread, Ok(offers))) => offer_notes(inbox, thread, offers, width, context),
         None => Vec::new(),
     };
@@ -165,8 +165,8 @@ fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> V
     notes
 }
 
-/// Returns the notes on an offer, most important first: quota shortfalls, the asked price, and the basis of
-/// the compute estimate, or the estimate itself if its columns do not fit.
+/// Returns the notes on an offer: quota shortfalls, the asked price, and the basis of the compute estimate. If the
+/// compute columns do not fit, the notes contain the estimate.
 fn offer_notes(
     inbox: &Inbox,
     thread: &Thread,
@@ -191,7 +191,7 @@ fn offer_notes(
     if let Some((_, price)) = thread.asked_price() {
         let best = offers.iter().map(|(_, value)| value - price).fold(f64::INFINITY, f64::min);
         let sign = if best < 0.0 { "-" } else { "+" };
-        notes.push((format!("asked price {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
+        notes.push((format!("asked price {}; difference {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }
     let Some((units, source)) = usage_per_seat(&inbox.usage, context.company, &thread.group) else {
         notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));

@@ -1,4 +1,4 @@
-//! Outcomes of new leads by week and first offer, from the library query.
+//! Outcomes of new leads by week and first offer, computed by a query of the query library.
 
 use ratatui::layout::Rect;
 
@@ -15,7 +15,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::readings::Reading;
 
-/// Readings that the screen needs while outcomes are shown.
+/// Readings that the inbox needs while outcomes are shown.
 pub const OUTCOME_READINGS: [Reading; 5] = [
     Reading::EnterpriseTurns,
     Reading::Companies,
@@ -24,15 +24,14 @@ pub const OUTCOME_READINGS: [Reading; 5] = [
     Reading::FirstOffers,
 ];
 
-/// A row of the query: first offers of one week to a group, with the same plans and a first price in the same
-/// band.
+/// First offers that were sent to one group in one week, with the same plans and prices in the same range.
 #[derive(Debug, Clone, PartialEq)]
 struct FirstOfferOutcome {
     group: String,
     plan: String,
-    /// Lower bound in whole $ per seat and month, inclusive.
+    /// Inclusive lower bound of the price range, in whole $ per seat and month.
     price_from: f64,
-    /// Upper bound, exclusive.
+    /// Exclusive upper bound of the price range, in whole $ per seat and month.
     price_below: f64,
     week: f64,
     threads: f64,
@@ -44,7 +43,7 @@ struct FirstOfferOutcome {
 
 #[derive(Debug, Clone, Default)]
 pub struct FirstOfferOutcomes {
-    /// `None` until the result arrives.
+    /// Rows of the query result, or `None` until the result arrives.
     rows: Option<Vec<FirstOfferOutcome>>,
     table: Table,
 }
@@ -77,7 +76,7 @@ fn parse_outcome(row: &[novamind_database::Cell]) -> FirstOfferOutcome {
     }
 }
 
-/// Returns the columns; narrow windows drop the last ones.
+/// Returns the columns of the outcomes table. Narrow windows omit the last columns.
 fn columns() -> Vec<TableColumn> {
     let mut columns = vec![TableColumn::numeric("week"), TableColumn::text("group"), TableColumn::text("plan")];
     let numbers = ["$/seat", "threads", "signed", "share", "lost", "waiting"];
@@ -101,7 +100,7 @@ fn row_of(offer_outcome: &FirstOfferOutcome) -> Vec<TableCell> {
     ]
 }
 
-/// Selects the threads of a row, oldest first.
+/// Returns a query for the threads of a row, the oldest first.
 fn statement(offer_outcome: &FirstOfferOutcome) -> String {
     let FirstOfferOutcome { group, plan, price_from, price_below, week, .. } = offer_outcome;
     format!(
@@ -119,7 +118,7 @@ fn statement(offer_outcome: &FirstOfferOutcome) -> String {
 }
 
 impl Inbox {
-    /// Returns the pane in place of the list.
+    /// Returns the pane on the left: the outcomes or the list of threads.
     pub(super) fn left_pane(&self) -> InboxPane {
         if self.outcomes.is_some() { InboxPane::Outcomes } else { InboxPane::List }
     }
@@ -129,7 +128,7 @@ impl Inbox {
         self.focus = InboxPane::List;
     }
 
-    /// Opens or closes the outcomes; returns `None` for unrelated actions.
+    /// Handles actions that open, close or conflict with the outcomes. Returns `None` for other actions.
     pub(super) fn handle_outcomes_action(&mut self, action: Action) -> Option<Vec<Effect>> {
         match (action, &self.outcomes) {
             (Action::InboxOutcomes, None) => {
@@ -138,7 +137,7 @@ impl Inbox {
                 return Some(vec![Effect::Read(Reading::FirstOffers)]);
             }
             (Action::InboxOutcomes | Action::NextThreadView, Some(_)) => self.close_outcomes(),
-            // Marking needs the visible list.
+            // Threads can be marked only in the list.
             (Action::Mark | Action::MarkAll, Some(_)) => {
                 return Some(vec![Effect::Complain("Close the outcomes (esc) to mark threads".to_owned())]);
             }

@@ -11,7 +11,7 @@ use novamind_base::formatting::{cents, dollars};
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::theme::Role;
 
-/// Column width of an enterprise with its name, and without.
+/// Width of the enterprise column, with names and without names.
 const NAMED_WIDTH: u16 = 28;
 const NUMBERED_WIDTH: u16 = 14;
 const MIN_WIDTH_FOR_NAMES: u16 = 68;
@@ -33,7 +33,7 @@ pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, co
 }
 
 fn draw_planned_offer(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &PlannedOffer<'_>) {
-    // The number identifies the enterprise; the name needs room.
+    // The number is sufficient to identify the enterprise. The name is shown only in wide rows.
     let named = row.width >= MIN_WIDTH_FOR_NAMES;
     let head = if named { thread.customer_label() } else { format!("#{} {}", thread.customer, thread.group) };
     let width = if named { NAMED_WIDTH } else { NUMBERED_WIDTH }.min(row.width);
@@ -52,7 +52,7 @@ fn draw_planned_offer(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Pla
     let value = format!("{}/mo", dollars(max_monthly_revenue(thread, offers)));
     let room = rest.width.saturating_sub(value.len() as u16 + 1);
     let text = format!("{before} → {}", format_offers(offers));
-    // Drop the monthly amount before cutting the offer.
+    // The monthly amount is omitted if the offer would otherwise be cut off.
     if text.chars().count() as u16 <= room {
         canvas.draw_aligned(rest, &value, Role::Strong, Align::Right);
     }

@@ -1,4 +1,4 @@
-//! Editor for rules, with a preview of their effect on every waiting thread. Sending needs confirmation.
+//! Editor for rules, with a preview of their effect on every waiting thread. The user must confirm before the answers are sent.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -19,8 +19,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price
-/// are left out.
+/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price have no rule.
 fn default_rules(company: &DisplayedCompany) -> String {
     let rule = |plan: Plan| {
         let list = company.setting(ToolId::SetPrices, plan.id());
@@ -29,18 +28,18 @@ fn default_rules(company: &DisplayedCompany) -> String {
     Plan::ALL.into_iter().filter_map(rule).collect::<Vec<_>>().join("; ")
 }
 
-/// Rules being edited, with their effect.
+/// Rules that the user edits, with a preview of their effect.
 #[derive(Debug, Clone)]
 pub struct RulesForm {
     pub field: TextField,
-    /// Whether keys type into the field.
+    /// Whether key presses are typed into the field.
     pub is_typing: bool,
-    /// Their effect, or the error in the text.
+    /// The effect of the rules, or the error in the text.
     batch: Result<RuleBatch, RuleError>,
 }
 
 impl RulesForm {
-    /// Starts with the last rules, otherwise with rules from the list prices.
+    /// Opens the editor with the last rules, otherwise with rules from the list prices.
     pub fn new(before: Option<&str>, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) -> RulesForm {
         let mut ruling = RulesForm {
             field: TextField::with_text(before.map_or_else(|| default_rules(company), str::to_owned)),
@@ -57,7 +56,7 @@ impl RulesForm {
             .map(|rules| RuleBatch::new(rules, threads.to_vec(), &rules_market(company, &inbox.usage)));
     }
 
-    /// Returns the threads that match a rule.
+    /// Returns the outcomes of threads that match a rule.
     fn matched_threads(&self) -> impl Iterator<Item = &RuleOutcome> {
         let all = self.batch.as_ref().map_or(&[][..], |batch| batch.threads.as_slice());
         all.iter().filter(|ruled| ruled.rule_index.is_some())
@@ -93,7 +92,7 @@ impl Inbox {
     pub(super) fn handle_rules_key(&mut self, key: &KeyEvent, company: &DisplayedCompany) {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         self.edit_rules(company, &mut |field| match key.code {
-            // Clears the field, as in the SQL editor.
+            // Ctrl-N clears the field, as in the SQL editor.
             KeyCode::Char('n') if ctrl => *field = TextField::default(),
             _ => {
                 field.handle_key(key);
@@ -101,11 +100,11 @@ impl Inbox {
         });
     }
 
-    /// Asks for confirmation to send the answers of the rules.
+    /// Requests confirmation before the answers of the rules are sent.
     pub(super) fn send_rule_answers(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(ruling) = &self.rules_form else { return Vec::new() };
         if !company.is_running() {
-            return vec![Effect::Complain("The run is over; offers get no answer".to_owned())];
+            return vec![Effect::Complain("The run is over; offers are not answered".to_owned())];
         }
         let batch = match &ruling.batch {
             Ok(batch) => batch,
@@ -127,8 +126,7 @@ impl Inbox {
         self.last_rules.is_some()
     }
 
-    /// Returns the tool calls of the last rules for the threads that wait now, and a summary; `None` if there
-    /// are none.
+    /// Returns the tool calls of the last rules for the waiting threads, and a summary. Returns `None` if there are no calls.
     pub fn last_rule_answers(&self, company: &DisplayedCompany) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
         let batch = RuleBatch::new(rules, self.waiting_threads(company), &rules_market(company, &self.usage));
@@ -147,7 +145,7 @@ impl Inbox {
         }
     }
 
-    /// Draws the field, and a line for each rule or the error.
+    /// Draws the rules field. Below, draws one line for each rule, or the error.
     pub(super) fn draw_rules(&self, ruling: &RulesForm, canvas: &mut Canvas<'_>, placement: PanePlacement) {
         let mut rows = row_rects(placement.area);
         let Some(first) = rows.next() else { return };

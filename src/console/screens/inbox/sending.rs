@@ -19,10 +19,10 @@ use novamind_worker::request::Request;
 const SEND_TOOL: ToolId = ToolId::SendEnterpriseDeal;
 const REJECT_TOOL: ToolId = ToolId::RejectEnterpriseDeal;
 
-/// A thread with its planned offer, or the reason why nothing is sent.
+/// A thread with its planned offer, or the reason why no offer is sent.
 pub(super) type PlannedOffer<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
 
-/// Returns the query for the rows of a thread.
+/// Returns the effect that opens a query for the rows of a thread in the SQL editor.
 pub(super) fn statement(thread: &Thread) -> Effect {
     Effect::EditSql(format!(
         "SELECT day, turn_number, sender, message_text, offer_json, seat_count, close_reason\n\
@@ -31,7 +31,7 @@ pub(super) fn statement(thread: &Thread) -> Effect {
     ))
 }
 
-/// Returns a figure of a thread, with a query for its turns.
+/// Returns a figure of a thread, with a query for the turns of the thread.
 pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
     let sql = match statement(thread) {
         Effect::EditSql(sql) => Some(sql),
@@ -40,7 +40,7 @@ pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure 
     Figure { title: format!("{what} {}", thread.customer_label()), term, sql, week_quantity: None }
 }
 
-/// Returns the usage of the group on the last day, the basis of the compute estimate.
+/// Returns the usage of the group on the last day as a figure. The compute estimate uses this figure.
 pub(super) fn usage_figure(thread: &Thread) -> Figure {
     let group = &thread.group;
     Figure {
@@ -68,10 +68,10 @@ impl Inbox {
         self.targets().into_iter().map(|thread| (thread, offer.resolve(thread, lists))).collect()
     }
 
-    /// Sends the offer, after confirmation if necessary.
+    /// Sends the offer to all recipients. Asks for confirmation first if necessary.
     pub(super) fn send_offers(&self, company: &DisplayedCompany) -> Vec<Effect> {
         if !company.is_running() {
-            return vec![Effect::Complain("The run is over; offers get no answer".to_owned())];
+            return vec![Effect::Complain("The run is over; offers are not answered".to_owned())];
         }
         let planned = self.planned_offers(company);
         let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
@@ -94,12 +94,11 @@ impl Inbox {
             match first.state {
                 ThreadState::WaitingForPlayer(_) => return vec![Effect::Request(Request::Call { tool: SEND_TOOL, arguments })],
                 ThreadState::WaitingForCustomer => format!(
-                    "{to} has not answered your last offer yet. This one, {}, replaces it and uses another \
-                     turn of its patience.",
+                    "{to} has not answered your last offer yet. The new offer, {}, replaces it and uses up another turn.",
                     format_offers(offers)
                 ),
                 _ => format!(
-                    "This thread with {to} is closed. If it subscribes, {} opens a new thread; if the enterprise declines, it leaves.",
+                    "The thread with {to} is closed. For a subscriber, {} opens a new thread; if the new thread fails, the subscription ends.",
                     format_offers(offers)
                 ),
             }
@@ -109,7 +108,7 @@ impl Inbox {
         vec![Effect::ConfirmCall { tool: SEND_TOOL, arguments, text }]
     }
 
-    /// Asks for confirmation to end the threads.
+    /// Requests confirmation before the threads are ended.
     pub(super) fn confirm_rejection(&self, company: &DisplayedCompany) -> Vec<Effect> {
         let open: Vec<&Thread> = self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
         if !company.is_running() || open.is_empty() {
@@ -138,7 +137,7 @@ impl Inbox {
         vec![Effect::ConfirmCall { tool: REJECT_TOOL, arguments, text: text.trim_end().to_owned() }]
     }
 
-    /// Clears drafts and marks of the processed threads.
+    /// Clears the drafts and marks of all processed threads.
     pub(super) fn handle_sent(&mut self, answer: &Answer) -> Vec<Effect> {
         let (offered, results) = match answer {
             Answer::SendEnterpriseDeal(answer) => (true, &answer.results),

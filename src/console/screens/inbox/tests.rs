@@ -14,7 +14,7 @@ use novamind_tools::{Answer, DealResult, DealResults, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
-/// Returns a company with waiting threads; every third enterprise is a subscriber with its own price.
+/// Returns a company with waiting threads. Every third enterprise is a subscriber with an individual price.
 fn crowded_company(threads: u32) -> (DisplayedCompany, QueryResult, QueryResult) {
     let mut company = new_company();
     company.observation.day = 70;
@@ -82,7 +82,7 @@ fn crowded_screen_with(threads: u32) -> (Inbox, DisplayedCompany) {
     (screen, company)
 }
 
-/// Presses keys as the console does; quoted words are typed. Returns the effects of the last key and the
+/// Sends keys to the screen as the console does. Quoted words are typed. Returns the effects of the last key and the
 /// number of keys.
 fn press(screen: &mut Inbox, company: &DisplayedCompany, keys: &str) -> (Vec<Effect>, usize) {
     let known = KeyBindings::bundled();
@@ -117,7 +117,7 @@ fn sent_deals(effects: &[Effect]) -> Vec<Value> {
     }
 }
 
-/// Returns the company and the screen after an answer to all deals.
+/// Updates the company and the screen as after successful answers to all deals.
 fn apply_answers(screen: &mut Inbox, company: &mut DisplayedCompany, deals: &[Value]) {
     let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
     company.observation.waiting.retain(|thread| !customers.contains(&thread.customer));
@@ -137,7 +137,7 @@ fn apply_answers(screen: &mut Inbox, company: &mut DisplayedCompany, deals: &[Va
 #[test]
 fn two_hundred_threads_are_answered_in_under_forty_keys() {
     let (mut screen, mut company) = crowded_screen();
-    // Offer subscribers 3 % more than they ask, and leads plan B at 90 % of the list price or C at 85 %.
+    // Offer subscribers 3 % more than they ask, and offer leads plan B at 90 % of the list price or plan C at 85 %.
     let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
     let sent = sent_deals(&effects);
     assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
@@ -170,7 +170,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     let [Effect::ConfirmCalls { calls, text }] = &effects[..] else { panic!("{effects:?}") };
     let sizes: Vec<(ToolId, usize)> =
         calls.iter().map(|(tool, call)| (*tool, call["deals"].as_array().expect("deals").len())).collect();
-    // Leads of E1 are those with a number divisible by three; all of them have asked.
+    // Leads of E1 have a number divisible by three, and all leads have asked for an offer.
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 unanswered"), "{text}");
     assert_eq!(
@@ -357,8 +357,8 @@ fn offer_shows_margin_and_source_of_usage() {
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.messages.len());
 }
 
-/// Returns a run whose leads got first offers with several plans and prices over three weeks, some of them
-/// twice.
+/// Returns a run in which leads received first offers with several plans and prices over three weeks. Some leads
+/// received two offers.
 fn run_with_first_offers() -> novamind_session::Session {
     let mut session = session_with_negotiations();
     for week in 0..3 {
@@ -480,7 +480,7 @@ fn thousands_of_marked_threads_are_answered_at_once() {
     press(&mut screen, &company, "a");
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
-    // The first half is sent while its first thread is selected; the list then shows the second half.
+    // The first half of the threads is sent while its first thread is selected. The list then shows the second half.
     let (effects, _) =
         press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };

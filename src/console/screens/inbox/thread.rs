@@ -33,7 +33,7 @@ impl Pane<Inbox> for ThreadPane {
     }
 
     fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
-        // A thread opens at its end, a preview at its start.
+        // A thread is shown from its end, a preview from its start.
         let back = if inbox.marked.is_empty() && inbox.rules_form.is_none() { Action::Up } else { Action::Down };
         inbox.scroll = match action {
             Action::Open => {
@@ -73,7 +73,7 @@ impl Pane<Inbox> for ThreadPane {
     }
 }
 
-/// Draws the thread next to the preview.
+/// Draws the selected thread next to the preview.
 pub fn draw_side_thread(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     draw_framed(&MessagesPane, inbox, canvas, PanePlacement { area, focused: false, index: 0 }, context);
 }
@@ -90,7 +90,7 @@ impl Pane<Inbox> for MessagesPane {
             ThreadState::WaitingForPlayer(days) => format!("{days} days left"),
             state => state.label().to_owned(),
         };
-        // In small windows the list shows the seats, and the remaining days matter most.
+        // Small windows show only the remaining days, because the list already shows the seats.
         let note = match area.width {
             ..72 => state,
             _ => format!("{} · {state}", format_count(thread.seats, "seat")),
@@ -106,7 +106,7 @@ impl Pane<Inbox> for MessagesPane {
             canvas.page_rows = inside.height.max(1);
         }
         let lines = message_lines(inbox, thread, inside.width as usize);
-        // Show the newest message.
+        // The newest message is at the end and must be visible.
         let last = lines.len().saturating_sub(inside.height as usize);
         let back = if inbox.marked.is_empty() { inbox.scroll as usize } else { 0 };
         for (row, (line, role)) in row_rects(inside).zip(lines.iter().skip(last.saturating_sub(back))) {
@@ -123,20 +123,20 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
             [firm.industry.as_str(), culture, decision].into_iter().filter(|fact| !fact.is_empty()).collect();
         let mut text = facts.join(" · ");
         if !concern.is_empty() {
-            text += &format!(" · worries about {concern}");
+            text += &format!(" · main concern: {concern}");
         }
         let terms = match firm.status.as_str() {
             "subscribed" => format!("plan {} at {} since day {}", firm.plan, cents(firm.price), firm.since_day),
             "lead" => format!("not a customer; asked on day {}", firm.since_day),
-            other => format!("{other}; came on day {}", firm.since_day),
+            other => format!("{other}; arrived on day {}", firm.since_day),
         };
         lines.extend(wrap(&text, width).into_iter().map(|line| (line, Role::Text)));
         lines.extend(wrap(&terms, width).into_iter().map(|line| (line, Role::Strong)));
         lines.push((String::new(), Role::Text));
     }
-    // Of long threads only the newest turns are read.
+    // Only the newest turns of a long thread are loaded.
     if thread.messages.first().is_none_or(|turn| turn.number > 0) {
-        lines.push(("earlier turns: see SQL".to_owned(), Role::Dim));
+        lines.push(("earlier turns: query in SQL".to_owned(), Role::Dim));
     }
     for turn in &thread.messages {
         let (who, role) = match turn.sender.as_str() {

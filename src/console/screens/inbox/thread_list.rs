@@ -1,4 +1,4 @@
-//! List of threads.
+//! The pane with the list of threads.
 
 use ratatui::layout::Rect;
 
@@ -15,7 +15,7 @@ use novamind_tui::text::{format_count, wrap};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 
-/// Width of names in a narrow list; the number next to the name identifies the enterprise.
+/// Width of names in a narrow list. The number next to the name identifies the enterprise.
 const NAME_WIDTH: u16 = 14;
 
 pub struct ThreadListPane;
@@ -86,7 +86,7 @@ impl Pane<Inbox> for ThreadListPane {
         let threads = inbox.rows.len();
         let (title, worth) = match inbox.view {
             InboxView::WaitingForPlayer => (format!("{threads} waiting for you"), true),
-            InboxView::WaitingForCustomer => (format!("{threads} waiting for them"), true),
+            InboxView::WaitingForCustomer => (format!("{threads} awaiting reply"), true),
             InboxView::Closed => (format!("{threads} ended"), false),
         };
         let all = inbox.rows.iter().filter_map(|at| inbox.threads.threads.get(*at));
@@ -127,7 +127,7 @@ fn draw_empty_state(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, context:
 fn empty_text(inbox: &Inbox, context: &ScreenContext<'_>) -> String {
     let key = |action: Action| context.keys.label(action).unwrap_or_default();
     if !inbox.threads.threads.is_empty() {
-        return format!("No threads here. {} shows others.", key(Action::NextThreadView));
+        return format!("No threads in this list. {} shows other lists.", key(Action::NextThreadView));
     }
     let funnels: Vec<String> =
         context.company.funnels.iter().map(|funnel| format!("· {}", funnel.describe())).collect();
@@ -148,7 +148,7 @@ pub(super) fn columns(view: InboxView) -> Vec<TableColumn> {
         TableColumn::numeric("no."),
         TableColumn::text("group"),
         TableColumn::numeric("seats"),
-        TableColumn::numeric("their ask"),
+        TableColumn::numeric("asked"),
         TableColumn::text("kind"),
         TableColumn::text(if view == InboxView::Closed { "end" } else { "your offer" }).with_max_width(34),
         TableColumn::numeric("offers"),

@@ -1,4 +1,4 @@
-//! Tree of related runs: where each branched off, its first change and its state.
+//! Tree of related runs, with the branch point, the first change and the state of each run.
 
 use ratatui::layout::Rect;
 
@@ -20,9 +20,9 @@ use novamind_worker::page_questions::RelatedRunsQuestion;
 
 pub struct BranchesPane;
 
-/// Rows of the pane besides the runs: border and headings.
+/// Number of rows of the pane that do not show runs: the border and the headings.
 pub const CHROME_ROWS: u16 = 3;
-/// Height from which the selected run is described below the table.
+/// Minimum height of the pane for a description of the selected run below the table.
 const MIN_HEIGHT_FOR_DETAILS: u16 = 7;
 
 pub fn empty_table() -> Table {
@@ -36,7 +36,7 @@ pub fn empty_table() -> Table {
     ])
 }
 
-/// Returns the rows of a tree, with the current run marked.
+/// Returns the table rows of a tree of related runs. The current run is marked.
 pub fn rows(tree: &[RelatedRun], text: &str) -> Vec<Vec<TableCell>> {
     tree.iter().map(|run| row(run, text)).collect()
 }
@@ -69,7 +69,7 @@ impl Journal {
         self.tree.len() > 1
     }
 
-    /// Requests the tree, unless it is being read or cannot have changed.
+    /// Requests the tree of related runs, unless the tree is being read, cannot have changed or does not exist.
     pub(super) fn request_tree(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         let is_known = company.is_playback && self.is_tree_read;
         if company.study.is_some() || company.folder.is_none() || self.asked.is_waiting() || is_known {
@@ -91,8 +91,8 @@ impl Journal {
         }
     }
 
-    /// Returns the note next to the title of the entries: the filter, or the number of runs in the tree with
-    /// its key.
+    /// Returns the note next to the title of the entries: the filter, or the number of related runs and the key that
+    /// shows them.
     pub(super) fn entries_note(&self, context: &ScreenContext<'_>) -> String {
         match (self.table.summary(), self.has_tree()) {
             (note, false) => note,

@@ -1,4 +1,4 @@
-//! Lines of the journal: weeks, newest first, with their actions in order.
+//! Lines of the journal. The newest week is first, and the actions of a week are in chronological order.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,23 +18,23 @@ use novamind_worker::company::DisplayedCompany;
 /// A line of the journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JournalLine {
-    /// Day of the run.
+    /// Day of the run to which the line belongs.
     pub day: u32,
-    /// Summary in one line.
+    /// Summary that is shown in the list.
     pub text: String,
-    /// Role of the text.
+    /// Display role of the text.
     pub role: Role,
     /// Title of the complete entry.
     pub title: String,
-    /// The complete entry.
+    /// Text of the complete entry.
     pub full_text: String,
-    /// Glossary term.
+    /// Glossary term that explains the line.
     pub term: &'static str,
-    /// Query for the rows behind it.
+    /// Query for the source rows of the line, if there are any.
     pub sql: Option<String>,
 }
 
-/// The decisions filed before a week.
+/// The rationale and the forecasts that were submitted before a week.
 struct FiledWeek<'a> {
     day: u32,
     rationale: &'a str,
@@ -42,7 +42,7 @@ struct FiledWeek<'a> {
     filled_naively: &'a [bool],
 }
 
-/// A week: actions before it, forecasts, result.
+/// Journal data of a week: the actions before the week, the forecasts and the result.
 #[derive(Default)]
 struct JournalWeek<'a> {
     calls: Vec<JournalLine>,
@@ -50,7 +50,7 @@ struct JournalWeek<'a> {
     figures: Option<&'a WeekFigures>,
 }
 
-/// Returns all lines.
+/// Returns all lines of the journal.
 pub fn lines(company: &DisplayedCompany) -> Vec<JournalLine> {
     let mut groups = vec![JournalWeek::default()];
     let mut settings = KnownSettings::default();
@@ -116,7 +116,7 @@ impl JournalWeek<'_> {
         lines
     }
 
-    /// Returns the heading of a week; `None` for an empty week of a finished run.
+    /// Returns the heading of a week, or `None` for an empty week of a finished run.
     fn heading(&self, company: &DisplayedCompany) -> Option<String> {
         match self.figures {
             Some(week) => {
@@ -132,7 +132,7 @@ impl JournalWeek<'_> {
             None if self.calls.is_empty() && !company.is_running() => None,
             None => {
                 let done = match self.calls.len() {
-                    0 => "nothing done yet".to_owned(),
+                    0 => "no actions yet".to_owned(),
                     1 => "1 action".to_owned(),
                     count => format!("{count} actions"),
                 };
@@ -144,12 +144,12 @@ impl JournalWeek<'_> {
     fn full_text(&self, company: &DisplayedCompany, head: &str) -> String {
         let mut parts = vec![head.to_owned()];
         if let Some(filed) = &self.filed {
-            parts.push(format!("Why, on day {}:\n{}", filed.day, filed.rationale));
+            parts.push(format!("Rationale of day {}:\n{}", filed.day, filed.rationale));
             parts.push(filed.full_description(company));
         }
         let calls: Vec<&str> = self.calls.iter().map(|line| line.text.as_str()).collect();
         if !calls.is_empty() {
-            parts.push(format!("Actions before it:\n{}", calls.join("\n")));
+            parts.push(format!("Actions before the week:\n{}", calls.join("\n")));
         }
         if let Some(week) = self.figures {
             parts.push(format!(
@@ -209,7 +209,7 @@ impl FiledWeek<'_> {
     }
 }
 
-/// Returns a tool call as a line. Undone calls are marked, as are undo and redo.
+/// Returns a tool call as a line. Undone calls, undo calls and redo calls are marked.
 fn call_line(
     entry: &JournalEntry,
     settings: &mut KnownSettings,
@@ -225,8 +225,8 @@ fn call_line(
     let is_undone = undone.contains(seq);
     let (sign, remark) = match reversal {
         _ if is_undone => ("undone: ", "\n\nThis call was undone."),
-        Some(Reversal::Undoes(_)) => ("undo: ", "\n\nThis undid an earlier call."),
-        Some(Reversal::Redoes(_)) => ("redo: ", "\n\nThis redid an undone call."),
+        Some(Reversal::Undoes(_)) => ("undo: ", "\n\nThis call undid an earlier call."),
+        Some(Reversal::Redoes(_)) => ("redo: ", "\n\nThis call redid an undone call."),
         None => ("", ""),
     };
     let gone = is_undone || matches!(reversal, Some(Reversal::Undoes(_)));
@@ -255,7 +255,7 @@ fn parameter_line(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option
     }
 }
 
-/// Returns the query for the stored settings of a call.
+/// Returns the query for the settings that a call on a day stored, or `None` if the tool stores no settings.
 fn history_query(spec: &ToolSpec, day: u32) -> Option<String> {
     let table = spec.written_tables.iter().find(|table| table.starts_with("config_"))?;
     let tool = match *table {
@@ -265,12 +265,12 @@ fn history_query(spec: &ToolSpec, day: u32) -> Option<String> {
     Some(format!("SELECT * FROM {table} WHERE day = {day}{tool}"))
 }
 
-/// Settings of earlier calls, to show old values.
+/// Values that earlier calls set, by tool and path.
 #[derive(Default)]
 struct KnownSettings(BTreeMap<String, f64>);
 
 impl KnownSettings {
-    /// Describes a call: changes as old → new, and values that were not set before.
+    /// Describes the values that a call sets. Changed values are shown as old → new.
     fn describe_change(&mut self, spec: &ToolSpec, args: &Value) -> String {
         let mut leaves = Vec::new();
         collect_numbers(args, "", &mut leaves);
@@ -287,7 +287,7 @@ impl KnownSettings {
                 None => changes.push(format!("{path} {}", format_plain(*value))),
             }
         }
-        // A map is replaced completely; entries that it no longer contains are removed.
+        // A call replaces a map completely. Entries that the new map does not contain are removed.
         let maps = args.as_object().into_iter().flatten().filter(|(_, value)| value.is_object());
         for (name, _) in maps {
             let start = key(&format!("{name} "));
@@ -326,7 +326,7 @@ pub fn format_arguments(value: &Value) -> String {
         Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), format_plain),
         Value::String(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
         Value::Array(values) => {
-            // Whole numbers in a list are customer and thread numbers.
+            // Whole numbers in a list are customer or thread numbers, which have no digit grouping.
             let item = |value: &Value| if value.is_u64() { value.to_string() } else { format_arguments(value) };
             format!("[{}]", values.iter().map(item).collect::<Vec<_>>().join(" "))
         }
@@ -340,7 +340,7 @@ pub fn format_arguments(value: &Value) -> String {
     }
 }
 
-/// Returns a rounded number; the complete entry has all digits.
+/// Formats a rounded number. The complete entry shows all digits.
 fn format_plain(value: f64) -> String {
     let short = if value.abs() >= 0.01 { (value * 1e4).round() / 1e4 } else { value };
     if short.fract() == 0.0 { format_number(short) } else { short.to_string() }

@@ -1,4 +1,4 @@
-//! Journal entries, newest week first.
+//! The pane with the journal entries. The newest week is first.
 
 use ratatui::layout::Rect;
 
@@ -40,7 +40,7 @@ impl Pane<Journal> for EntriesPane {
                 let read = |(title, text): &(String, String)| Effect::ShowText(title.clone(), text.clone());
                 return whole.map(read).into_iter().collect();
             }
-            // Tab ends typing here.
+            // In this pane, tab and shift-tab accept the filter text.
             Action::CommitNext | Action::CommitPrevious => Action::Commit,
             other => other,
         };

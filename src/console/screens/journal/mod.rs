@@ -24,16 +24,16 @@ use novamind_worker::question::Pending;
 use novamind_worker::page_questions::RelatedRunsQuestion;
 use novamind_worker::request::Request;
 
-/// Panes in tab order.
+/// Panes of the journal in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, VariantArray)]
 pub enum JournalPane {
     /// Journal entries.
     List,
     /// Notes of the run.
     Notes,
-    /// Forecast results.
+    /// Forecast scores by horizon.
     Scores,
-    /// Tree of related runs, if there is one.
+    /// Tree of related runs, if the run is a branch or has branches.
     Branches,
 }
 
@@ -41,14 +41,14 @@ pub enum JournalPane {
 pub struct Journal {
     focus: JournalPane,
     table: Table,
-    /// Title and text of the complete entry of each row.
+    /// Title and text of the complete entry for each row of the table.
     full_texts: Vec<(String, String)>,
     figures: Vec<Figure>,
     horizon: usize,
     notes: TextEditor,
     saved_notes: String,
     editing: bool,
-    /// The tree, with a row for each of its runs.
+    /// Related runs in tree order. Each run has a row in `branches`.
     tree: Vec<RelatedRun>,
     branches: Table,
     is_tree_read: bool,
@@ -80,12 +80,12 @@ impl Journal {
         self.notes.text() != self.saved_notes
     }
 
-    /// Returns the unsaved notes, if they differ from the saved ones.
+    /// Returns the notes in the editor if they differ from the saved notes.
     pub fn unsaved_notes(&self) -> Option<String> {
         self.has_unsaved_notes().then(|| self.notes.text())
     }
 
-    /// Restores unsaved notes.
+    /// Restores unsaved notes in the editor.
     pub fn restore_notes(&mut self, notes: &str) {
         self.notes = TextEditor::with_text(notes);
     }
@@ -123,7 +123,7 @@ impl ScreenState for Journal {
             self.full_texts.push((line.title, line.full_text));
         }
         self.table.set_rows(rows);
-        // The editor normalizes line ends, so both sides must be normalized.
+        // The editor normalizes line ends, so the saved notes are normalized before the comparison.
         let kept = TextEditor::with_text(&context.company.notes);
         if !self.has_unsaved_notes() && kept.text() != self.saved_notes {
             self.notes = kept.clone();
@@ -210,7 +210,7 @@ impl PaneScreen for Journal {
         let (list, below) = self.draw_tree(canvas, (list, below), area, context);
         draw_pane(self, JournalPane::List, canvas, list, context);
         let [scores, notes] = if wide {
-            // Individual forecasts below the scores, if some of them fit.
+            // Individual forecasts are shown below the scores if there is space.
             let tall = (few + 9).min(below.height / 2).max(few);
             Layout::vertical([Constraint::Length(tall), Constraint::Min(0)]).areas(below)
         } else {
@@ -221,12 +221,12 @@ impl PaneScreen for Journal {
     }
 }
 
-/// Minimum height for the tree next to all other panes.
+/// Minimum height of the screen for showing the tree together with all other panes.
 const MIN_HEIGHT_FOR_TREE: u16 = 26;
 
 impl Journal {
-    /// Draws the tree, if there is one: below the list, or in low windows in place of the lower panes while
-    /// it has the focus. Returns the areas for the list and the other panes.
+    /// Draws the tree of related runs below the list, if there is a tree. In small windows, the tree replaces the
+    /// lower panes while the tree has the focus. Returns the areas for the list and the other panes.
     fn draw_tree(
         &self,
         canvas: &mut Canvas<'_>,

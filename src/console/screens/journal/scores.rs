@@ -1,4 +1,4 @@
-//! Forecast results: by horizon, and individually for the selected horizon.
+//! Forecast scores by horizon, and individual forecasts of the selected horizon.
 
 use ratatui::layout::Rect;
 
@@ -13,7 +13,7 @@ use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the forecasts of a horizon that are due, newest first.
+/// Returns the due forecasts with a horizon, the newest first.
 pub fn due_forecasts(company: &DisplayedCompany, horizon: u32) -> Vec<ScoredForecast> {
     let mut all = filed_forecasts(&company.journal, &company.cash_by_day);
     all.retain(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some());
@@ -40,7 +40,7 @@ fn format_weeks(days: u32) -> String {
     format!("{} {}", days / 7, if days == 7 { "week" } else { "weeks" })
 }
 
-/// A line per horizon, and the individual forecasts of the selected one.
+/// Pane with one line per horizon and the individual forecasts of the selected horizon.
 pub struct ScoresPane;
 
 impl Pane<Journal> for ScoresPane {
@@ -139,7 +139,7 @@ fn forecast_line(filed: &ScoredForecast) -> String {
     )
 }
 
-/// Limits the shown error, because near zero cash any error is a large share.
+/// Formats an error up to a maximum, because any error is a large share of cash near zero.
 fn capped_percent(share: f64) -> String {
     if share < 10.0 { percent(share, 1) } else { "> 999%".to_owned() }
 }
@@ -153,7 +153,7 @@ fn line_of(score: &ForecastScore) -> String {
     format!("{horizon:<9}{inside:>10}{:>8}{:>8}", capped_percent(score.mean_error), capped_percent(score.mean_sharpness))
 }
 
-/// Warns about low coverage if there are at least four forecasts.
+/// Returns the warning role if the coverage is low and at least four forecasts are scored.
 fn role_of(score: &ForecastScore) -> Role {
     match score.scored {
         0 => Role::Dim,

@@ -1,4 +1,4 @@
-//! Market research attempts.
+//! The pane of market research attempts.
 
 use ratatui::layout::Rect;
 
@@ -14,7 +14,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::company::DisplayedCompany;
 
-/// Past attempts, and the cost of the next one.
+/// Pane with past market research attempts and the cost of the next attempt.
 pub struct AttemptsPane;
 
 impl Pane<Market> for AttemptsPane {

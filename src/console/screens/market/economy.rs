@@ -1,5 +1,5 @@
-//! The published index of the economy: days of measurement, days of publication, and the unpublished period.
-//! News of competitors is marked by day.
+//! Chart of the PMI, with days of measurement, days of publication and the unpublished period. Competitor news is
+//! marked by day.
 
 use ratatui::layout::Rect;
 
@@ -18,10 +18,10 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{XAxis, Curve, YAxis, AxisUnit, draw_chart};
 use novamind_worker::company::DisplayedCompany;
 
-/// Marks for the number of competitor news in a column, relative to the maximum.
+/// Symbols for the number of competitor news items in a chart column, relative to the maximum.
 const NEWS_SYMBOLS: [&str; 4] = ["▁", "▃", "▅", "█"];
 
-/// Returns the day on which the next measurement is published.
+/// Returns the day on which the next PMI measurement is published.
 pub fn next_publication_day(economy: &[EconomyMeasurement], terms: &ToolLimits) -> u32 {
     let measured = economy.last().map_or(1, |last| last.day + terms.economy_every_days);
     measured + terms.economy_lag_days
@@ -30,14 +30,14 @@ pub fn next_publication_day(economy: &[EconomyMeasurement], terms: &ToolLimits) 
 pub struct EconomyView<'a> {
     /// Published measurements, oldest first.
     pub economy: &'a [EconomyMeasurement],
-    /// Index of the selected measurement.
+    /// Index of the selected measurement, or `None` for the last measurement.
     pub selected_index: Option<usize>,
     /// News of the press, newest first.
     pub news: &'a [CompetitorNews],
 }
 
 impl<'a> EconomyView<'a> {
-    /// Returns the selected measurement; by default the last one.
+    /// Returns the selected measurement. The default is the last measurement.
     pub fn selected(&self) -> Option<&'a EconomyMeasurement> {
         self.selected_index.and_then(|at| self.economy.get(at)).or(self.economy.last())
     }
@@ -75,7 +75,7 @@ impl Pane<Market> for EconomyPane {
             Action::Last | Action::Close => None,
             _ => market.selected_measurement,
         }
-        // A selection of the last measurement follows newer ones.
+        // `None` selects the last measurement, even after new measurements are published.
         .filter(|at| *at < last);
         Vec::new()
     }
@@ -139,7 +139,7 @@ fn draw_empty_state(canvas: &mut Canvas<'_>, area: Rect, view: &EconomyView<'_>,
     }
 }
 
-/// Draws the curve by day of measurement, above two lanes with days of publication and news of competitors.
+/// Draws the PMI curve by day of measurement. Below the curve, two lanes show days of publication and competitor news.
 fn draw_curve(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -148,7 +148,7 @@ fn draw_curve(
     here: &EconomyMeasurement,
 ) {
     let lanes = if area.height >= 9 { 2 } else { 0 };
-    // The lane names need four columns left of the axis.
+    // The names of the lanes need additional columns left of the axis.
     let indent = if lanes > 0 { 2.min(area.width) } else { 0 };
     let upper = Rect { x: area.x + indent, width: area.width - indent, height: area.height - lanes, ..area };
     let today = company.observation.day.max(2);
@@ -201,7 +201,7 @@ fn count_competitor_news(news: &[CompetitorNews], holds: impl Fn(u32) -> bool) -
     news.iter().filter(|item| item.competitor.is_some() && holds(item.post.day)).count()
 }
 
-/// Returns the area of the curve, without the axes that the chart has drawn.
+/// Returns the area of the curve without the axes, which the chart has already drawn.
 fn plot_area(canvas: &Canvas<'_>, area: Rect) -> Option<Rect> {
     let area = area.intersection(canvas.area());
     let below = area.bottom().checked_sub(2).filter(|_| area.height >= 4)?;
@@ -210,7 +210,7 @@ fn plot_area(canvas: &Canvas<'_>, area: Rect) -> Option<Rect> {
     (width > 3).then(|| Rect { x: axis + 1, y: area.y, width, height: area.height - 2 })
 }
 
-/// Shades the days without published values.
+/// Shades the part of the chart with days whose PMI is not published yet.
 fn shade_unpublished_days(canvas: &mut Canvas<'_>, area: Rect) {
     for row in row_rects(area.intersection(canvas.area())) {
         for x in row.left()..row.right() {

@@ -1,4 +1,4 @@
-//! Table of all groups with study levels and next studies.
+//! Table of all groups with their study levels and next market studies.
 
 use ratatui::layout::Rect;
 

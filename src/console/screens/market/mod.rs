@@ -35,26 +35,26 @@ use novamind_worker::posts::Posts;
 use novamind_worker::page_questions::CallCheck;
 use novamind_worker::readings::Reading;
 
-/// Panes in tab order.
+/// Panes of the market screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum MarketPane {
-    /// Table of the groups.
+    /// Table of all groups.
     #[default]
     Groups,
     /// Estimates of the selected group's study.
     Report,
-    /// Market research attempts.
+    /// List of market research attempts.
     Attempts,
-    /// News of the press.
+    /// Press reports about competitors and the economy.
     News,
-    /// The index of the economy.
+    /// Chart of the PMI.
     Economy,
 }
 
 const FIND_TOOL: ToolId = ToolId::ResearchMarket;
 const STUDY_TOOL: ToolId = ToolId::ResearchGroup;
 
-/// Footer actions for a selected group.
+/// Actions shown in the footer while a group is selected.
 const GROUP_HINTS: [Action; 5] =
     [Action::Open, Action::GroupCurve, Action::StudyGroup, Action::FindGroup, Action::Filter];
 
@@ -70,20 +70,20 @@ pub struct Market {
     news: Vec<CompetitorNews>,
     posts: Posts,
     headlines: Table,
-    /// Index of the selected measurement of the economy; `None` for the last one.
+    /// Index of the selected PMI measurement, or `None` for the last measurement.
     selected_measurement: Option<usize>,
-    /// Chosen level of the next study.
+    /// Level of the next market study that the user chose.
     target_level: Option<u8>,
     first_line: usize,
-    /// Check of the tool call before the user confirms it.
+    /// Check of the tool call before the user confirms the call.
     pending_call: Pending<CallCheck>,
 }
 
 impl Market {
-    /// Selects a group and shows its report.
+    /// Selects a group and shows its insight report.
     pub fn show_group(&mut self, group: Group) {
         self.focus = MarketPane::Groups;
-        // A filter could hide the group.
+        // The filter is cleared, because it could hide the group.
         self.table.handle_action(Action::Close, 1);
         if let Some(row) = self.groups.iter().position(|shown_group| *shown_group == group) {
             self.table.select(row);
@@ -108,12 +108,12 @@ impl Market {
         }
     }
 
-    /// Resets the report after a change of the selected group.
+    /// Resets the insight report after the selected group has changed.
     fn reset_report(&mut self) {
         (self.target_level, self.first_line) = (None, 0);
     }
 
-    /// Resets the report if the selected group has changed.
+    /// Resets the insight report if the selected group is not `before`.
     fn reset_report_if_changed(&mut self, before: Option<Group>) {
         if before != self.group() {
             self.reset_report();
@@ -177,7 +177,7 @@ impl Market {
         }
     }
 
-    /// Returns the confirmation of a tool call that costs money.
+    /// Returns the effect that asks for confirmation of a tool call that costs money.
     fn confirm_effect(&self, tool: ToolId, arguments: Value, preview: &Preview, company: &DisplayedCompany) -> Effect {
         let rest = company.observation.cash - preview.cost_now;
         let what = match tool {
@@ -281,7 +281,7 @@ impl PaneScreen for Market {
     fn handle_screen_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::FindGroup => Some(self.check_call(FIND_TOOL, json!({}))),
-            // The user must see which group is selected.
+            // The user must see the selected group before ordering a study.
             Action::StudyGroup if !matches!(self.focus, MarketPane::Groups | MarketPane::Report) => {
                 Some(vec![Effect::Complain("First select the group in the groups pane".to_owned())])
             }
@@ -300,7 +300,7 @@ impl PaneScreen for Market {
         if area.width >= 104 && area.height >= 24 {
             return self.draw_wide_layout(canvas, area, context);
         }
-        // The focused pane takes the window. Groups and report share it, as do attempts and economy.
+        // The focused pane is shown. The groups pane is shown together with the report, and the attempts pane with the economy.
         let halves = [Constraint::Percentage(50), Constraint::Min(0)];
         let [upper, lower] = Layout::vertical(halves).areas(area);
         let (above, below) = match self.focus {
@@ -341,7 +341,7 @@ fn table_scopes(table: &Table) -> Vec<Scope> {
     if table.is_filter_open() { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
 }
 
-/// Moves in a table; tab ends typing.
+/// Handles an action in a table. Tab and shift-tab accept the filter text.
 fn move_in_table(table: &mut Table, action: Action, context: &ScreenContext<'_>) {
     let action = match action {
         Action::CommitNext | Action::CommitPrevious => Action::Commit,
@@ -350,7 +350,7 @@ fn move_in_table(table: &mut Table, action: Action, context: &ScreenContext<'_>)
     table.handle_action(action, context.page_rows);
 }
 
-/// Returns the figure of a study value of a group.
+/// Returns a figure about what the player knows of a group.
 fn knowledge_figure(group: Group, company: &DisplayedCompany, term: &'static str, what: &str) -> Option<Figure> {
     let what = if level_of(company, group) == 0 { "facts about" } else { what };
     Some(Figure {

@@ -1,5 +1,4 @@
-//! Market figures collected from the readings: groups, market research attempts, and the index of the
-//! economy.
+//! Market figures that are collected from query results: groups, market research attempts and the PMI.
 
 use std::collections::BTreeMap;
 
@@ -9,14 +8,14 @@ use novamind_session::identifiers::Group;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::readings::Reading;
 
-/// Study level of a group, with dates.
+/// Study level of a group, with the days of discovery and of the last study.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct GroupKnowledge {
-    /// Study level; 0 if the group has not been found.
+    /// Study level, or 0 if the group has not been found.
     pub level: u8,
-    /// Day on which it was found; 0 for the initial groups.
+    /// Day on which the group was found, or 0 for the initial groups.
     pub found_day: Option<u32>,
-    /// Day on which the level last rose.
+    /// Day on which the study level last increased.
     pub studied_day: Option<u32>,
 }
 
@@ -25,9 +24,9 @@ pub struct GroupKnowledge {
 pub struct ResearchAttempt {
     /// Day of the attempt.
     pub day: u32,
-    /// Cost in dollars.
+    /// Cost of the attempt in dollars.
     pub cost: f64,
-    /// Group that was found.
+    /// Group that the attempt found, if any.
     pub group: Option<Group>,
 }
 
@@ -36,29 +35,29 @@ pub struct ResearchAttempt {
 pub struct EconomyMeasurement {
     /// Day of the measurement.
     pub day: u32,
-    /// Value of the index.
+    /// Measured value of the PMI.
     pub value: f64,
-    /// Change since the previous measurement.
+    /// Change of the PMI since the previous measurement.
     pub change: f64,
-    /// Trend and phase.
+    /// Trend and phase of the economy.
     pub phase: String,
-    /// Description.
+    /// Published description of the economy.
     pub text: String,
 }
 
-/// All figures from the readings.
+/// All market figures from query results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MarketFacts {
-    /// Study levels by group.
+    /// Study level and dates by group.
     pub known: BTreeMap<Group, GroupKnowledge>,
-    /// Attempts, newest first.
+    /// Market research attempts, the newest first.
     pub attempts: Vec<ResearchAttempt>,
-    /// Measurements of the economy, oldest first.
+    /// PMI measurements, the oldest first.
     pub economy: Vec<EconomyMeasurement>,
 }
 
 impl MarketFacts {
-    /// Replaces a reading.
+    /// Replaces the figures that come from a reading.
     pub fn apply_rows(&mut self, reading: Reading, rows: &QueryResult) {
         let rows = rows.rows.iter();
         match reading {
@@ -72,12 +71,12 @@ impl MarketFacts {
         }
     }
 
-    /// Returns the dollars spent on all attempts.
+    /// Returns the total cost of all market research attempts in dollars.
     pub fn research_cost(&self) -> f64 {
         self.attempts.iter().map(|attempt| attempt.cost).sum()
     }
 
-    /// Returns the number of attempts that found a group.
+    /// Returns the number of market research attempts that found a group.
     pub fn found_count(&self) -> usize {
         self.attempts.iter().filter(|attempt| attempt.group.is_some()).count()
     }
@@ -106,7 +105,7 @@ fn parse_measurement(row: &[Cell]) -> EconomyMeasurement {
     }
 }
 
-/// Returns the running study of a group.
+/// Returns the market study of a group that is in progress.
 pub fn running_study(company: &DisplayedCompany, group: Group) -> Option<&RunningStudy> {
     company.running_studies.iter().find(|study| study.group == group)
 }
@@ -126,7 +125,7 @@ pub fn undiscovered_count(company: &DisplayedCompany) -> usize {
     company.market.undiscovered_count
 }
 
-/// Returns the level of the next study: the chosen one if it is allowed, otherwise the next level.
+/// Returns the level of the next study: the chosen level if that level is allowed, otherwise the next level.
 pub fn target_level(company: &DisplayedCompany, group: Group, chosen: Option<u8>) -> u8 {
     let (least, most) = company.tool_limits.targets;
     let now = level_of(company, group);

@@ -1,4 +1,4 @@
-//! News of the press about competitors and the economy.
+//! Press reports about competitors and the economy.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub struct CompetitorNews {
     pub competitor: Option<String>,
 }
 
-/// Returns the news of the press, newest first.
+/// Returns the press reports, the newest first.
 pub fn competitor_news(company: &DisplayedCompany) -> Vec<CompetitorNews> {
     let press = company.posts.iter().filter(|post| post.kind == PostKind::Press);
     let item = |post: &Arc<Post>| {

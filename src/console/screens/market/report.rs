@@ -36,16 +36,16 @@ impl ReportLine {
         ReportLine { label: words, value: figures, role: Role::Text }
     }
 
-    /// Returns a line with the true value of the estimate above.
+    /// Returns a line with the true value of the estimate in the line above.
     fn true_value_line(figures: String) -> ReportLine {
         ReportLine { label: "  x-ray: true".to_owned(), value: figures, role: Role::Changed }
     }
 }
 
-/// An estimate: accessor, label, unit and format.
+/// Accessor, label, unit and format of an estimate in the report.
 type EstimateField = (fn(&Estimates) -> Option<f64>, &'static str, &'static str, fn(f64) -> String);
 
-/// Other screens show a range for it, too.
+/// Label of the required quality in `true_value_text`.
 const REQUIRED_QUALITY_LABEL: &str = "required quality";
 
 const ESTIMATE_FIELDS: [EstimateField; 8] = [
@@ -59,14 +59,14 @@ const ESTIMATE_FIELDS: [EstimateField; 8] = [
     (|all| all.avg_response_days, "response time", "days", format_figure),
 ];
 
-/// Other screens show a range for it, too.
+/// Label of the usage estimate.
 const USAGE_LABEL: &str = "usage";
 
-/// Other screens show a range and a true value for these, too.
+/// Labels of estimates with a true value in `true_value_text`.
 const BUDGET_LABEL: &str = "budget";
 const MARKET_LABEL: &str = "market cap";
 
-/// Returns the true value on the shown day, if the x-ray is open.
+/// Returns the true value of an estimate on the displayed day, if true values are shown.
 fn true_value_text(words: &str, group: Group, company: &DisplayedCompany) -> Option<String> {
     let group_values = &company.hidden_values.as_ref()?.groups[group];
     Some(match words {
@@ -95,7 +95,7 @@ fn format_share(value: f64) -> String {
     percent(value, 1)
 }
 
-/// Returns the lines of the report of a known group.
+/// Returns the lines of the insight report of a known group.
 pub fn lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.tool_limits.study_level(level_of(company, group)).map_or(0.0, |level| level.noise);
@@ -109,7 +109,7 @@ pub fn lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine> {
             ("customers", true) => "enterprises",
             (unit, _) => unit,
         };
-        // Ranges on other screens come from the same type, so that all agree.
+        // Other screens use the same type for ranges, so that all ranges agree.
         let truth = TrueValueRange::from_estimate(value, noise);
         let range = match words {
             REQUIRED_QUALITY_LABEL => truth.format_quality(),
@@ -151,12 +151,12 @@ fn push_influence(lines: &mut Vec<ReportLine>, influence: &Influence, noise: f64
     }
 }
 
-/// Returns the day and age of a group's estimates.
+/// Describes the day and the age of a group's estimates.
 pub fn study_date_text(company: &DisplayedCompany, group: Group) -> String {
     company.fit(group).map_or(String::new(), Fit::describe_study_day)
 }
 
-/// Returns the cost and result of the next study, or the running study.
+/// Describes the study in progress, or the cost and the margin of error of the next study.
 fn study_offer_text(company: &DisplayedCompany, group: Group, chosen: Option<u8>) -> String {
     if let Some(study) = running_study(company, group) {
         return format!("study to level {} due on day {}", study.target, study.due_day);
@@ -170,7 +170,7 @@ fn study_offer_text(company: &DisplayedCompany, group: Group, chosen: Option<u8>
     format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
 }
 
-/// The report of the selected group.
+/// Pane with the insight report of the selected group.
 pub struct ReportPane;
 
 impl Pane<Market> for ReportPane {
@@ -242,7 +242,7 @@ impl Pane<Market> for ReportPane {
     }
 }
 
-/// Explains how an unknown group can be found.
+/// Explains how the player can find an unknown group.
 fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     let terms = &context.company.tool_limits;
     let words = format!(
@@ -256,14 +256,14 @@ fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>
     }
 }
 
-/// Draws the estimates from a given line.
+/// Draws the estimates of a group, starting at a line of the report.
 pub fn draw_estimates(canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany, group: Group, from: usize) {
     let lines = lines(company, group);
     let from = from.min(lines.len().saturating_sub(area.height as usize));
     for (row, line) in row_rects(area).zip(&lines[from..]) {
         canvas.draw_text(row, &line.label, line.role);
         let taken = line.label.width() as u16 + 2;
-        // Do not draw a range that is cut off.
+        // A range is drawn only if it fits completely.
         if taken + line.value.width() as u16 <= row.width {
             canvas.draw_aligned(row, &line.value, line.role, Align::Right);
         }

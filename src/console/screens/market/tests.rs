@@ -13,7 +13,7 @@ fn with_context<T>(company: &DisplayedCompany, work: impl FnOnce(&ScreenContext<
     work(&ScreenContext { company, keys: &keys, page_rows: 5 })
 }
 
-/// Confirms an order: check, confirmation, tool call, message.
+/// Orders a purchase: handles the action, the check, the confirmation and the tool call.
 fn confirm_and_call(screen: &mut Market, session: &mut Session, action: Action) -> (String, Vec<Effect>) {
     let company = DisplayedCompany::from_session(session);
     let effects = handle_action(screen, action, &company);
@@ -99,7 +99,7 @@ fn report_shows_estimates_with_ranges() {
             assert!(text.contains(words), "{group} {words}: {text}");
         }
         assert_eq!(text.contains("smallest enterprise"), group.is_enterprise());
-        // The budget range agrees with other screens, including rounding.
+        // The budget range is the same as on other screens, including rounding.
         let budget = company.fit(*group).expect("a known group").budget.format_money().replace('$', "");
         assert!(text.contains(&budget), "{group} {budget}: {text}");
     }

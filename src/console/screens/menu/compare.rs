@@ -1,4 +1,4 @@
-//! Comparison of runs: curves of cash, and current figures.
+//! Comparison of runs by their cash curves and current figures.
 
 use ratatui::layout::Rect;
 
@@ -12,8 +12,8 @@ use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::sparkline::sparkline;
 
-/// Columns: title, width, alignment. Narrow windows show the first ones; the curve in each row identifies
-/// runs without colors.
+/// Title, width and alignment of each column. Narrow windows show only the first columns. The curve in each row
+/// identifies a run on terminals without colors.
 const COMPARISON_COLUMNS: [(&str, u16, Align); 8] = [
     ("", 3, Align::Left),
     ("run", 8, Align::Left),
@@ -25,7 +25,7 @@ const COMPARISON_COLUMNS: [(&str, u16, Align); 8] = [
     ("mode", 8, Align::Left),
 ];
 
-/// Number of columns in narrow windows, and the minimum width for all.
+/// Number of columns in narrow windows, and the minimum window width for all columns.
 const NARROW_LAYOUT: (usize, u16) = (5, 104);
 
 impl StartMenu {
@@ -106,14 +106,14 @@ fn visible_columns(row: Rect) -> usize {
     if row.width >= NARROW_LAYOUT.1 { COMPARISON_COLUMNS.len() } else { NARROW_LAYOUT.0 }
 }
 
-/// Returns the area of a row right of the columns.
+/// Returns the area of a row to the right of the columns.
 fn chart_area(row: Rect) -> Rect {
     let shown = COMPARISON_COLUMNS.iter().take(visible_columns(row));
     let used = shown.map(|(_, width, _)| width + 1).sum::<u16>() + 2;
     Rect { x: row.x + used, width: row.width.saturating_sub(used + 1), ..row }
 }
 
-/// Returns at most `most` of the values, evenly spaced, including the last one.
+/// Returns at most `most` of the values, evenly spaced, including the last value.
 fn downsample(values: &[f64], most: usize) -> Vec<f64> {
     if values.len() <= most || most == 0 {
         return values.to_vec();

@@ -1,4 +1,4 @@
-//! Start page: choices, and the state of the last run.
+//! The start page with its choices and the state of the last run.
 
 use ratatui::layout::Rect;
 
@@ -24,11 +24,12 @@ pub(super) enum HomeEntry {
     Quit,
 }
 
-/// Minimum width for the last run next to the choices.
+/// Minimum width of the window for showing the last run next to the choices.
 const MIN_WIDTH_FOR_LAST_RUN: u16 = 76;
 
 impl StartMenu {
-    /// Returns the choices of the page; empty while runs are listed, because they determine the first choice.
+    /// Returns the choices of the page. The list is empty until the runs are known, because the runs determine the
+    /// first choice.
     pub(super) fn entries(&self) -> Vec<(HomeEntry, &'static str, String)> {
         let mut choices = Vec::new();
         if self.runs.is_none() {
@@ -55,7 +56,7 @@ impl StartMenu {
             choices.push((HomeEntry::Runs, "Runs", text));
         }
         if count > 1 {
-            choices.push((HomeEntry::Compare, "Compare runs", "Two or more side by side".to_owned()));
+            choices.push((HomeEntry::Compare, "Compare runs", "Two or more runs side by side".to_owned()));
         }
         choices.push((HomeEntry::PublishedResults, "Paper table", "Published results and yours".to_owned()));
         if !newcomer {
@@ -86,7 +87,7 @@ impl StartMenu {
         }
     }
 
-    /// Draws the choices; returns the number of rows.
+    /// Draws the choices and returns the number of rows.
     fn draw_entries(&self, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
         let choices = self.entries();
         let count = choices.len() as u16;
@@ -170,12 +171,12 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
     let inside = canvas.draw_pane_frame(area, "About", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let parts = [
-        "You run a company that sells an AI subscription. It starts with a million dollars and no customers.",
+        "You run a company that sells an AI subscription. The company starts with a million dollars and no customers.",
         "Once a week you set prices, models, quotas, capacity, advertising and development, answer enterprises, and \
          forecast your cash. Then seven days are simulated.",
-        "Customers, competitors and the economy react. All you can know is on the screens and in the tables.",
+        "Customers, competitors and the economy react. The screens and the tables show all available information.",
         "Your score is the cash after the last day. If cash falls below zero, the run ends.",
-        "Nothing you confirm is lost: quit at any time.",
+        "You can quit at any time: all confirmed actions are saved.",
     ];
     let text = parts.join("\n\n");
     for (row, line) in row_rects(inside).zip(wrap(&text, inside.width as usize)) {

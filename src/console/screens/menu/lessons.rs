@@ -1,4 +1,4 @@
-//! List of lessons with minutes, titles and learning goals.
+//! List of lessons with their duration, title and learning goal.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub(super) struct LessonList {
     lessons: Vec<ListedLesson>,
 }
 
-/// A lesson: its name, and its definition or the error in its file.
+/// A lesson in the list: its name, and its definition or the error in its file.
 struct ListedLesson {
     name: String,
     lesson: Result<Arc<Lesson>, String>,

@@ -1,4 +1,4 @@
-//! Start menu: continue, new run, runs, comparison, published results, tour, quit.
+//! The start menu: continue a run, start a run, list and compare runs, show published results, start the tour, and quit.
 
 mod class;
 mod compare;
@@ -41,19 +41,19 @@ use novamind_worker::run_folders::PreviewQuestion;
 use path_form::{PathForm, PathPurpose};
 use runs::MenuQuestion;
 
-/// Window height below which the page has no blank row above it.
+/// Minimum window height for a blank row above the page.
 const MIN_HEIGHT_FOR_MARGIN: u16 = 26;
 
 const PAGE_ROWS: u16 = 10;
 
-/// Previews of runs by name; `None` while a preview is read.
+/// Previews of runs by run id. The value is `None` while the preview is being read.
 type RunPreviews = BTreeMap<String, Option<Result<RunPreview, String>>>;
 
 /// The start menu.
 pub struct StartMenu {
     page: MenuPage,
     runs: Option<Result<Vec<RunSummary>, String>>,
-    /// Index of the selection on list pages.
+    /// Index of the selected row on pages with a list.
     selected: usize,
     form: NewRunForm,
     table: Table,
@@ -62,9 +62,9 @@ pub struct StartMenu {
     previews: RunPreviews,
     reading: Vec<Pending<PreviewQuestion>>,
     question: Option<MenuQuestion>,
-    /// Actions received before the runs were listed. The choices of the start page depend on the runs.
+    /// Actions that were received before the list of runs arrived. The choices of the start page depend on that list.
     deferred_actions: Vec<Action>,
-    /// Lessons, read when their page was opened.
+    /// Lessons, which are read when the lessons page is opened.
     lessons: LessonList,
     path: PathForm,
     class: Option<Box<ClassPage>>,
@@ -84,7 +84,7 @@ enum MenuPage {
 }
 
 impl StartMenu {
-    /// Creates the menu before the runs are known.
+    /// Returns a menu whose list of runs has not arrived yet.
     pub fn new(configuration: &Configuration) -> StartMenu {
         StartMenu {
             page: MenuPage::Home,
@@ -104,18 +104,18 @@ impl StartMenu {
         }
     }
 
-    /// Stores the list of runs, requests the preview of the last one, and runs the delayed actions.
+    /// Stores the list of runs, requests the preview of the last run, and executes the deferred actions.
     pub fn set_runs(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
         let choice = self.selected_entry();
         self.runs = Some(runs);
         if self.page == MenuPage::Home {
-            // Select the same choice at its new position.
+            // The selected choice stays selected at its new position.
             let same = self.entries().iter().position(|(home_entry, ..)| Some(*home_entry) == choice);
             self.selected = same.unwrap_or(0);
         }
         let known: Vec<String> = self.runs().iter().map(|run| run.id.clone()).collect();
         self.marked.retain(|id| known.contains(id));
-        // Runs may have progressed since.
+        // Runs may have progressed since their previews were read.
         self.previews.clear();
         self.reading.clear();
         self.question = None;
@@ -135,7 +135,7 @@ impl StartMenu {
         self.entries().get(self.selected).map(|choice| choice.0)
     }
 
-    /// Collects previews that have arrived.
+    /// Stores the previews that have arrived.
     pub fn take_answers(&mut self) {
         for (run, preview) in self.reading.iter_mut().filter_map(Pending::try_take) {
             self.previews.insert(run.id, Some(preview.map_err(|refusal| refusal.message)));
@@ -143,7 +143,7 @@ impl StartMenu {
         self.reading.retain(Pending::is_waiting);
     }
 
-    /// Reports that a run could not be started or opened, and asks what to do instead.
+    /// Reports that a run could not be started or opened, and offers an alternative.
     pub fn show_open_error(&mut self, problem: String, instead: Option<OpenFallback>) {
         // A request for consent is not an error.
         let refused = (!matches!(instead, Some(OpenFallback::AskConsent(..)))).then(|| problem.clone());
@@ -162,7 +162,7 @@ impl StartMenu {
         self.page = MenuPage::Class;
     }
 
-    /// Requests the preview of a run, unless it is known or requested.
+    /// Requests the preview of a run, unless the preview is known or already requested.
     fn request_preview(&mut self, id: &str) -> Option<Effect> {
         if self.previews.contains_key(id) {
             return None;
@@ -184,7 +184,7 @@ impl StartMenu {
         self.runs().iter().find(|run| run.ended.is_none() && run.problem.is_none())
     }
 
-    /// Returns the unfinished run of the tour, if there is one.
+    /// Returns the id of the unfinished practice run, if there is one.
     pub fn practice_run(&self) -> Option<&str> {
         let begun = |run: &&RunSummary| {
             run.scenario == tour::scenario()
@@ -195,7 +195,7 @@ impl StartMenu {
         self.runs().iter().find(begun).map(|run| run.id.as_str())
     }
 
-    /// Returns the last index on list pages.
+    /// Returns the last index of the list on the current page.
     fn last_index(&self) -> usize {
         let rows = match self.page {
             MenuPage::Home => self.entries().len(),
@@ -207,7 +207,7 @@ impl StartMenu {
         rows.saturating_sub(1)
     }
 
-    /// Returns the scopes of the page.
+    /// Returns the scopes of the current page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
             _ if matches!(self.question, Some(MenuQuestion::Consent(..))) => vec![Scope::Study, Scope::List],
@@ -223,7 +223,7 @@ impl StartMenu {
         }
     }
 
-    /// Returns the footer actions.
+    /// Returns the actions to show in the footer.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
             _ if matches!(self.question, Some(MenuQuestion::Consent(..))) => {
@@ -264,7 +264,7 @@ impl StartMenu {
         (self.page, self.selected) = (MenuPage::Home, 0);
     }
 
-    /// Runs an action.
+    /// Handles an action on the current page.
     pub fn handle_action(&mut self, action: Action) -> Vec<Effect> {
         if self.question.is_some() {
             return self.answer_question(action);
@@ -338,7 +338,7 @@ impl StartMenu {
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
-                effects.push(Effect::Say("Mark two or more, then compare".to_owned()));
+                effects.push(Effect::Say("Mark two or more runs, then compare".to_owned()));
                 return effects;
             }
             Some(HomeEntry::PublishedResults) => (self.page, self.selected) = (MenuPage::PublishedResults, 0),
@@ -358,7 +358,7 @@ impl StartMenu {
         self.request_selected_preview()
     }
 
-    /// Handles a typed key.
+    /// Handles a key that is typed into a field.
     pub fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.page {
             MenuPage::NewRun => self.form.handle_key(key),
@@ -374,7 +374,7 @@ impl StartMenu {
         Vec::new()
     }
 
-    /// Handles pasted text.
+    /// Handles text that is pasted into a field.
     pub fn paste(&mut self, text: &str) {
         match self.page {
             MenuPage::NewRun => self.form.paste(text),
@@ -384,7 +384,7 @@ impl StartMenu {
         }
     }
 
-    /// Handles a click on a row: the first selects it, the second opens it.
+    /// Handles a click on a row. The first click selects the row, and the second click opens it.
     pub fn handle_click(&mut self, row: usize) -> Vec<Effect> {
         if self.question.is_some() {
             return Vec::new();
@@ -409,7 +409,7 @@ impl StartMenu {
         }
     }
 
-    /// Draws the page below the program name.
+    /// Draws the current page below the program name.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         if let (MenuPage::Class, Some(page)) = (self.page, &self.class) {
             page.draw(canvas, area);
@@ -421,7 +421,7 @@ impl StartMenu {
         canvas.draw_aligned(name, version, Role::Dim, Align::Right);
         let line = Rect { x: name.x + 3, y: name.y + 1, width: name.width.saturating_sub(3), ..name };
         canvas.draw_text(line, "one company, five hundred days, every decision yours", Role::Dim);
-        // Low windows give the last blank row to the page.
+        // In small windows, the page uses the last blank row.
         let above = if area.height < MIN_HEIGHT_FOR_MARGIN { 3 } else { 4 };
         let body = Rect {
             x: area.x + 2,

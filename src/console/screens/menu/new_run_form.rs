@@ -15,10 +15,10 @@ use novamind_tui::widgets::TextField;
 use novamind_worker::request::Request;
 
 pub(super) struct NewRunForm {
-    /// Names and descriptions of the scenarios.
+    /// Names and descriptions of all scenarios.
     scenarios: Vec<(String, String)>,
     scenario: usize,
-    /// Days and starting cash of the selected scenario in the selected mode, if it can be read.
+    /// Days and starting cash of the selected scenario in the selected mode, if the scenario can be read.
     scenario_terms: Option<(u32, f64)>,
     mode: usize,
     seed: TextField,
@@ -29,14 +29,14 @@ pub(super) struct NewRunForm {
     pub(super) rejection: Option<String>,
 }
 
-/// Rows of the form: label and description.
+/// Label and description of each row of the form.
 pub(super) const FORM_ROWS: [(&str, &str); 7] = [
-    ("Mode", "Purpose of the run; left and right change it. Fixed once the run starts."),
-    ("Scenario", "Parameters of the market; left and right change it."),
+    ("Mode", "Purpose of the run; left and right change the mode. Fixed once the run starts."),
+    ("Scenario", "Parameters of the market; left and right change the scenario."),
     ("Seed", "The same seed gives the same random events."),
     ("Days", "Last day of the run, at least 7. Published results ran for 500."),
     ("Starting cash", "Dollars on day 0."),
-    ("Participant", "A label for the record; a baseline run needs one."),
+    ("Participant", "A label for the record, required in baseline runs."),
     ("Start", "Start the run (enter)"),
 ];
 
@@ -67,7 +67,7 @@ impl NewRunForm {
         }
     }
 
-    /// Reads days and cash of the selected scenario.
+    /// Reads the days and the starting cash of the selected scenario.
     pub(super) fn read_terms(&mut self, configuration: &Configuration) {
         let name = self
             .scenarios
@@ -186,7 +186,7 @@ impl NewRunForm {
             3 => or(&self.days, &default_text(self.scenario_terms.map(|(days, _)| format_days(days)))),
             4 => or(&self.cash, &default_text(self.scenario_terms.map(|(_, cash)| dollars(cash)))),
             5 => or(&self.participant, "none"),
-            // The start row shows the selected mode.
+            // The last row starts the run and shows the selected mode.
             _ => (format!("a {} run", Mode::SELECTABLE[self.mode].id()), Role::Text),
         }
     }
@@ -194,7 +194,7 @@ impl NewRunForm {
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let inside = canvas.draw_pane_frame(area, "New run", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // A blank row before the last one, if it fits.
+        // A blank row precedes the last row, if there is space.
         let gap = usize::from(inside.height as usize > FORM_ROWS.len() + 6);
         for at in 0..FORM_ROWS.len() {
             let y = inside.y + (at + if at + 1 == FORM_ROWS.len() { gap } else { 0 }) as u16;
@@ -257,22 +257,21 @@ fn format_days(days: u32) -> String {
     novamind_base::formatting::grouped_number(f64::from(days), 0)
 }
 
-/// Returns the placeholder of an empty field.
+/// Returns the placeholder of an empty field with the default of the scenario.
 fn default_text(value: Option<String>) -> String {
     value.map_or("scenario default".to_owned(), |value| format!("scenario default: {value}"))
 }
 
-/// Returns the permissions of a mode.
+/// Describes the permissions of a mode.
 fn mode_description(mode: Mode) -> &'static str {
     match mode {
         Mode::Baseline => {
-            "No branches, no rewinding, no tour; rationale and forecasts are your own. The result can be compared with \
-             published ones."
+            "No branches, rewinding or tour; you write the rationale and the forecasts. The result can be compared with published results."
         }
         Mode::Sandbox => {
             "Everything in baseline, plus branches from any earlier week; forecasts may be filled in."
         }
-        Mode::Lesson => "Everything in sandbox; the record says it was played to learn.",
+        Mode::Lesson => "Everything in sandbox; the record marks the run as a lesson.",
         Mode::Debug => "Everything in sandbox, plus hidden state; not comparable with other runs.",
     }
 }

@@ -1,4 +1,4 @@
-//! A page that asks for a path: the folder of a class, or a student's handout.
+//! A page that asks for the path of a class folder or of a student's handout.
 
 use std::path::PathBuf;
 
@@ -43,8 +43,7 @@ impl PathPurpose {
                  page shows the last collection: ranking, curves, decisions, guesses, pitfalls."
             }
             PathPurpose::Handout => {
-                "The file that your instructor gave you, such as S07.nm. Enter starts it, or continues the last unfinished try or \
-                 part. From then on the start menu shows your runs only."
+                "The file that your instructor gave you, such as S07.nm. Enter starts the lesson, or continues the last unfinished try or part. After that, the start menu shows only your runs."
             }
         }
     }
@@ -72,7 +71,7 @@ impl PathForm {
     }
 
     pub(super) fn open_path(&self) -> Vec<Effect> {
-        // Terminals quote dropped files.
+        // Terminals put quotes around the paths of dropped files.
         let typed = self.field.text().trim().trim_matches(['\'', '"']);
         if typed.is_empty() {
             return vec![Effect::Complain(format!("Type a path: {}", self.purpose.prompt().to_lowercase()))];

@@ -1,4 +1,4 @@
-//! Published results, ranked, together with the finished runs on this machine.
+//! Ranking of the published results and the finished runs on this machine.
 
 use ratatui::layout::Rect;
 
@@ -22,7 +22,7 @@ pub(super) struct RankedResult {
     is_own: bool,
 }
 
-/// Returns all results, best first.
+/// Returns the published results and the user's results, the best first.
 pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
     let paper = published_results();
     let baseline = RankedResult {
@@ -52,7 +52,7 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
     results
 }
 
-/// Returns the reasons why a run is not ranked; `None` if the run has no score.
+/// Returns the reasons why a run is not ranked, or `None` if the run has no score.
 fn obstacles(run: &RunSummary) -> Option<Vec<RankingObstacle>> {
     let has_score =
         matches!(run.ended, Some(RunEndReason::Horizon | RunEndReason::Bankruptcy | RunEndReason::Lesson));
@@ -63,7 +63,7 @@ impl StartMenu {
     pub(super) fn draw_published_results(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let results = ranked(self.runs());
         let number = results.iter().filter(|result| result.is_own).count();
-        let note = if number > 0 { format!("{number} of yours") } else { String::new() };
+        let note = if number > 0 { format!("{number} of your runs") } else { String::new() };
         let inside = canvas.draw_pane_frame(area, "Published results and yours", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let lines =
@@ -81,18 +81,18 @@ impl StartMenu {
         }
     }
 
-    /// Explains which runs are ranked, and why others are not.
+    /// Explains why runs are not ranked, or how the user's ranked runs are marked.
     fn own_results_text(&self, ranked: usize) -> String {
         let finished: Vec<Vec<RankingObstacle>> = self.runs().iter().filter_map(obstacles).collect();
         match (ranked, describe_not_ranked(&finished)) {
             (_, Some(left_out)) => left_out,
             (0, None) => "Finish a 500-day run to appear here.".to_owned(),
-            (_, None) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
+            (_, None) => "Your runs are marked; bankrupt runs count as $0.".to_owned(),
         }
     }
 }
 
-/// Returns the source of the published results.
+/// Describes the source and the conditions of the published results.
 fn source_text() -> String {
     let bound = compact_number(published_results().estimated_upper_bound);
     format!(

@@ -1,4 +1,4 @@
-//! List of runs: open, compare, give up, delete.
+//! List of runs, in which the user can open, compare, give up and delete runs.
 
 use ratatui::layout::Rect;
 
@@ -21,18 +21,18 @@ use novamind_tui::widgets::{AxisUnit, Curve, TableCell, TableColumn, XAxis, YAxi
 use novamind_worker::message::OpenFallback;
 use novamind_worker::request::{RecordSource, Request};
 
-/// An action that needs confirmation because it cannot be undone.
+/// A question that the user must answer before the menu continues.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum MenuQuestion {
     EndRun(String),
     Delete(String),
-    /// An alternative for a run that does not open, with the reason.
+    /// Whether to use an alternative for a run that does not open. The text contains the reason.
     OpenError(OpenFallback, String),
-    /// Whether a participant agrees to a text before their run starts.
+    /// Whether the participant agrees to the consent text before the run starts.
     Consent(Box<NewRun>, ConsentText),
 }
 
-/// State of a run that a server is playing. Opening it asks whether to watch.
+/// State of a run that another program is playing. If the user opens the run, the menu offers to watch the run.
 const PLAYED_BY_PROGRAM: &str = "played by a program";
 
 pub(super) const MAX_COMPARED_RUNS: usize = 6;
@@ -121,7 +121,7 @@ impl StartMenu {
         Vec::new()
     }
 
-    /// Opens the playback of a run.
+    /// Returns the effects that open a run in playback.
     pub(super) fn replay(&self, run: Option<&RunSummary>) -> Vec<Effect> {
         let replay = |run: &RunSummary| {
             let recorded = RecordSource::Run(run.id.clone());
@@ -138,9 +138,7 @@ impl StartMenu {
                 self.marked.remove(at);
             }
             None if self.marked.len() == MAX_COMPARED_RUNS => {
-                return vec![Effect::Complain(format!(
-                    "{MAX_COMPARED_RUNS} runs are marked; more cannot be compared"
-                ))];
+                return vec![Effect::Complain(format!("you can compare at most {MAX_COMPARED_RUNS} runs"))];
             }
             None => self.marked.push(id),
         }
@@ -150,7 +148,7 @@ impl StartMenu {
         effects
     }
 
-    /// Requests the missing previews of the marked runs.
+    /// Requests the previews of the marked runs that are missing.
     fn request_marked_previews(&mut self) -> Vec<Effect> {
         let marked = self.marked.clone();
         marked.into_iter().filter_map(|id| self.request_preview(&id)).collect()
@@ -170,7 +168,7 @@ impl StartMenu {
         id.and_then(|id| self.request_preview(&id)).into_iter().collect()
     }
 
-    /// Handles the answer to a confirmation.
+    /// Handles the user's answer to the open question.
     pub(super) fn answer_question(&mut self, action: Action) -> Vec<Effect> {
         match (action, self.question.take()) {
             (Action::Confirm, Some(MenuQuestion::EndRun(id))) => vec![Effect::Request(Request::EndRun(id))],
@@ -239,7 +237,7 @@ impl StartMenu {
         })
     }
 
-    /// Draws the question about a run that does not open, over any page.
+    /// Draws the question about a run that does not open, over the current page.
     pub(super) fn draw_open_error(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let (instead, problem) = match &self.question {
             Some(MenuQuestion::OpenError(instead, problem)) => (instead, problem),
@@ -250,7 +248,7 @@ impl StartMenu {
             _ => return,
         };
         let (title, offer) = match instead {
-            // Consent is shown as a text.
+            // The consent question is drawn by the consent text.
             OpenFallback::AskConsent(_) => return,
             OpenFallback::Watch(_) => {
                 ("Read-only", "Watch it here, read-only? Changes made elsewhere appear here.")
@@ -269,7 +267,7 @@ impl StartMenu {
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, title, "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        // The question stays visible even if the reason is long.
+        // If the reason is long, its first lines are omitted so that the question stays visible.
         let room = inside.height.saturating_sub(1) as usize;
         let skipped = lines.len().saturating_sub(room);
         let shown = lines.iter().enumerate().skip(if room < lines.len() { skipped } else { 0 });
@@ -296,7 +294,7 @@ impl StartMenu {
         }
         match (self.question_text(), self.selected_run()) {
             (Some((title, text)), _) => {
-                // Over the list if there is no room for a separate pane.
+                // The question is drawn over the list if there is no space for a separate pane.
                 let place = if for_detail > 0 { below } else { area };
                 canvas.clear(place, Role::Text);
                 let inside = canvas.draw_pane_frame(place, title, "", true);
@@ -313,7 +311,7 @@ impl StartMenu {
     }
 }
 
-/// Returns the progress of a run.
+/// Describes the progress or the end of a run.
 pub(super) fn progress_label(run: &RunSummary) -> String {
     match run.ended {
         _ if run.problem.is_some() => "cannot be read".to_owned(),
@@ -321,7 +319,7 @@ pub(super) fn progress_label(run: &RunSummary) -> String {
         Some(RunEndReason::Horizon) => format!("finished day {}", run.day),
         Some(RunEndReason::Bankruptcy) => format!("bankrupt day {}", run.day),
         Some(RunEndReason::Abandoned) => format!("given up day {}", run.day),
-        Some(RunEndReason::Lesson) => format!("lesson over day {}", run.day),
+        Some(RunEndReason::Lesson) => format!("lesson end day {}", run.day),
     }
 }
 
@@ -366,7 +364,7 @@ pub(super) fn facts(
     facts
 }
 
-/// Draws the cash curve of a run, or the reason why there is none.
+/// Draws the cash curve of a run, or the reason why there is no curve.
 pub(super) fn draw_preview(
     canvas: &mut Canvas<'_>,
     area: Rect,
@@ -382,7 +380,7 @@ pub(super) fn draw_preview(
     }
 }
 
-/// Draws curves of cash by day, in the color of each number.
+/// Draws curves of cash by day. The number of each curve selects its color.
 pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usize, &RunPreview)]) {
     let points =
         |preview: &RunPreview| preview.cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
@@ -396,7 +394,7 @@ pub(super) fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, previews: &[(usiz
     draw_chart(canvas, area, &lines, &x, &YAxis { unit: AxisUnit::Dollars, required_values: zero });
 }
 
-/// Returns a preview that has arrived.
+/// Returns the preview of a run, if the preview has arrived.
 pub(super) fn loaded_preview<'a>(previews: &'a RunPreviews, id: &str) -> Option<&'a RunPreview> {
     previews.get(id)?.as_ref()?.as_ref().ok()
 }

@@ -1,4 +1,4 @@
-//! Cash by day with the last forecasts as a fan.
+//! Chart of cash by day, with the last forecasts as a fan.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;

@@ -1,4 +1,4 @@
-//! Figures of the week: how each is read, formatted and judged, and the query for its rows.
+//! Figures of the week: accessor, format, direction of improvement and source rows of each figure.
 
 use crate::context::Figure;
 use novamind_base::formatting::{dollars, grouped_number, percent};
@@ -12,35 +12,35 @@ use novamind_worker::company::DisplayedCompany;
 
 /// A figure of the week.
 pub struct Metric {
-    /// Name on the screen.
+    /// Name of the figure in the table.
     pub name: &'static str,
-    /// Glossary term.
+    /// Glossary term that explains the figure.
     pub term: &'static str,
-    /// Reads the value.
+    /// Returns the value of the figure in a week.
     pub read: fn(&WeekFigures) -> f64,
-    /// Formats the value.
+    /// Formats a value of the figure.
     pub write: fn(f64) -> String,
     /// Whether a higher value is better.
     pub more_is_better: bool,
-    /// Source of its rows.
+    /// Source rows of the figure.
     rows_source: RowsSource,
 }
 
-/// Source of the rows behind a figure.
+/// Source rows of a figure.
 enum RowsSource {
     /// All ledger entries up to the end of the week.
     Cash,
     /// Ledger entries that meet a condition.
     Ledger(&'static str),
-    /// Currently active subscriptions that meet a condition; available for the last week only.
+    /// Currently active subscriptions that meet a condition. These rows are available only for the last week.
     ActiveSubscriptions(&'static str),
-    /// Customers and subscriptions, by a column with a day and a condition.
+    /// Customers with their subscriptions. The strings are the column that contains the day and a condition.
     Customers(&'static str, &'static str),
-    /// A column of the daily service.
+    /// A column of the daily service data.
     Service(&'static str),
     /// Threads that enterprises started.
     Leads,
-    /// No table contains them.
+    /// No source rows: no table contains the figure.
     None,
 }
 
@@ -72,7 +72,7 @@ const SIGNUPS_SQL: &str = "c.customer_type = 'small' AND s.status IN ('subscribe
 const CANCELLATIONS_SQL: &str = "c.customer_type = 'small' AND s.status = 'cancelled'";
 const DEALS_SQL: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'cancelled')";
 
-/// All figures in display order.
+/// All figures of the week in display order.
 pub static METRICS: [Metric; 22] = [
     new_metric("cash at week's end", "cash", |week| week.cash, dollars, true, RowsSource::Cash),
     new_metric(
@@ -217,7 +217,7 @@ pub static METRICS: [Metric; 22] = [
     ),
 ];
 
-/// Returns the columns of the table; narrow windows drop the last ones first.
+/// Returns the columns of the table. Narrow windows omit the last columns first.
 pub fn columns() -> Vec<TableColumn> {
     let numbers = ["this week", "change"].map(TableColumn::numeric);
     let last = ["last week", "4-wk mean"].map(TableColumn::numeric);
@@ -225,7 +225,7 @@ pub fn columns() -> Vec<TableColumn> {
     name.into_iter().chain(numbers).chain([TableColumn::text("trend")]).chain(last).collect()
 }
 
-/// Returns the weeks that a column covers, as distances from the last week, farthest first.
+/// Returns the first and the last week that a column covers, as numbers of weeks before the last week.
 fn weeks_of(column: usize) -> (u32, u32) {
     match column {
         2 => (1, 0),
@@ -236,7 +236,7 @@ fn weeks_of(column: usize) -> (u32, u32) {
     }
 }
 
-/// Returns the row of a figure.
+/// Returns the table row of a figure.
 pub fn row_of(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell> {
     let trend = company.trend(12, metric.read);
     let now = trend.last().copied();
@@ -273,7 +273,7 @@ pub fn row_of(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell> {
     ]
 }
 
-/// Returns the figure in a column, with a query for its rows.
+/// Returns the figure that a column shows, with a query for its source rows.
 pub fn figure(metric: &Metric, column: usize, company: &DisplayedCompany) -> Figure {
     let week = company.observation.week;
     let (from, to) = weeks_of(column);
@@ -290,7 +290,7 @@ pub fn figure(metric: &Metric, column: usize, company: &DisplayedCompany) -> Fig
     .with_week_quantity(quantity, to)
 }
 
-/// Returns the query for the rows of some weeks; `None` if only current rows exist and the weeks are past.
+/// Returns the query for the source rows of a range of weeks. Returns `None` if no rows exist for these weeks.
 fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String> {
     let (from, to) = ((7 * weeks.0).saturating_sub(6), 7 * weeks.1);
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");

@@ -33,14 +33,14 @@ impl LinkedRow {
         LinkedRow { text, urgent, destination: format!("→ {}", screen.action().entry().title) }
     }
 
-    /// Returns the wrapped text, with room for the name of the screen in the first line.
+    /// Returns the wrapped text. Each line leaves space for the name of the linked screen.
     pub fn lines(&self, width: u16) -> Vec<String> {
         let room = (width as usize).saturating_sub(self.destination.width() + 4);
         wrap(&self.text, room.max(12))
     }
 }
 
-/// Draws the rows, starting where the selected row is completely visible.
+/// Draws rows, scrolled so that the selected row is completely visible.
 pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &[LinkedRow], selected: usize) {
     let area = placement.area;
     let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();

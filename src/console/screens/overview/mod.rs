@@ -1,4 +1,4 @@
-//! Overview: cash with a fan of forecasts, items that need action, the week, quality and news.
+//! The overview screen: cash with a fan of forecasts, items that need action, figures of the week, quality and news.
 
 mod cash;
 pub mod figures;
@@ -27,7 +27,7 @@ use novamind_tui::widgets::Table;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::readings::Reading;
 
-/// Panes in tab order.
+/// Panes of the overview in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum OverviewPane {
     /// Items that need action.
@@ -37,7 +37,7 @@ pub enum OverviewPane {
     Week,
     /// Delivered quality by group.
     Quality,
-    /// Cash by day.
+    /// Curve of cash by day.
     Cash,
     /// News of the week.
     News,
@@ -51,7 +51,7 @@ pub struct Overview {
     week: Table,
     quality: Table,
     days: Vec<ServiceDay>,
-    /// News from the readings.
+    /// News items from the notifications in the database.
     notices: Vec<NewsItem>,
     research: Vec<NewsItem>,
     news: Vec<NewsItem>,
@@ -139,7 +139,7 @@ impl Overview {
     fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let [left, right] = Layout::horizontal([Constraint::Percentage(50), Constraint::Min(0)]).areas(area);
         let quality = (self.quality.rows().len() as u16 + 3).min(left.height / 2);
-        // Usage has its own chart if cash keeps enough rows.
+        // Usage has a separate chart if enough rows remain for cash.
         let usage = if left.height >= quality + 26 { (left.height - quality) * 2 / 5 } else { 0 };
         let [cash, used, below] =
             Layout::vertical([Constraint::Min(8), Constraint::Length(usage), Constraint::Length(quality)])
@@ -173,7 +173,7 @@ impl Overview {
         let needs = needs::pane_height(context.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
         draw_pane(self, OverviewPane::Needs, canvas, above, context);
-        // The week needs room for the name, value and change of each figure.
+        // The week pane needs space for the name, value and change of each figure.
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
         draw_pane(self, OverviewPane::Week, canvas, week, context);

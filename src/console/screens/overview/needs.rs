@@ -1,4 +1,4 @@
-//! Items that need action: rows, links and figures.
+//! The pane of items that need action: its rows, links and figures.
 
 use ratatui::layout::Rect;
 
@@ -17,7 +17,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
-/// Items that need action, most urgent first.
+/// Pane with the items that need action, the most urgent first.
 pub struct NeedsPane;
 
 impl Pane<Overview> for NeedsPane {
@@ -47,7 +47,7 @@ impl Pane<Overview> for NeedsPane {
     fn border(&self, _: &Overview, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let needs = &context.company.action_items;
         let urgent = needs.iter().filter(|need| need.is_urgent).count();
-        let note = if urgent > 0 { format!("{urgent} now · {} in all", needs.len()) } else { String::new() };
+        let note = if urgent > 0 { format!("{urgent} urgent of {}", needs.len()) } else { String::new() };
         PaneBorder { title: "Action needed".to_owned(), note, ..PaneBorder::default() }
     }
 
@@ -58,7 +58,7 @@ impl Pane<Overview> for NeedsPane {
                 // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs
                 // action.
                 None if context.company.running_lesson().is_some_and(|lesson_status| lesson_status.tools.is_some()) => {
-                    "Nothing is listed here. Your task says what to do."
+                    "No action items. The task of the lesson states the next step."
                 }
                 None => "Nothing needs action. Start the next week with n.",
             };
@@ -79,7 +79,7 @@ pub fn pane_height(company: &DisplayedCompany, width: u16, most: u16) -> u16 {
     (lines.max(1) as u16 + 2).min(most.max(4))
 }
 
-/// Returns the screen for an item.
+/// Returns the screen on which the user can act on an item.
 pub fn screen_of(need: &ActionItem) -> ScreenId {
     match &need.target {
         ActionTarget::Call(..) => ScreenId::Tools,
@@ -89,7 +89,7 @@ pub fn screen_of(need: &ActionItem) -> ScreenId {
     }
 }
 
-/// Opens the form, thread or group of an item.
+/// Returns the effect that opens the form, thread or group of an item.
 pub fn need_effect(need: &ActionItem) -> Effect {
     match &need.target {
         ActionTarget::Call(tool, arguments) => Effect::Prefill { tool: *tool, arguments: arguments.clone() },
@@ -99,7 +99,7 @@ pub fn need_effect(need: &ActionItem) -> Effect {
     }
 }
 
-/// Returns the figure of an item, with a query for its rows.
+/// Returns the figure of an item, with a query for its source rows.
 pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
     let from = day.saturating_sub(6);
     let days = |columns: &str| {
@@ -156,7 +156,7 @@ pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
     Figure { title: need.text.clone(), term, sql, week_quantity: None }.with_week_quantity(quantity_of(need), day.div_ceil(7))
 }
 
-/// Returns the weekly figure of an item.
+/// Returns the weekly quantity that an item is about.
 fn quantity_of(need: &ActionItem) -> Option<WeekQuantity> {
     match need.problem {
         Problem::Runway => WeekQuantity::for_company(WeekFigure::CashChange),

@@ -72,7 +72,7 @@ pub struct NewsItem {
 }
 
 impl NewsItem {
-    /// Returns the screen with the details.
+    /// Returns the screen that shows details of the item.
     pub fn screen(&self) -> ScreenId {
         match self.kind {
             NewsKind::Research => ScreenId::Product,
@@ -81,12 +81,12 @@ impl NewsItem {
         }
     }
 
-    /// Opens the details.
+    /// Returns the effect that opens details of the item.
     pub fn effect(&self) -> Effect {
         Effect::Show(self.screen())
     }
 
-    /// Returns the figure of the item, with a query for its rows.
+    /// Returns the figure of the item, with a query for its source rows.
     pub fn figure(&self, day: u32) -> Figure {
         let (term, sql) = match self.kind {
             NewsKind::Research => {
@@ -110,7 +110,7 @@ impl NewsItem {
     }
 }
 
-/// Returns the news from the notices of a week, newest first.
+/// Returns the news items from the notifications of a week, the newest first.
 pub fn notice_items(rows: &QueryResult) -> Vec<NewsItem> {
     let mut items = Vec::new();
     for row in &rows.rows {
@@ -125,7 +125,7 @@ pub fn notice_items(rows: &QueryResult) -> Vec<NewsItem> {
     items
 }
 
-/// Returns the R&D projects completed in the last week, with the quality that they add.
+/// Returns news items for the R&D projects that were completed in the last week.
 pub fn research_items(projects: &[Project], day: u32) -> Vec<NewsItem> {
     let ended = |project: &&Project| project.done && project.expected_day + 7 > day && project.expected_day <= day;
     let words = |project: &Project| NewsItem {
@@ -135,10 +135,10 @@ pub fn research_items(projects: &[Project], day: u32) -> Vec<NewsItem> {
     projects.iter().filter(ended).map(words).collect()
 }
 
-/// Counts of posts and press items in the last week.
+/// Returns news items with the numbers of posts and press reports in the last week.
 pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
     let day = company.observation.day;
-    // Posts of the last week and of the four weeks before, newest first.
+    // Counts the posts of the last week and of the four weeks before it.
     let (mut number, mut before, mut press) = (0u32, 0u32, 0u32);
     for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
         let weeks = day.saturating_sub(post.day) / 7;
@@ -149,7 +149,7 @@ pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
             _ => {}
         }
     }
-    // Early in a run there are fewer weeks to compare with.
+    // Early in a run, fewer than four weeks are available for the comparison.
     let weeks = (day / 7).saturating_sub(1).min(4);
     let usual = grouped_number(f64::from(before) / f64::from(weeks.max(1)), 0);
     let compared = match weeks {

@@ -19,7 +19,7 @@ use novamind_tui::widgets::chart::note_width;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::company::DisplayedCompany;
 
-/// Columns of the required quality and of the bonus from targeted development.
+/// Index of the column with the required quality.
 const REQUIRED_QUALITY_COLUMN: usize = 4;
 const BONUS_COLUMN: usize = 6;
 

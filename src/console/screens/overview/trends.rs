@@ -1,4 +1,4 @@
-//! Small charts of the weeks for large windows.
+//! Small charts of figures by week, shown in large windows.
 
 use ratatui::layout::Rect;
 
@@ -15,7 +15,7 @@ use novamind_worker::company::DisplayedCompany;
 const MIN_CHART_HEIGHT: u16 = 8;
 const MAX_CHART_HEIGHT: u16 = 16;
 
-/// Figures with charts and their titles, most informative first.
+/// Names of figures with charts and the titles of the charts, the most informative first.
 static CHARTS: [(&str, &str); 6] = [
     ("subscribers", "Subscribers"),
     ("recurring revenue", "Recurring revenue"),
@@ -45,7 +45,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany) {
     }
 }
 
-/// Returns the height that the charts take from the free rows.
+/// Returns the height of the charts if `room` rows are free.
 pub fn charts_height(room: u16) -> u16 {
     if room < MIN_CHART_HEIGHT { 0 } else { room.min(3 * MAX_CHART_HEIGHT) }
 }

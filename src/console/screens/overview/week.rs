@@ -57,7 +57,7 @@ impl Pane<Overview> for WeekPane {
     }
 }
 
-/// Returns the screen with details of a figure, by its term.
+/// Returns the screen that shows details of the figure with a glossary term.
 fn screen_of(term: &str) -> ScreenId {
     match term {
         "cash" | "payments" | "running-costs" => ScreenId::Cash,

@@ -20,12 +20,12 @@ use novamind_tui::widgets::table::first_visible_row;
 use novamind_tui::widgets::{XAxis, Curve, YAxis, AxisUnit, draw_chart};
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the tier of the last day, and the tier that is set.
+/// Returns the capacity tier of the last day and the capacity tier of the current setting.
 pub fn tiers(company: &DisplayedCompany, days: &[ServiceDay]) -> (Option<u32>, u32) {
     (days.last().map(|day| day.tier), company.setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
-/// Returns one line on capacity, longest wording first.
+/// Returns one-line summaries of capacity, the longest first.
 fn summary(company: &DisplayedCompany, rungs: &[CapacityTier], days: &[ServiceDay]) -> Vec<String> {
     let (_, set) = tiers(company, days);
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return Vec::new() };
@@ -45,7 +45,7 @@ fn summary(company: &DisplayedCompany, rungs: &[CapacityTier], days: &[ServiceDa
     ]
 }
 
-/// Returns the utilization of a tier in percent, capped at ten times its capacity.
+/// Formats the utilization of a tier in percent. Values of at least ten times the capacity are not shown exactly.
 fn capacity_share(units: f64, of: f64) -> String {
     match of {
         of if of <= 0.0 => "–".to_owned(),
@@ -54,7 +54,7 @@ fn capacity_share(units: f64, of: f64) -> String {
     }
 }
 
-/// The capacity tiers, with the usage history next to or below them if it fits.
+/// Pane with the capacity tiers. The usage history is next to or below the tiers if it fits.
 pub struct CapacityPane;
 
 impl ProductPanel for CapacityPane {
@@ -120,7 +120,7 @@ fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacem
         });
         let mark = match rung.tier {
             tier if Some(tier) == in_force && tier == set => "◆ now",
-            tier if Some(tier) == in_force => "◆ until tomorrow",
+            tier if Some(tier) == in_force => "◆ until next day",
             tier if tier == set => "▸ set",
             _ if used.is_some_and(|(_, peak)| peak > rung.units) => "! too small",
             _ => "",

@@ -20,12 +20,12 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
-/// Bar glyphs by age, newest first; older issues are denser.
+/// Bar glyphs by age of issues, the newest first. Older issues have denser glyphs.
 const AGE_SYMBOLS: [char; 4] = ['░', '▒', '▓', '█'];
 
 const FIGURES_WIDTH: u16 = 45;
 
-/// Summarizes open issues; empty before they are read.
+/// Summarizes the open issues. Returns an empty text until the issues are read.
 fn summary(issues: Option<&BTreeMap<String, IssueAges>>) -> String {
     let Some(issues) = issues else { return String::new() };
     let all: f64 = issues.values().flatten().fold(0.0, |sum, count| sum + count);
@@ -82,7 +82,7 @@ impl ProductPanel for IssuesPane {
     }
 }
 
-/// Draws a row with all groups, then one row per group. All bars share one scale.
+/// Draws one row for all groups together, followed by one row per group. All bars have the same scale.
 fn draw(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement) {
     let (area, selected) = (placement.area, product.selected_row(ProductPane::Issues));
     let head = ["to 3 d", "4-7 d", "8-14 d", "15+ d", "all"].map(str::to_owned);
@@ -141,7 +141,7 @@ fn cells(ages: &IssueAges) -> [String; 5] {
     })
 }
 
-/// Returns the ages of a group as one bar, relative to the group with the most issues.
+/// Returns the issue ages of a group as one stacked bar. `whole` is the number of issues that fills the bar.
 fn stacked_bar(ages: &IssueAges, whole: f64, width: usize) -> String {
     let (mut text, mut sum, mut drawn) = (String::new(), 0.0, 0);
     for (count, shade) in ages.iter().zip(AGE_SYMBOLS) {

@@ -1,4 +1,4 @@
-//! Quality, plans, capacity, service, issues and R&D.
+//! The product screen: quality, plans, capacity, service, issues and R&D.
 
 mod capacity;
 mod issues;
@@ -29,21 +29,21 @@ use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_worker::readings::Reading;
 
-/// Panes in tab order.
+/// Panes of the product screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum ProductPane {
     /// Delivered quality by group.
     Quality,
     /// Costs and revenue of each plan.
     Plans,
-    /// Capacity tiers, the most frequent decision.
+    /// Capacity tiers and their utilization.
     #[default]
     Capacity,
-    /// Service measures by day.
+    /// Latency, error rate and outages by day.
     Service,
     /// Open issues by group and age.
     Issues,
-    /// R&D projects, running and available.
+    /// Running and available R&D projects.
     Research,
 }
 
@@ -75,19 +75,19 @@ impl ProductPane {
 #[derive(Default)]
 pub struct Product {
     focus: ProductPane,
-    /// Selected row of each pane.
+    /// Index of the selected row in each pane.
     selected_rows: [usize; ProductPane::VARIANTS.len()],
     sales: PlanSales,
     plans: [PlanFacts; 3],
     capacity_tiers: Vec<CapacityTier>,
     days: Vec<ServiceDay>,
-    /// Open issues by group; `None` before they are read.
+    /// Open issues by group, or `None` until they are read.
     issues: Option<BTreeMap<String, IssueAges>>,
     selected_plan: usize,
     projects: Vec<Project>,
     offers: Vec<ProjectOffer>,
     spending: research::QualitySpending,
-    /// Whether the selection was moved to the current capacity tier once.
+    /// Whether the initial selection of the capacity pane was moved to the current tier.
     is_ladder_positioned: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Product figures collected from the readings: plans, capacity, service, issues, projects.
+//! Product figures that are collected from query results: plans, capacity, service, issues and projects.
 
 use std::collections::BTreeMap;
 
@@ -13,31 +13,31 @@ use novamind_worker::company::DisplayedCompany;
 /// A plan with its settings and revenue.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlanFacts {
-    /// Model tier.
+    /// Model tier of the plan.
     pub tier: u32,
-    /// Units per day and customer.
+    /// Quota in units per day and customer.
     pub quota: f64,
     /// List price, $ per month and seat.
     pub price: f64,
-    /// Compute cost, $ per unit.
+    /// Compute cost in $ per unit.
     pub unit_cost: f64,
-    /// Its subscribers, their payments and their usage on the last day.
+    /// Subscribers of the plan, their payments and their usage on the last day.
     pub usage: PlanUsage,
 }
 
 impl PlanFacts {
-    /// Returns the compute cost, $ per month and seat.
+    /// Returns the compute cost in $ per month and seat.
     pub fn compute_cost_per_seat(&self) -> Option<f64> {
         self.usage.compute_cost(self.unit_cost)
     }
 
-    /// Returns the share of the revenue that remains after compute.
+    /// Returns the gross margin: the share of revenue that remains after compute cost.
     pub fn margin(&self) -> Option<f64> {
         self.usage.margin(self.unit_cost)
     }
 }
 
-/// Returns the plans with their settings and sales.
+/// Returns the figures of all plans from their settings and sales.
 pub fn plans(sales: &PlanSales, company: &DisplayedCompany) -> [PlanFacts; 3] {
     Plan::ALL.map(|plan| {
         let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
@@ -52,18 +52,18 @@ pub fn plans(sales: &PlanSales, company: &DisplayedCompany) -> [PlanFacts; 3] {
     })
 }
 
-/// A capacity tier.
+/// A tier of rented computing capacity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CapacityTier {
-    /// Tier number.
+    /// Number of the capacity tier.
     pub tier: u32,
-    /// Units per day.
+    /// Capacity in units per day.
     pub units: f64,
-    /// Dollars per day.
+    /// Cost in dollars per day.
     pub cost: f64,
 }
 
-/// Returns all capacity tiers, smallest first.
+/// Returns all capacity tiers, the smallest first.
 pub fn capacity_tiers(company: &DisplayedCompany) -> Vec<CapacityTier> {
     let rung = |(tier, facts): (&u8, &CapacityTierFacts)| CapacityTier {
         tier: u32::from(*tier),
@@ -75,22 +75,22 @@ pub fn capacity_tiers(company: &DisplayedCompany) -> Vec<CapacityTier> {
     ladder
 }
 
-/// The service on one day.
+/// Usage, capacity and service quality on one day.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ServiceDay {
     /// Day of the run.
     pub day: u32,
-    /// Units used.
+    /// Usage on the day in units.
     pub usage: f64,
-    /// Capacity in units.
+    /// Capacity on the day in units.
     pub capacity: f64,
     /// Capacity tier on the day.
     pub tier: u32,
-    /// 95th percentile of latency, ms.
+    /// 95th percentile of the latency in milliseconds.
     pub latency_ms: f64,
     /// Share of failed requests.
     pub error_rate: f64,
-    /// Minutes of outage.
+    /// Duration of outages in minutes.
     pub downtime_minutes: f64,
 }
 
@@ -101,7 +101,7 @@ impl ServiceDay {
     }
 }
 
-/// Returns the service by day.
+/// Parses the service data of all days.
 pub fn parse_service_days(rows: &QueryResult) -> Vec<ServiceDay> {
     let day = |row: &Vec<novamind_database::Cell>| ServiceDay {
         day: number_at(row, 0) as u32,
@@ -115,40 +115,40 @@ pub fn parse_service_days(rows: &QueryResult) -> Vec<ServiceDay> {
     rows.rows.iter().map(day).collect()
 }
 
-/// Returns the mean and peak usage of the last seven days; `None` before the first day.
+/// Returns the mean and peak usage of the last seven days, or `None` before the first day.
 pub fn last_week(days: &[ServiceDay]) -> Option<(f64, f64)> {
     let last = &days[days.len().saturating_sub(7)..];
     let peak = last.iter().map(|day| day.usage).fold(0.0, f64::max);
     (!last.is_empty()).then(|| (last.iter().map(|day| day.usage).sum::<f64>() / last.len() as f64, peak))
 }
 
-/// Open issues by age in days: up to 3, 4 to 7, 8 to 14, 15 or more.
+/// Numbers of open issues by age in days: up to 3, 4 to 7, 8 to 14, 15 or more.
 pub type IssueAges = [f64; 4];
 
-/// Returns the open issues by group.
+/// Parses the numbers of open issues by group and age.
 pub fn issues(rows: &QueryResult) -> BTreeMap<String, IssueAges> {
     let ages = |row: &Vec<novamind_database::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
 }
 
-/// An R&D project.
+/// An R&D project that was started.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Project {
-    /// Identifier.
+    /// Identifier of the project.
     pub id: String,
-    /// Project tier.
+    /// Tier of the project, which determines its cost and gain.
     pub tier: u32,
-    /// Whether it is completed.
+    /// Whether the project is completed.
     pub done: bool,
-    /// Day on which it was paid.
+    /// Day on which the project was paid for.
     pub started_day: u32,
     /// Expected or actual day of completion.
     pub expected_day: u32,
-    /// Quality that it adds.
+    /// Quality that the project adds.
     pub boost: f64,
 }
 
-/// Returns the R&D projects, newest first.
+/// Parses the R&D projects, the newest first.
 pub fn projects(rows: &QueryResult) -> Vec<Project> {
     let project = |row: &Vec<novamind_database::Cell>| Project {
         id: text_at(row, 0).to_owned(),
@@ -164,15 +164,15 @@ pub fn projects(rows: &QueryResult) -> Vec<Project> {
 /// An R&D project that can be started.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProjectOffer {
-    /// Project tier.
+    /// Tier of the offered project.
     pub tier: u32,
-    /// Name.
+    /// Name of the project tier.
     pub name: String,
-    /// Cost in dollars.
+    /// Cost of the project in dollars.
     pub cost: f64,
     /// Mean duration in days and mean quality gain.
     pub means: ResearchMeans,
-    /// Numbers of running and of completed projects.
+    /// Number of running projects and number of completed projects of this tier.
     pub running_and_done: (usize, usize),
 }
 
@@ -188,7 +188,7 @@ pub fn offers(company: &DisplayedCompany) -> Vec<ProjectOffer> {
     company.projects.tiers.iter().zip(&company.research_means).map(offer).collect()
 }
 
-/// Returns the dollars per week of a ledger category, from the first week.
+/// Returns the spending in a ledger category in dollars for each week, starting with the first week.
 pub fn weekly_spending(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
     weeks.iter().map(|week| -week.booked.total_of(category)).collect()
 }

@@ -1,4 +1,5 @@
-//! Shared behavior of the panes: rows that open something, and a one-line summary for small windows.
+//! Behavior that all panes of the product screen share: rows that open another screen, and a one-line summary for
+//! small windows.
 
 use ratatui::layout::Rect;
 
@@ -19,7 +20,7 @@ pub trait ProductPanel: Pane<Product> {
         1
     }
 
-    /// Returns a one-line summary in at most `width` columns.
+    /// Returns a one-line summary of the pane in at most `width` columns.
     fn summary(&self, product: &Product, company: &DisplayedCompany, width: usize) -> String;
 
     /// Returns the text at the right of the border.
@@ -30,12 +31,12 @@ pub trait ProductPanel: Pane<Product> {
     /// Returns the name of the destination that the selected row opens.
     fn destination(&self, product: &Product) -> &'static str;
 
-    /// Opens the selected object: its cell, or its form with a value filled in.
+    /// Returns the effect that opens the form of the selected row, at its cell or with a value filled in.
     fn open_effect(&self, product: &Product, company: &DisplayedCompany) -> Effect;
 
     fn selected_figure(&self, product: &Product, company: &DisplayedCompany) -> Option<Figure>;
 
-    /// Moves sideways in the selected row; returns false if the key should lead to the next pane.
+    /// Moves to another cell of the selected row. Returns false if the action should move the focus to another pane.
     fn move_sideways(&self, _: &mut Product, _: Action) -> bool {
         false
     }
@@ -82,7 +83,7 @@ impl<P: ProductPanel> Pane<Product> for P {
     fn border(&self, product: &Product, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let open = context.keys.label(Action::Open).unwrap_or_default();
         let title = self.id().title();
-        // Corners, the blanks around title and note, and a piece of border between them.
+        // The corners, the spaces around the title and the note, and a piece of border between them need nine columns.
         let width = (area.width as usize).saturating_sub(title.len() + 9);
         PaneBorder {
             title: title.to_owned(),
@@ -97,7 +98,7 @@ impl<P: ProductPanel> Pane<Product> for P {
     }
 }
 
-/// Opens the form of a tool, at the cell of an object if given.
+/// Returns the effect that opens the form of a tool, at the cell for a key if given.
 pub fn show_cell_effect(tool: ToolId, of: Option<String>) -> Effect {
     match of {
         Some(of) => Effect::ShowCell(tool, of),
@@ -105,7 +106,7 @@ pub fn show_cell_effect(tool: ToolId, of: Option<String>) -> Effect {
     }
 }
 
-/// Opens the form of a tool with a tier filled in.
+/// Returns the effect that opens the form of a tool with a tier filled in.
 pub fn prefill_tier_effect(tool: ToolId, tier: Option<u32>) -> Effect {
     match tier {
         Some(tier) => Effect::Prefill { tool, arguments: serde_json::json!({ "tier": tier }) },

@@ -19,7 +19,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
-/// Table with plans as columns. A row opens the tool that sets it.
+/// Pane with a table that has plans as columns. A row opens the tool that sets its values.
 pub struct PlansPane;
 
 impl ProductPanel for PlansPane {
@@ -45,8 +45,8 @@ impl ProductPanel for PlansPane {
         }
         let margins = each(|plan| format_optional(plan.margin(), |margin| percent(margin, 0)));
         let wordings = [
-            format!("margin at last-day usage {margins} · customers {customers}"),
-            format!("margin at last-day usage {margins}"),
+            format!("margin at last day's usage {margins} · customers {customers}"),
+            format!("margin at last day's usage {margins}"),
             format!("margin {margins}"),
         ];
         first_fitting(wordings, width)
@@ -109,14 +109,14 @@ impl ProductPanel for PlansPane {
     }
 }
 
-/// Name and format of a figure.
+/// Name and format of a figure of a plan.
 type PlanFigure = (&'static str, fn(&PlanFacts) -> String);
 
 fn format_optional(value: Option<f64>, write: impl Fn(f64) -> String) -> String {
     value.map_or("–".to_owned(), write)
 }
 
-/// Figures in display order, most used first.
+/// Figures of plans in display order, the most important first.
 static PLAN_FIGURES: [PlanFigure; 11] = [
     ("model tier", |plan| format!("T{}", plan.tier)),
     ("price/month", |plan| cents(plan.price)),
@@ -128,7 +128,7 @@ static PLAN_FIGURES: [PlanFigure; 11] = [
     ("paid/seat, mo.", |plan| format_optional(plan.usage.revenue_per_seat(), cents)),
     ("compute/seat, mo.", |plan| format_optional(plan.compute_cost_per_seat(), cents)),
     ("gross margin", |plan| {
-        // The warning sign is on the losing plan, where narrow windows do not cut it.
+        // A warning sign marks a plan with a negative margin. The sign is in the cell, because narrow windows cut off notes.
         format_optional(plan.margin(), |margin| {
             format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 1))
         })
@@ -136,7 +136,7 @@ static PLAN_FIGURES: [PlanFigure; 11] = [
     ("billed/month", |plan| format!("${}", compact_number(plan.usage.monthly_revenue))),
 ];
 
-/// Returns the tool that sets the value of a row.
+/// Returns the tool that sets the values in a row.
 fn tool_of(row: usize) -> ToolId {
     match row {
         0 | 3 | 9 => ToolId::SetModelTiers,
@@ -145,7 +145,7 @@ fn tool_of(row: usize) -> ToolId {
     }
 }
 
-/// Returns the figure of a row and plan, with a query for its rows.
+/// Returns the figure in a row for a plan, with a query for its source rows.
 fn figure_of(row: usize, plan: Plan) -> Figure {
     let subscribers = || {
         Some(format!(

@@ -1,4 +1,4 @@
-//! Delivered quality by group with its components.
+//! The pane with delivered quality by group and the components of delivered quality.
 
 use ratatui::layout::Rect;
 

@@ -1,4 +1,4 @@
-//! R&D: timeline of projects, available projects, and spend on development and operations.
+//! The R&D pane: a timeline of projects, available projects, and spending on development and operations.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -40,7 +40,7 @@ fn summary(projects: &[Project], last_day: u32) -> String {
     }
 }
 
-/// Running and available projects.
+/// Pane with running and available R&D projects.
 pub struct ResearchPane;
 
 impl ProductPanel for ResearchPane {
@@ -112,7 +112,7 @@ fn draw_spending(canvas: &mut Canvas<'_>, area: Rect, spent: &QualitySpending) {
     }
 }
 
-/// Draws projects as bars over the days from the first start to the last end.
+/// Draws projects as bars on a time axis from the first start to the last completion.
 fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
     let (area, projects) = (placement.area, &product.projects);
     let selected =
@@ -140,7 +140,7 @@ fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlac
         canvas.draw_text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
         let words = format!("day {last}");
         canvas.draw_aligned(Rect { x, width, ..area }, &words, Role::Dim, Align::Right);
-        // The mark is drawn only if both end labels leave room.
+        // The mark of the current day is drawn only if it does not overlap the labels at both ends.
         let now = place(today);
         if now > 10 && now + 14 < width {
             canvas.draw_text(Rect { x: x + now, width: 5, ..area }, "▼ now", Role::Key);
@@ -216,7 +216,7 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacem
         if !affordable {
             remarks.push("! exceeds your cash".to_owned());
         }
-        // In narrow rows a sign marks projects that cost more than the cash.
+        // In narrow rows, a sign marks projects that cost more than the available cash.
         let remarks = match row.width < 70 {
             true if !affordable => "!".to_owned(),
             true => String::new(),

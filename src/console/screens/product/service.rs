@@ -1,4 +1,4 @@
-//! Service measures by day, and outages.
+//! The service pane: latency, error rate and outages by day, and the last outages.
 
 use ratatui::layout::Rect;
 
@@ -49,7 +49,7 @@ impl ProductPanel for ServicePane {
     }
 }
 
-/// Name, reader, format and aggregation of a measure.
+/// Name, accessor, format and aggregation of a service measure.
 type ServiceMeasure = (&'static str, fn(&ServiceDay) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
 
 static SERVICE_MEASURES: [ServiceMeasure; 4] = [
@@ -63,7 +63,7 @@ fn max_of_days(days: &[f64]) -> f64 {
     days.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns one line on the service, longest wording first.
+/// Returns one-line summaries of the service, the longest first.
 pub fn summary(days: &[ServiceDay]) -> Vec<String> {
     let Some(last) = days.last() else { return vec![NO_DATA.to_owned()] };
     let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime_minutes).sum();
@@ -75,7 +75,7 @@ pub fn summary(days: &[ServiceDay]) -> Vec<String> {
     ]
 }
 
-/// Draws the measures by day, then the last outages.
+/// Draws the service measures by day, followed by the last outages.
 pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[ServiceDay]) {
     let head = format!("{:<16}{:>8}{:>9}{:>9}  ", "", "last", "7-day", "28-day");
     canvas.draw_text(area, &head, Role::Header);
@@ -124,7 +124,7 @@ fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[ServiceDay]) {
         .map(|day| format!("day {} {} min", day.day, format_number(day.downtime_minutes)))
         .collect();
     let text = match outages.is_empty() {
-        true => "No outages so far. 7-day and 28-day figures are peaks.".to_owned(),
+        true => "No outages. 7-day and 28-day figures are peaks.".to_owned(),
         false => format!("outages: {}", outages.join(" · ")),
     };
     canvas.draw_text(row, &text, Role::Dim);

@@ -106,7 +106,7 @@ fn small_window_summarizes_every_pane() {
     }
 }
 
-/// Maximum rows of a query result.
+/// Maximum number of rows in a query result.
 const MAX_ANSWER_ROWS: f64 = 5000.0;
 
 #[test]

@@ -1,4 +1,4 @@
-//! Editor for the next post.
+//! The editor for the next post of the company.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
@@ -41,7 +41,7 @@ impl Pane<Social> for DraftPane {
     fn handle_key(&self, social: &mut Social, key: &KeyEvent, _: &ScreenContext<'_>) -> Vec<Effect> {
         match key.code {
             _ if !social.editing => {}
-            // A post has no columns, so tab moves the focus.
+            // A post has no indentation, so tab moves the focus.
             KeyCode::Tab => return vec![Effect::Do(Action::FocusNext)],
             KeyCode::BackTab => return vec![Effect::Do(Action::FocusPrevious)],
             _ => social.draft.handle_key(key),
@@ -62,7 +62,7 @@ impl Pane<Social> for DraftPane {
 
     fn border(&self, social: &Social, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let title = match (social.reply_to, social.has_posted_this_week()) {
-            (Some(post), _) => format!("Answer to #{post}"),
+            (Some(post), _) => format!("Reply to #{post}"),
             (None, true) => "New post · 1 of 1 this week".to_owned(),
             (None, false) => "New post · 0 of 1 this week".to_owned(),
         };
@@ -79,12 +79,12 @@ impl Pane<Social> for DraftPane {
         let key = context.keys.label(Action::Compose).unwrap_or_default();
         let hint = match social.has_posted_this_week() {
             true => "This week's post is published. Write the next one next week.".to_owned(),
-            false => format!("Write a post with {key}. One a week, read by every known group."),
+            false => format!("Write a post with {key}. One per week; every known group reads it."),
         };
         social.draft.draw(canvas, placement.area, social.editing, &hint);
     }
 
-    /// Marks a post that is too long in the border.
+    /// Draws the length of the post in the warning style if the post is too long.
     fn draw_with_border(&self, social: &Social, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let area = placement.area;
         if area.height < 3 {

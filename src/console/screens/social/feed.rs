@@ -1,4 +1,4 @@
-//! Posts grouped by thread: comments follow the player's post that they answer.
+//! Posts in feed order. Comments follow the player's post that they answer.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use novamind_database::{QueryResult, number_at, text_at};
 pub use novamind_worker::posts::{Post, PostKind};
 
-/// Returns the player's posts from the database.
+/// Parses the player's posts from a query result.
 pub fn own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
     let to_own_post = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
@@ -29,13 +29,13 @@ pub fn own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
 /// Filter of the feed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PostFilter {
-    /// Kind of author.
+    /// Kind of author, or `None` for all kinds.
     pub kind: Option<PostKind>,
-    /// Week of the posts.
+    /// Week in which posts were published, or `None` for all weeks.
     pub week: Option<u32>,
-    /// Thread: the player's post, and the post that it answers.
+    /// Thread of posts: the number of the player's post, and the number of the post that it answers.
     pub thread: Option<(u32, Option<u32>)>,
-    /// Case-insensitive text.
+    /// Text that posts contain, compared without regard to case.
     pub text: String,
 }
 
@@ -51,7 +51,7 @@ impl PostFilter {
                 || post.heading().to_lowercase().contains(&wanted))
     }
 
-    /// Selects the next kind; after the last kind, all.
+    /// Selects the next kind of author. After the last kind, selects all kinds.
     pub fn next_kind(&mut self) {
         self.kind = match self.kind {
             None => PostKind::ALL.first().copied(),
@@ -59,17 +59,17 @@ impl PostFilter {
         };
     }
 
-    /// Selects the previous week; from all weeks, the last one.
+    /// Selects the previous week. If all weeks are selected, selects the last week.
     pub fn earlier_week(&mut self, last: u32) {
         self.week = Some(self.week.map_or(last.max(1), |week| week.saturating_sub(1).max(1)));
     }
 
-    /// Selects the next week; after the last week, all.
+    /// Selects the next week. After the last week, selects all weeks.
     pub fn later_week(&mut self, last: u32) {
         self.week = self.week.map(|week| week + 1).filter(|week| *week <= last);
     }
 
-    /// Describes the filter; empty if it shows everything.
+    /// Describes the filter of the feed. Returns an empty text if the filter shows all posts.
     pub fn label(&self) -> String {
         let kind = self.kind.map(|kind| kind.name().to_owned());
         let week = self.week.map(|week| format!("week {week}"));
@@ -88,7 +88,7 @@ fn is_in_thread(post: &Post, (number, answered): (u32, Option<u32>)) -> bool {
     }
 }
 
-/// Returns all posts, newest first; comments follow the player's post that they answer, oldest first.
+/// Returns all posts in feed order: the newest first. Comments follow the player's post that they answer, the oldest first.
 pub fn threads(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = posts.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {
@@ -98,7 +98,8 @@ pub fn threads(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
             _ => None,
         };
         let day = thread.and_then(|number| days.get(&number).copied()).unwrap_or(post.day);
-        // Within a day the player's thread comes first: its post, then the comments by arrival.
+        // The player's threads are the first posts of a day: the post of the player, followed by the comments in order
+        // of arrival.
         let within = match (thread, post.kind) {
             (Some(number), PostKind::Own) => (0, Reverse(number), 0),
             (Some(number), _) => (0, Reverse(number), post.number),
@@ -111,7 +112,7 @@ pub fn threads(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
     all
 }
 
-/// Returns the number of other authors' posts per week, from the first week.
+/// Returns the number of posts of other authors in each week, starting with the first week.
 pub fn posts_by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(PostKind) -> bool) -> Vec<(f64, f64)> {
     let count = |week: u32| posts.iter().filter(|post| takes(post.kind) && post.week() == week).count();
     (1..=last).map(|week| (f64::from(week), count(week) as f64)).collect()

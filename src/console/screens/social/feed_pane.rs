@@ -1,4 +1,4 @@
-//! The feed of posts by customers, the press and the player.
+//! The pane with the feed of posts by customers, the press and the player.
 
 use ratatui::layout::Rect;
 

@@ -14,7 +14,7 @@ struct FeedRow {
     post_index: Option<usize>,
 }
 
-/// Draws posts; `selected` is an index among them.
+/// Draws posts with their days and authors. `selected` is an index of `posts`.
 pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, posts: &[&Post], selected: usize) {
     let (area, focused) = (placement.area, placement.focused);
     if area.is_empty() {
@@ -44,11 +44,11 @@ pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, posts: &[&Post], 
     }
 }
 
-/// Returns the rows around the selected post; distant posts are not wrapped.
+/// Returns the rows around the selected post. Posts outside the window are not wrapped.
 fn rows_around_selection(posts: &[&Post], selected: usize, width: usize, height: usize) -> Vec<FeedRow> {
     let Some(last) = posts.len().checked_sub(1) else { return Vec::new() };
     let selected = selected.min(last);
-    // Up to half of the window is above the selected post, more if the list ends below.
+    // At most half of the window is above the selected post, unless too few posts follow it.
     let mut blocks: Vec<Vec<FeedRow>> = vec![rows_of_post(posts, selected, width)];
     let mut below = blocks[0].len();
     let mut next = selected + 1;

@@ -34,15 +34,15 @@ use novamind_worker::posts::Posts;
 use novamind_worker::page_questions::CallCheck;
 use novamind_worker::readings::Reading;
 
-/// Panes in tab order.
+/// Panes of the social screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum SocialPane {
-    /// All posts.
+    /// Feed of all posts.
     #[default]
     Feed,
     /// Editor for the next post.
     Draft,
-    /// The player's posts.
+    /// Table of the player's posts.
     OwnPosts,
 }
 
@@ -56,7 +56,7 @@ pub struct Social {
     own_posts: Vec<Arc<Post>>,
     /// All posts in feed order.
     feed: Vec<Arc<Post>>,
-    /// Indexes of the posts that pass the filter.
+    /// Indexes in `feed` of the posts that pass the filter.
     visible_posts: Vec<usize>,
     selected: usize,
     filter: PostFilter,
@@ -65,11 +65,11 @@ pub struct Social {
     draft: TextEditor,
     editing: bool,
     reply_to: Option<u32>,
-    /// Check of the tool call before the user confirms it.
+    /// Check of the tool call before the user confirms the call.
     pending_arguments: Pending<CallCheck>,
-    /// Newest post that was seen; `None` before the screen was shown.
+    /// Number of the newest post that was seen, or `None` until the screen is shown.
     newest_seen_post: Option<u32>,
-    /// Last day that was seen before the run was opened.
+    /// Day up to which posts were seen before the run was opened.
     last_viewed_day: Option<u32>,
     day: u32,
 }
@@ -96,11 +96,11 @@ impl Social {
         self.table.set_columns_and_rows(columns, self.own_posts.iter().map(row).collect());
     }
 
-    /// Applies the filter; the selection stays on its post if it is still shown.
+    /// Applies the filter to the feed. The post `kept` is selected again if it passes the filter.
     fn update_visible_posts(&mut self, kept: Option<(PostKind, u32)>) {
         self.visible_posts = (0..self.feed.len()).filter(|at| self.filter.matches(&self.feed[*at])).collect();
         let is_kept = |at: &usize| Some((self.feed[*at].kind, self.feed[*at].number)) == kept;
-        // If the newest post is selected, the selection follows the newest post.
+        // If the first row is selected, the first row stays selected, so that the newest post is selected.
         let place = self.visible_posts.iter().position(is_kept).filter(|_| self.selected > 0);
         self.selected = place.unwrap_or(0);
     }
@@ -114,7 +114,7 @@ impl Social {
         self.visible_posts.get(self.selected).and_then(|at| self.feed.get(*at)).map(Arc::as_ref)
     }
 
-    /// Shows a post with its details and comments.
+    /// Returns the effect that shows a post with its details and comments.
     fn show_post(&self, post: &Post, company: &DisplayedCompany) -> Effect {
         let mut parts = vec![post.text.clone()];
         if post.kind == PostKind::Own {
@@ -135,8 +135,8 @@ impl Social {
         self.table.selected().and_then(|row| self.own_posts.get(row)).map(Arc::as_ref)
     }
 
-    /// Returns the player's post that heads the thread of a post, which is the post itself, a comment on it,
-    /// or the post it answers.
+    /// Returns the number of the player's post to whose thread a post belongs. The thread consists of the player's
+    /// post, its comments and the post that it answers.
     fn thread_of_post(&self, post: &Post) -> Option<u32> {
         match post.kind {
             PostKind::Own => Some(post.number),
@@ -145,7 +145,7 @@ impl Social {
         }
     }
 
-    /// Shows the thread of a post; within the thread, the complete post.
+    /// Filters the feed by the thread of a post. If a thread is already shown, shows the complete post.
     fn open_post(&mut self, post: Option<Post>, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(post) = post else { return Vec::new() };
         match self.thread_of_post(&post).filter(|_| self.filter.thread.is_none()) {
@@ -184,7 +184,7 @@ impl Social {
         self.draft.text().chars().count()
     }
 
-    /// Checks the tool call; the confirmation follows.
+    /// Requests a check of the tool call, which is followed by the confirmation.
     fn check_post(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         let (length, most) = (self.draft_length(), context.company.tool_limits.post_characters);
         if self.draft.is_blank() {
@@ -215,7 +215,7 @@ impl Social {
         Effect::ConfirmCall { tool: POST_TOOL, arguments, text }
     }
 
-    /// Returns the unsent post, and the post that it answers.
+    /// Returns the text of the unsent post and the number of the post that it answers.
     pub fn draft_text(&self) -> (String, Option<u32>) {
         (self.draft.text(), self.reply_to)
     }
@@ -260,7 +260,7 @@ impl ScreenState for Social {
     }
 
     fn unseen_count(&self) -> usize {
-        // After a run is opened, posts of the last week are unread unless they were seen before.
+        // After a run is opened, posts of the last week are unread unless they were seen in an earlier session.
         let is_new = |post: &&Arc<Post>| match self.newest_seen_post {
             Some(seen) => post.number > seen,
             None => post.day + 7 > self.day && self.last_viewed_day.is_none_or(|day| post.day > day),
@@ -357,7 +357,7 @@ impl PaneScreen for Social {
             draw_pane(self, OwnPosts, canvas, own_posts_area, context);
             return self.draw_weekly_counts(canvas, weeks);
         }
-        // Panes stacked; if there are too few rows, only the focused one.
+        // The panes are drawn below each other. If there are too few rows, only the focused pane is drawn.
         let low = match self.focus {
             _ if area.height >= 14 => 7,
             Draft => area.height,

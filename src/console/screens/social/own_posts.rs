@@ -51,7 +51,7 @@ impl Pane<Social> for OwnPostsPane {
     fn handle_action(&self, social: &mut Social, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let action = match action {
             Action::Open => return social.open_post(social.selected_own_post().cloned(), context.company),
-            // Tab ends typing here.
+            // In this pane, tab and shift-tab accept the filter text.
             Action::CommitNext | Action::CommitPrevious => Action::Commit,
             other => other,
         };
@@ -76,7 +76,7 @@ impl Pane<Social> for OwnPostsPane {
     fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if social.own_posts.is_empty() {
             let key = context.keys.label(Action::Compose).unwrap_or_default();
-            canvas.draw_text(placement.area, &format!("None yet. Write one with {key}."), Role::Dim);
+            canvas.draw_text(placement.area, &format!("No posts yet. Write one with {key}."), Role::Dim);
             return;
         }
         social.table.draw(canvas, placement.area, placement.focused, placement.index);

@@ -24,7 +24,7 @@ fn type_draft(screen: &mut Social, company: &DisplayedCompany, text: &str) {
     }
 }
 
-/// Returns a company that posted after its third week, two weeks ago.
+/// Returns a run that published a post after its third week and has simulated two more weeks.
 fn run_with_posts() -> Session {
     let mut session = played_session(3);
     let text = "Freelancers: 20% more of your drafts are right at once, measured on 1,200 of them.";

@@ -1,6 +1,6 @@
-//! Statements derived from a statement: the frequency of each value of a column, and a pivot. They run in the
-//! database, so they cover all rows of the result and not only the loaded ones. They include the screen's
-//! filter and are recorded like any query.
+//! Statements that are derived from another statement: counts of the values of a column, and a pivot. Derived
+//! statements run in the database, so they cover all rows of the result, not only the loaded rows. Derived statements
+//! include the filter of the screen and are recorded like other queries.
 
 use super::row_filter::RowFilter;
 use super::picker::single_line;
@@ -9,14 +9,14 @@ use novamind_database::{Cell, QueryResult};
 use novamind_record::folder::query_library::strip_header;
 use novamind_tui::sql::{KEYWORDS, tokenize};
 
-/// Maximum number of value columns of a pivot; the other values share one column.
+/// Maximum number of value columns of a pivot. Less frequent values share one column.
 pub const MAX_PIVOT_COLUMNS: usize = 12;
 
-/// Error for statements that cannot be derived from.
+/// Error for a statement from which no other statement can be derived.
 pub const NOT_A_TABLE_ERROR: &str =
     "A query plan cannot be counted or pivoted. Run the statement without EXPLAIN first.";
 
-/// Aggregation of the rows in a cell of a pivot.
+/// Aggregate function that computes a cell of a pivot from rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
     Count,
@@ -27,7 +27,7 @@ pub enum Aggregate {
 }
 
 impl Aggregate {
-    /// Aggregations of a column.
+    /// Aggregate functions that apply to a column.
     pub const COLUMN_AGGREGATES: [Aggregate; 5] =
         [Aggregate::Sum, Aggregate::Mean, Aggregate::Min, Aggregate::Max, Aggregate::Count];
 
@@ -41,30 +41,30 @@ impl Aggregate {
         }
     }
 
-    /// Returns the SQL expression for a column, or for rows.
+    /// Returns the SQL expression that aggregates a column, or all rows if `column` is `None`.
     fn sql(self, column: Option<&str>) -> String {
         let function = if self == Aggregate::Mean { "avg" } else { self.label() };
         format!("{function}({})", column.unwrap_or("*"))
     }
 }
 
-/// Definition of a pivot; columns are indexes.
+/// Definition of a pivot. Columns are indexes in the result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PivotShape {
-    /// Column with a row for each value.
+    /// Column whose values become rows of the pivot.
     pub row_column: usize,
-    /// Column with a column for each value.
+    /// Column whose values become columns of the pivot.
     pub header_column: Option<usize>,
-    /// Column to aggregate; `None` counts rows.
+    /// Column to aggregate, or `None` to count rows.
     pub value_column: Option<usize>,
     pub aggregate: Aggregate,
 }
 
-/// A statement as the source of another one.
+/// A statement that is used as the source of a derived statement.
 struct Subquery {
-    /// WITH clause before the outer statement.
+    /// WITH clause to put before the derived statement.
     with: String,
-    /// FROM clause, with the clause for the covered rows.
+    /// Content of the FROM clause, followed by the WHERE clause of the row filter.
     from: String,
     names: Vec<String>,
 }
@@ -86,7 +86,8 @@ impl Subquery {
         }
         let names: Vec<String> = given.iter().map(|name| quote_identifier(name)).collect();
         let clause = meant.where_clause(&names);
-        // SQLite reads an unknown quoted name as text, so columns without a plain name are renamed.
+        // SQLite interprets an unknown quoted name as a string, so columns are renamed if their names are not plain or
+        // not unique.
         Some(match given == columns && names == given {
             true => Subquery { with: String::new(), from: format!("(\n{body}\n){clause}"), names },
             false => Subquery {
@@ -108,7 +109,7 @@ fn quote_identifier(name: &str) -> String {
     }
 }
 
-/// Returns a literal; `None` for values that SQL cannot compare.
+/// Returns the SQL literal of a value, or `None` if SQL cannot compare the value.
 fn sql_literal(cell: &Cell) -> Option<String> {
     match cell {
         Cell::Real(number) if !number.is_finite() => None,
@@ -117,7 +118,7 @@ fn sql_literal(cell: &Cell) -> Option<String> {
     }
 }
 
-/// Returns a statement that counts each value of a column in the result of another one, most frequent first.
+/// Returns a statement that counts the values of a column in the result of `sql`, the most frequent first.
 pub fn count_statement(sql: &str, columns: &[String], at: usize, meant: &RowFilter) -> Option<String> {
     let source = Subquery::from_statement(sql, columns, meant)?;
     let name = source.names.get(at)?;
@@ -131,7 +132,7 @@ pub fn count_statement(sql: &str, columns: &[String], at: usize, meant: &RowFilt
     ))
 }
 
-/// Returns a statement that pivots the covered rows of another one; `held` are its loaded rows.
+/// Returns a statement that pivots the rows of the result of `sql` that pass the row filter.
 pub fn pivot_statement(sql: &str, query_result: &QueryResult, shape: PivotShape, meant: &RowFilter) -> Option<String> {
     let source = Subquery::from_statement(sql, &query_result.columns, meant)?;
     let PivotShape { row_column: rows, header_column: across, value_column: values, aggregate } = shape;
@@ -172,7 +173,7 @@ pub fn pivot_statement(sql: &str, query_result: &QueryResult, shape: PivotShape,
     ))
 }
 
-/// Returns a title such as `sum of amount by category and day`.
+/// Returns the title of a pivot, for example `sum of amount by category and day`.
 fn pivot_title(query_result: &QueryResult, shape: PivotShape) -> String {
     let name = |at: usize| single_line(&query_result.columns[at]);
     let what = match shape.value_column {
@@ -183,9 +184,9 @@ fn pivot_title(query_result: &QueryResult, shape: PivotShape) -> String {
     format!("{what} by {}{across}", name(shape.row_column))
 }
 
-/// Values of a column of a pivot.
+/// The most frequent distinct values of a column.
 pub struct DistinctValues {
-    /// In ascending order, NULL last.
+    /// Values in ascending order, with NULL last.
     pub values: Vec<Cell>,
     /// Whether the column has no other values.
     pub complete: bool,
@@ -205,18 +206,18 @@ impl DistinctValues {
         }
         let all = counted.len();
         counted.retain(|(cell, _)| sql_literal(cell).is_some());
-        // The sort is stable: of equally frequent values the smaller ones come first.
+        // The sort is stable, so equally frequent values stay in ascending order.
         counted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         counted.truncate(MAX_PIVOT_COLUMNS);
         counted.sort_by(|(one, _), (other, _)| compare_cells(one, other));
-        // The printed form of a real number may not parse to the same number.
+        // A real number may differ from the number that its text represents.
         let exact = counted.iter().all(|(cell, _)| !matches!(cell, Cell::Real(_)));
         let complete = exact && !query_result.truncated && counted.len() == all;
         DistinctValues { values: counted.into_iter().map(|(cell, _)| cell).collect(), complete }
     }
 }
 
-/// Orders numbers before texts, and NULL last.
+/// Compares cells: numbers are before texts, and NULL is last.
 fn compare_cells(one: &Cell, other: &Cell) -> std::cmp::Ordering {
     let rank = |cell: &Cell| match cell {
         Cell::Integer(_) | Cell::Real(_) => 0,
@@ -245,7 +246,7 @@ mod tests {
         session.query(sql).unwrap_or_else(|refusal| panic!("{refusal}\n{sql}"))
     }
 
-    /// A statement with duplicate and unusual names, NULL and quotes.
+    /// A statement whose result has duplicate and unusual column names, NULL and quotes.
     const SQL: &str = "-- title: Odd\nWITH t AS (VALUES ('it''s', 1, 2.5), ('it''s', 2, NULL), (NULL, 1, 4.0), ('b', 1, 1.5))
         SELECT column1 AS \"group by\", column2 AS n, column3 AS n, count(*) OVER () FROM t -- the end";
 

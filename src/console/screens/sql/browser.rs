@@ -13,18 +13,18 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_tui::widgets::table::first_visible_row;
 
-/// Marks x-ray tables.
+/// Label of x-ray tables in the tree.
 const XRAY_LABEL: &str = "x-ray";
 
-/// Returns a table by index; x-ray tables follow the public ones.
+/// Returns the table with an index. The indexes of x-ray tables follow the indexes of public tables.
 fn table_at(at: usize) -> &'static Table {
     tables().get(at).unwrap_or_else(|| &hidden_tables()[at - tables().len()])
 }
 
-/// The tree with its selection.
+/// The tree of tables and columns, with its selection and filter.
 #[derive(Debug, Default)]
 pub struct TableBrowser {
-    /// Whether x-ray tables are shown below the others.
+    /// Whether x-ray tables are shown below the public tables.
     pub shows_hidden: bool,
     open: BTreeSet<usize>,
     selected: usize,
@@ -54,7 +54,7 @@ impl BrowserRow {
 }
 
 impl TableBrowser {
-    /// Returns the visible rows.
+    /// Returns the visible rows of the tree.
     fn visible_rows(&self) -> Vec<BrowserRow> {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
@@ -82,7 +82,7 @@ impl TableBrowser {
         Some(&row.table().name)
     }
 
-    /// Selects a visible row; returns whether it was already selected.
+    /// Selects a visible row. Returns whether the row was already selected.
     pub fn select(&mut self, row: usize) -> bool {
         let again = self.selected == row;
         self.selected = row.min(self.visible_rows().len().saturating_sub(1));
@@ -106,7 +106,7 @@ impl TableBrowser {
         }
     }
 
-    /// Returns the filter, for the border.
+    /// Returns the filter text to show in the border.
     pub fn filter_text(&self) -> String {
         if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) }
     }
@@ -126,7 +126,7 @@ impl TableBrowser {
         }
     }
 
-    /// Moves, expands, collapses and filters; returns false for other actions.
+    /// Handles actions that move, expand, collapse or filter. Returns false for other actions.
     pub fn handle_action(&mut self, action: Action, page: u16) -> bool {
         let last = self.visible_rows().len().saturating_sub(1);
         match action {
@@ -152,7 +152,7 @@ impl TableBrowser {
         true
     }
 
-    /// Draws the tree, and a description of the selected row below it.
+    /// Draws the tree, and a description of the selected row below the tree.
     pub fn draw(&self, canvas: &mut Canvas<'_>, placement: PanePlacement) {
         let (inside, focused) = (placement.area, placement.focused);
         if inside.is_empty() {

@@ -4,18 +4,18 @@ use novamind_database::catalogue::{Column, Table};
 use novamind_database::{table, tables};
 use novamind_tui::sql::{FUNCTIONS, KEYWORDS, TokenKind, Token, is_identifier_char, statement_at, tokenize};
 
-/// A suggestion.
+/// A suggestion for the word at the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidate {
-    /// Text to insert.
+    /// Text that the suggestion inserts.
     pub word: String,
     pub description: String,
 }
 
-/// Suggestions at the cursor, and the selected one.
+/// Suggestions for the word at the cursor, and the selected suggestion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Completion {
-    /// Suggestions, best first.
+    /// Suggestions, the best first.
     pub candidates: Vec<Candidate>,
     pub selected: usize,
     /// Number of typed characters of the word.
@@ -30,8 +30,8 @@ struct NamedTable {
     table: &'static Table,
 }
 
-/// Returns the suggestions at a byte offset. Returns `None` for a word shorter than `least`, unless it
-/// follows a point.
+/// Returns the suggestions at a byte offset. Returns `None` if the word is shorter than `least`, unless the word
+/// follows a period.
 pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let (range, ..) = statement_at(sql, place);
     let start = range.start.min(place);
@@ -80,14 +80,14 @@ fn table_candidate(table: &Table) -> Candidate {
     Candidate { word: table.name.clone(), description: "table".to_owned() }
 }
 
-/// Returns the columns of the table with a name or alias in the statement, or a name in the database.
+/// Returns the columns of the table that has a name or alias in the statement, or a name in the database.
 fn source_candidates(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
     let named_source = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
     let meant = named_source.or_else(|| table(name))?;
     Some(meant.columns.iter().map(|column| column_candidate(meant, column)).collect())
 }
 
-/// Returns the suggestions for a word without a point before it.
+/// Returns the suggestions for a word that does not follow a period.
 fn all_candidates(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
     let is_before_word = |token: &&Token| token.kind != TokenKind::Comment && token.range.end <= word_start;
     let last = pieces.iter().rev().find(is_before_word).map(|token| sql[token.range.clone()].to_uppercase());
@@ -122,8 +122,8 @@ fn uses_lowercase_keywords(sql: &str, pieces: &[Token]) -> bool {
     keywords.any(|token| sql[token.range.clone()].chars().all(char::is_lowercase))
 }
 
-/// Returns the suggestions that start with the word, then those with a later part that does (`source` finds
-/// `acquisition_source`).
+/// Returns the suggestions that start with the typed word, followed by suggestions with a later part that starts with
+/// the typed word. For example, `source` finds `acquisition_source`.
 fn filter_candidates(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     let wanted = word.to_lowercase();
     let begins = |candidate: &Candidate| candidate.word.to_lowercase().starts_with(&wanted);
@@ -151,7 +151,7 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
             true => at + 2,
             false => at + 1,
         };
-        // Without AS a second name could be a table after a forgotten comma.
+        // Without AS, a second name is interpreted as an alias.
         let name = if is_name(alias) { text(alias) } else { table.name.as_str() };
         found.push(NamedTable { name: name.to_owned(), table });
     }
@@ -173,7 +173,7 @@ fn cte_names(sql: &str, pieces: &[Token]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// Returns the suggestions at the `|`.
+    /// Returns the suggestions at the position of `|` in a statement.
     fn offered_words(marked: &str) -> Vec<String> {
         let place = marked.find('|').expect("a mark");
         let sql = marked.replace('|', "");

@@ -1,4 +1,4 @@
-//! SQL editor with highlighting, completion and error positions.
+//! The SQL editor with highlighting, completion and error positions.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
@@ -14,14 +14,14 @@ use novamind_tui::widgets::table::first_visible_row;
 
 /// Minimum length of a word for suggestions while typing.
 const MIN_TYPED_CHARS: usize = 2;
-/// Number of visible suggestions.
+/// Maximum number of visible suggestions.
 const MAX_VISIBLE_CANDIDATES: u16 = 8;
 
 /// A statement, and its position in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Statement {
     pub sql: String,
-    /// Byte offset in the editor.
+    /// Byte offset of the statement in the editor text.
     pub offset: usize,
 }
 
@@ -42,7 +42,7 @@ impl QueryEditor {
         self.text.text()
     }
 
-    /// Returns whether it contains only whitespace.
+    /// Returns whether the editor contains only whitespace.
     pub fn is_blank(&self) -> bool {
         self.text.is_blank()
     }
@@ -64,7 +64,7 @@ impl QueryEditor {
         above + before
     }
 
-    /// Returns the statement at the cursor; `None` if it is empty.
+    /// Returns the statement at the cursor, or `None` if the statement is empty.
     pub fn statement(&self) -> Option<Statement> {
         let text = self.text();
         let (range, ..) = statement_at(&text, self.cursor_offset());
@@ -80,7 +80,7 @@ impl QueryEditor {
         (number, count)
     }
 
-    /// Marks an error at a byte offset and moves the cursor there.
+    /// Marks an error at a byte offset and moves the cursor to this offset.
     pub fn mark_error(&mut self, place: usize) {
         let text = self.text();
         let place = (0..=place.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
@@ -92,7 +92,7 @@ impl QueryEditor {
         self.error_offset = Some(place);
     }
 
-    /// Moves the cursor to the start.
+    /// Moves the cursor to the start of the text.
     pub fn go_to_top(&mut self) {
         self.text.move_to(0, 0);
     }
@@ -114,7 +114,7 @@ impl QueryEditor {
         self.text.handle_key(key);
         let types = match key.code {
             KeyCode::Char(letter) => is_identifier_char(letter) || letter == '.',
-            // Deleting does not open suggestions.
+            // Deleting a character updates open suggestions but does not open them.
             KeyCode::Backspace => self.completion.is_some(),
             _ => false,
         };
@@ -133,7 +133,7 @@ impl QueryEditor {
         self.on_change();
     }
 
-    /// Inserts the selected suggestion, otherwise shows suggestions, otherwise indents.
+    /// Inserts the selected suggestion. If no suggestions are open, shows suggestions. If there are no suggestions, indents.
     pub fn accept_or_offer_completion(&mut self) {
         match self.completion.take().or_else(|| complete(&self.text(), self.cursor_offset(), 1)) {
             Some(completion) => {
@@ -149,12 +149,12 @@ impl QueryEditor {
         self.on_change();
     }
 
-    /// Hides the suggestions; returns whether there were any.
+    /// Hides the suggestions. Returns whether suggestions were shown.
     pub fn hide_completion(&mut self) -> bool {
         self.completion.take().is_some()
     }
 
-    /// Inserts a name at the cursor, separated from the text before it.
+    /// Inserts a name at the cursor, with a separator after the text before the cursor.
     pub fn insert_name(&mut self, name: &str, after_another: bool) {
         let text = self.text();
         let last = text[..self.cursor_offset()].chars().next_back();
@@ -167,7 +167,7 @@ impl QueryEditor {
         self.on_change();
     }
 
-    /// Draws the text with highlighting.
+    /// Draws the text with SQL highlighting.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, editing: bool, hint: &str) {
         self.text.draw(canvas, area, editing, hint);
         if self.is_blank() || area.is_empty() {
@@ -185,7 +185,7 @@ impl QueryEditor {
         }
     }
 
-    /// Restyles a range of text that the text area has drawn.
+    /// Changes the style of a range of text that is already drawn.
     fn style_range(
         &self,
         canvas: &mut Canvas<'_>,
@@ -218,7 +218,7 @@ impl QueryEditor {
         }
     }
 
-    /// Draws the suggestions next to the cursor, inside an area.
+    /// Draws the list of suggestions next to the cursor, within an area.
     pub fn draw_completion(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let (Some(completion), Some(cursor)) = (&self.completion, canvas.cursor) else { return };
         let area = area.intersection(canvas.buffer.area);

@@ -1,4 +1,4 @@
-//! Export of a result to a file or the clipboard.
+//! Export of a query result to a file or the clipboard.
 
 use ratatui::layout::Rect;
 
@@ -11,10 +11,10 @@ use novamind_database::QueryResult;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
 use novamind_tui::theme::Role;
 
-/// Maximum bytes for the clipboard; terminals silently drop longer texts.
+/// Maximum size of a clipboard text in bytes. Terminals silently drop longer texts.
 const MAX_CLIPBOARD_BYTES: usize = 64 << 10;
 
-/// Export formats in list order.
+/// Export actions in the order of the list.
 const EXPORT_ACTIONS: [Action; 5] =
     [Action::ExportCsv, Action::ExportJson, Action::ExportMarkdown, Action::CopyTabs, Action::CopyMarkdown];
 
@@ -24,7 +24,7 @@ pub struct ExportMenu {
 }
 
 impl ExportMenu {
-    /// Returns the format that an action stands for, or moves the selection.
+    /// Returns the export action that an action selects, or moves the selection.
     pub fn select_export(&mut self, action: Action) -> Option<Action> {
         match action {
             Action::Up => self.selected = self.selected.saturating_sub(1),
@@ -40,7 +40,7 @@ impl ExportMenu {
         EXPORT_ACTIONS[self.selected]
     }
 
-    /// Draws the list over the screen. `rows` describes the exported rows.
+    /// Draws the list of formats over the screen. `rows` describes the exported rows.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, rows: &str, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 62, EXPORT_ACTIONS.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
@@ -62,7 +62,7 @@ impl ExportMenu {
     }
 }
 
-/// Exports rows in a format.
+/// Returns the effects that export rows in a format.
 pub fn export_rows(way: Action, rows: &QueryResult) -> Vec<Effect> {
     match way {
         Action::ExportCsv => match values::to_csv(rows) {
@@ -91,7 +91,7 @@ fn copy_effects(text: String, rows: &QueryResult, how: &str) -> Vec<Effect> {
     vec![Effect::Copy(text), Effect::Say(notice)]
 }
 
-/// Returns `1 row`, `3,000 rows`.
+/// Formats a number of rows, for example `1 row` or `3,000 rows`.
 pub fn format_row_count(rows: usize) -> String {
     format!("{} {}", grouped_number(rows as f64, 0), if rows == 1 { "row" } else { "rows" })
 }

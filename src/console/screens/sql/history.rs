@@ -1,17 +1,17 @@
-//! History of executed statements and replaced editor texts, newest first.
+//! History of executed statements and of editor texts that were replaced.
 
 use super::picker::{PickerItem, Picker, single_line};
 use novamind_record::folder::query_library::{QueryHeader, strip_header};
 
 #[derive(Default)]
 pub struct StatementHistory {
-    /// Newest last.
+    /// Entries of this session, the newest last.
     entries: Vec<HistoryEntry>,
 }
 
 struct HistoryEntry {
     sql: String,
-    /// Whether it was replaced in the editor without being run.
+    /// Whether the text was replaced in the editor without being run.
     is_draft: bool,
 }
 
@@ -21,7 +21,7 @@ impl StatementHistory {
         self.push(sql, false);
     }
 
-    /// Adds a replaced text, unless it was run unchanged.
+    /// Adds a replaced editor text, unless the text was run unchanged.
     pub fn add_draft(&mut self, sql: &str) {
         let sql = sql.trim();
         if !sql.is_empty() && !self.entries.iter().any(|known| known.sql == sql && !known.is_draft) {
@@ -34,8 +34,8 @@ impl StatementHistory {
         self.entries.push(HistoryEntry { sql: sql.to_owned(), is_draft: draft });
     }
 
-    /// Returns a picker for the history; `earlier` are statements of previous sessions, newest last. Returns
-    /// `None` if both are empty.
+    /// Returns a picker for the history and for `earlier`, the statements of previous sessions, the newest last.
+    /// Returns `None` if there are no statements.
     pub fn picker(&self, earlier: &[String]) -> Option<Picker> {
         let mut items: Vec<PickerItem> = Vec::new();
         let entries = self.entries.iter().rev().map(|kept| (kept.sql.as_str(), kept.is_draft));
@@ -54,7 +54,7 @@ impl StatementHistory {
     }
 }
 
-/// Returns a statement in one line, with its title first.
+/// Formats a statement in one line that starts with its title.
 fn statement_title(sql: &str) -> String {
     match QueryHeader::parse(sql).title {
         Some(title) => format!("{title}: {}", single_line(strip_header(sql))),

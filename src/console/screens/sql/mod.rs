@@ -1,4 +1,4 @@
-//! SQL queries: tables at the left, the statement above its result.
+//! The SQL screen, with tables at the left and the statement above its result.
 
 mod browser;
 mod completion;
@@ -42,19 +42,19 @@ use novamind_worker::queries::{QueriedTables, Query};
 use overlays::SqlOverlay;
 use tabs::ResultTabs;
 
-/// Panes in tab order.
+/// Panes of the SQL screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum SqlPane {
-    /// The statement.
+    /// Editor of the statement.
     #[default]
     Editor,
-    /// Results.
+    /// Results of statements.
     Results,
-    /// Tables and columns.
+    /// Tree of tables and columns.
     Tables,
 }
 
-/// Below this width the tables are visible only while they have the focus.
+/// Minimum width for showing the tables even without the focus.
 const WIDE: u16 = 90;
 
 /// A running statement, and the editor text when it was started.
@@ -75,7 +75,7 @@ pub struct Sql {
     overlay: Option<SqlOverlay>,
     focus: SqlPane,
     running: Option<RunningStatement>,
-    /// Whether the last action inserted a column from the tables; another one then follows after a comma.
+    /// Whether the last action inserted a column from the tables. The next inserted column is then separated by a comma.
     has_inserted_column: bool,
     /// The last statement that was derived from a result.
     derived_sql: String,
@@ -107,7 +107,7 @@ impl Sql {
         self.library = library;
     }
 
-    /// Replaces the editor text; the old text is added to the history.
+    /// Replaces the editor text and adds the old text to the history.
     pub fn set_statement(&mut self, sql: &str) {
         if self.editor.text().trim() != sql.trim() {
             self.history.add_draft(&self.editor.text());
@@ -117,16 +117,16 @@ impl Sql {
         self.focus = SqlPane::Editor;
     }
 
-    /// Replaces the editor text and runs it.
+    /// Replaces the editor text with a statement and runs the statement.
     pub fn edit_and_run(&mut self, sql: &str) -> Vec<Effect> {
         self.set_statement(sql);
         self.editor.go_to_top();
-        // The user did not type, so the result takes the focus.
+        // The user did not type the statement, so the results get the focus.
         self.focus = SqlPane::Results;
         self.run_statement()
     }
 
-    /// Replaces the editor text with a derived statement and runs it.
+    /// Replaces the editor text with a derived statement and runs the statement.
     fn edit_and_run_derived(&mut self, sql: &str) -> Vec<Effect> {
         self.derived_sql = sql.trim().to_owned();
         self.edit_and_run(sql)
@@ -209,7 +209,7 @@ impl ScreenState for Sql {
         let answer = self.running.as_mut().and_then(|running| running.answer.try_take());
         let Some((_, answer)) = answer else { return Vec::new() };
         let Some(running) = self.running.take() else { return Vec::new() };
-        // An error position is valid only for the text that was run.
+        // The error position is valid only if the editor text has not changed since the statement was run.
         if let Err(refusal) = &answer
             && let Some(place) = results::error_offset(refusal)
             && self.editor.text() == running.text

@@ -1,4 +1,4 @@
-//! Overlays: history, named queries, save dialog, export, pivot.
+//! Overlays of the SQL screen: history, named queries, save dialog, export and pivot.
 
 use crossterm::event::KeyEvent;
 
@@ -34,7 +34,7 @@ impl SqlOverlay {
     }
 }
 
-/// List of statements with search.
+/// Overlay with a searchable list of statements.
 struct PickerPane;
 
 impl Pane<Sql> for PickerPane {
@@ -48,7 +48,7 @@ impl Pane<Sql> for PickerPane {
 
     fn handle_action(&self, sql: &mut Sql, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match (&mut sql.overlay, action) {
-            // The same key selects the next statement; the other key switches the list.
+            // The key that opened the list selects the next statement. The key of the other list switches the lists.
             (Some(SqlOverlay::History(picker)), Action::History) => picker.select_next(),
             (Some(SqlOverlay::Library(picker)), Action::Library) => picker.select_next(),
             (Some(SqlOverlay::History(_)), Action::Library) => sql.open_library(),

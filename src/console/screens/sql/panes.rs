@@ -30,7 +30,7 @@ impl Pane<Sql> for EditorPane {
     }
 
     fn handle_action(&self, sql: &mut Sql, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
-        // The wheel scrolls the editor.
+        // The mouse wheel scrolls the editor.
         let turn = |code| KeyEvent::new(code, KeyModifiers::NONE);
         match action {
             Action::Complete => sql.editor.accept_or_offer_completion(),
@@ -73,7 +73,7 @@ impl Pane<Sql> for EditorPane {
     }
 
     fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
-        let hint = if placement.focused { "type a statement" } else { "i or a click to edit" };
+        let hint = if placement.focused { "type a statement" } else { "i or click to edit" };
         sql.editor.draw(canvas, placement.area, placement.focused && sql.overlay.is_none(), hint);
     }
 }
@@ -188,7 +188,7 @@ impl Pane<Sql> for TablesPane {
 }
 
 impl Sql {
-    /// Runs actions on whole results: switch, pin, close, derive a query.
+    /// Handles actions on complete results: switch, pin, close, and derive a query.
     fn handle_result_action(&mut self, action: Action) -> Option<Vec<Effect>> {
         match action {
             Action::PreviousResult => self.results.select_adjacent(false),
@@ -214,7 +214,7 @@ impl Sql {
         Some(Vec::new())
     }
 
-    /// Counts the values of the focused column, or opens the setup of a pivot.
+    /// Runs a statement that counts the values of the focused column, or opens the pivot form.
     fn handle_aggregate_action(&mut self, action: Action) -> Vec<Effect> {
         let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
         let result_view = self.results.current();

@@ -14,12 +14,12 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_tui::widgets::table::first_visible_row;
 
-/// Below this width the preview is under the list instead of next to it.
+/// Minimum width for a preview next to the list. In narrower windows, the preview is below the list.
 const MIN_WIDTH_FOR_SIDE_PREVIEW: u16 = 110;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PickerItem {
-    /// Origin in a word; usually empty.
+    /// Origin of the statement as one word, which is usually empty.
     pub tag: &'static str,
     pub title: String,
     pub description: String,
@@ -33,31 +33,31 @@ pub struct Picker {
     /// Label of the enter key.
     enter_label: &'static str,
     items: Vec<PickerItem>,
-    /// Searchable text besides the title: explanation and statement in one line.
+    /// Searchable text of each item in addition to the title: explanation and statement in one line.
     search_texts: Vec<String>,
     field: TextField,
     matches: Vec<FuzzyMatch>,
     selected: usize,
 }
 
-/// Result of an action.
+/// Result of an action in the picker.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PickerResult {
-    /// The list stays open.
+    /// Nothing was chosen, and the list stays open.
     None,
-    /// The list closes without a choice.
+    /// Nothing was chosen, and the list closes.
     Closed,
-    /// The chosen statement.
+    /// The statement that the user chose.
     Statement(String),
 }
 
-/// Collapses whitespace to make one line.
+/// Replaces each run of whitespace by a space, so that the text is one line.
 pub fn single_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 impl Picker {
-    /// Creates a list; `enter` is the label of the enter key.
+    /// Returns a picker with a list of items. `enter` is the label of the enter key.
     pub fn new(title: &'static str, enter: &'static str, items: Vec<PickerItem>) -> Picker {
         let text = |item: &PickerItem| format!("{} {}", item.description, single_line(&item.preview));
         let texts = items.iter().map(text).collect();
@@ -78,7 +78,7 @@ impl Picker {
         self.selected = 0;
     }
 
-    /// Selects the next entry, cyclically.
+    /// Selects the next item, cyclically.
     pub fn select_next(&mut self) {
         self.selected = if self.selected + 1 < self.matches.len() { self.selected + 1 } else { 0 };
     }
@@ -105,7 +105,7 @@ impl Picker {
         PickerResult::None
     }
 
-    /// Handles a typed key; page keys move the selection.
+    /// Handles a key in the search field. Page keys move the selection.
     pub fn handle_key(&mut self, key: &KeyEvent, page: u16) {
         let (page, last) = (page.max(1) as usize, self.matches.len().saturating_sub(1));
         match key.code {
@@ -121,7 +121,7 @@ impl Picker {
         self.handle_action(Action::Commit)
     }
 
-    /// Draws the list over the screen.
+    /// Draws the picker over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).clamp(20, 150), area.height.saturating_sub(2).max(5));
@@ -187,7 +187,7 @@ impl Picker {
                 let Some(row) = rows.next() else { return };
                 canvas.draw_text(row, &line, Role::Strong);
             }
-            // A blank row if it fits.
+            // A blank row is added if it fits.
             if inside.height > 8 {
                 rows.next();
             }
@@ -198,7 +198,7 @@ impl Picker {
     }
 }
 
-/// Returns a highlighted statement, wrapped with indented continuation lines.
+/// Returns the lines of a highlighted statement. Continuation lines are indented.
 fn highlighted_lines(canvas: &Canvas<'_>, sql: &str, width: usize) -> Vec<Line<'static>> {
     const INDENT: &str = "        ";
     let mut lines = vec![Line::default()];

@@ -1,4 +1,4 @@
-//! Setup of a pivot: the focused column gives the rows, the rest has defaults.
+//! The form of a pivot. The focused column defines the rows, and all other options have defaults.
 
 use ratatui::layout::Rect;
 
@@ -11,36 +11,35 @@ use novamind_database::{Cell, QueryResult};
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
 use novamind_tui::theme::Role;
 
-/// Number of lines: the options, and the one that runs the pivot.
+/// Number of lines: three options, and the line that runs the pivot.
 const LINE_COUNT: usize = 4;
 const RUN_LINE: usize = LINE_COUNT - 1;
 
-/// A pivot being set up.
+/// The form in which the user defines a pivot.
 pub struct PivotForm {
     sql: String,
     filter: RowFilter,
-    /// Available rows of those that the pivot covers.
+    /// Loaded rows that pass the filter.
     rows: QueryResult,
     shape: PivotShape,
-    /// Columns that can be aggregated.
+    /// Indexes of the columns that can be aggregated.
     numeric: Vec<usize>,
     line: usize,
 }
 
-/// Result of an action.
+/// Result of an action in the pivot form.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PivotResult {
-    /// The setup stays open.
+    /// The form stays open.
     Pending,
-    /// The setup closes.
+    /// The form closes without running the pivot.
     Cancelled,
-    /// Runs this statement.
+    /// The form closes, and this statement runs.
     Run(String),
 }
 
 impl PivotForm {
-    /// Returns the setup of a pivot by a column of a result. Returns `None` if the statement cannot be
-    /// pivoted.
+    /// Returns the form for a pivot whose rows are the values of a column. Returns `None` if the statement cannot be pivoted.
     pub fn new(sql: &str, query_result: QueryResult, rows: usize, meant: RowFilter) -> Option<PivotForm> {
         let numeric: Vec<usize> =
             (0..query_result.columns.len()).filter(|at| *at != rows && is_numeric(&query_result, *at)).collect();
@@ -54,7 +53,7 @@ impl PivotForm {
             numeric.iter().copied().find(|at| Some(*at) != across && !is_identifier_column(&query_result.columns[*at]));
         let aggregate = if values.is_some() { Aggregate::Sum } else { Aggregate::Count };
         let shape = PivotShape { row_column: rows, header_column: across, value_column: values, aggregate };
-        // Do not open the setup if no statement can be derived.
+        // The form is not opened if no statement can be derived.
         pivot_statement(sql, &query_result, shape, &meant)?;
         Some(PivotForm { sql: sql.to_owned(), filter: meant, rows: query_result, shape, numeric, line: 0 })
     }
@@ -75,7 +74,7 @@ impl PivotForm {
         PivotResult::Pending
     }
 
-    /// Handles a click on a line; clicking the selected line changes it.
+    /// Handles a click on a line. A click on the selected line changes its option.
     pub fn handle_click(&mut self, line: usize) -> PivotResult {
         let again = self.line == line;
         self.line = line.min(RUN_LINE);
@@ -127,7 +126,7 @@ impl PivotForm {
         ]
     }
 
-    /// Draws the setup over the screen.
+    /// Draws the pivot form over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 56, LINE_COUNT as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
@@ -157,7 +156,7 @@ impl PivotForm {
     }
 }
 
-/// Returns whether the numbers of a column are identifiers, such as days, which are not summed.
+/// Returns whether the numbers of a column are identifiers or days, which are not summed.
 fn is_identifier_column(column: &str) -> bool {
     const NAMES: [&str; 6] = ["id", "day", "week", "month", "number", "mod30"];
     column.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NAMES.contains(&word))

@@ -1,4 +1,4 @@
-//! Charts of a result: choice of columns, lines or bars, and a summary above them.
+//! Charts of a query result: the choice of columns, lines or bars, and a summary above the chart.
 
 use ratatui::layout::Rect;
 
@@ -15,15 +15,15 @@ use novamind_tui::widgets::chart::zero_if_near;
 use novamind_tui::widgets::table::first_visible_row;
 use novamind_tui::widgets::{XAxis, Curve, YAxis, Table, AxisUnit, draw_chart};
 
-/// Maximum number of series; more are hard to distinguish.
+/// Maximum number of series. More series would be hard to distinguish.
 const MAX_SERIES: usize = 6;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ResultChart {
     kind: ChartKind,
-    /// Column of the x axis; `None` for the row index.
+    /// Column of the x axis, or `None` for the row index.
     x_column: Option<usize>,
-    /// Plotted columns, at least one.
+    /// Indexes of the plotted columns, at least one.
     y_columns: Vec<usize>,
 }
 
@@ -40,8 +40,8 @@ fn value(rows: &QueryResult, row: usize, column: usize) -> Option<f64> {
 }
 
 impl ResultChart {
-    /// Returns the chart that a statement specifies, otherwise a default. Returns `None` without a numeric
-    /// column.
+    /// Returns the chart that a statement specifies, otherwise a default chart. Returns `None` if the result has no
+    /// numeric column.
     pub fn for_rows(rows: &QueryResult, proposed: Option<&ChartSpec>) -> Option<ResultChart> {
         proposed
             .and_then(|line| ResultChart::from_chart_line(rows, line))
@@ -70,7 +70,7 @@ impl ResultChart {
         let next = free.iter().copied().find(|at| self.x_column.is_none_or(|x| *at > x));
         self.x_column = match next {
             Some(at) => Some(at),
-            // The row index follows the last column.
+            // After the last column, the row index is selected.
             None if self.x_column.is_some() => None,
             None => free.first().copied(),
         };
@@ -94,7 +94,7 @@ impl ResultChart {
         }
     }
 
-    /// Adds a series; returns false if there is no other column or no room.
+    /// Adds a series to the chart. Returns false if no numeric column is left or the maximum number of series is reached.
     pub fn add_series(&mut self, rows: &QueryResult) -> bool {
         let last = self.y_columns.last().copied().unwrap_or(0);
         let next = self.column_after(rows, last).filter(|next| !self.y_columns.contains(next) && self.y_columns.len() < MAX_SERIES);
@@ -102,7 +102,7 @@ impl ResultChart {
         next.is_some()
     }
 
-    /// Removes a series, but not the last one.
+    /// Removes the last series, unless it is the only series.
     pub fn remove_series(&mut self) {
         if self.y_columns.len() > 1 {
             self.y_columns.pop();
@@ -130,7 +130,7 @@ impl ResultChart {
         }
     }
 
-    /// Returns a title such as `█ leads · ▒ signed by channel`.
+    /// Returns the title of the chart, for example `█ leads · ▒ signed by channel`.
     pub fn title(&self, rows: &QueryResult) -> String {
         let names = self.y_columns.iter().enumerate();
         let names: Vec<String> =
@@ -139,7 +139,7 @@ impl ResultChart {
         format!("{} by {along}", names.join(" · "))
     }
 
-    /// Returns the label of a row: its x value as in the table.
+    /// Returns the label of a row: its x value as formatted in the table.
     fn row_name(&self, table: &Table, row: usize) -> String {
         match self.x_column {
             Some(at) => table.rows()[row].get(at).map_or(String::new(), |cell| cell.text.clone()),
@@ -147,7 +147,7 @@ impl ResultChart {
         }
     }
 
-    /// Returns the rows in drawing order: by x if it is numeric, otherwise as in the table.
+    /// Returns the rows in drawing order: sorted by x if x is numeric, otherwise in table order.
     fn row_order(&self, rows: &QueryResult, table: &Table) -> Vec<usize> {
         let mut order = table.visible_rows().to_vec();
         if self.kind == ChartKind::Line
@@ -169,7 +169,7 @@ impl ResultChart {
             return format!("{name}: no numbers");
         };
         let decimals = decimals_shown(rows, column);
-        // Large numbers have three digits to fit above the chart; the table has all digits.
+        // Large numbers are shortened to three digits so that they fit above the chart. The table shows all digits.
         let written = |value: f64| match value.abs() {
             large if large >= 100_000.0 => compact_number(value),
             _ => grouped_number(value, decimals),
@@ -201,7 +201,7 @@ impl ResultChart {
         )
     }
 
-    /// Draws the summary and the chart.
+    /// Draws the summary and the chart below the summary.
     pub fn draw(&self, canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &QueryResult, table: &Table) {
         let area = placement.area;
         // The chart needs a minimum of rows below the summary.
@@ -285,7 +285,7 @@ impl ResultChart {
     }
 }
 
-/// Returns whether the sum of a column with this name is meaningful; shares and prices are not summed.
+/// Returns whether the sum of a column with this name is meaningful. Shares and prices are not summed.
 fn is_additive(name: &str) -> bool {
     const NON_ADDITIVE_WORDS: [&str; 6] = ["percent", "share", "rate", "average", "price", "per"];
     !name.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| NON_ADDITIVE_WORDS.contains(&word))
@@ -296,7 +296,7 @@ fn is_dotted(series: usize) -> bool {
     series % 2 == 1
 }
 
-/// Formats a number on the x axis: days and weeks in full, large ones short.
+/// Formats a number on the x axis. Days and weeks are formatted in full, and large numbers are shortened.
 fn format_axis_number(value: f64) -> String {
     if value.abs() < 10_000.0 { format_number((value * 10.0).round() / 10.0) } else { compact_number(value) }
 }

@@ -1,4 +1,4 @@
-//! Result of a statement: rows to browse, copy and export, or the error.
+//! The result of a statement: rows that the user can browse, copy and export, or an error.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ use novamind_tui::widgets::Table;
 /// Answer to the last statement.
 #[derive(Debug, Default)]
 pub enum QueryAnswer {
-    /// No statement has been run.
+    /// No statement has been run yet.
     #[default]
     None,
     Rows(QueryResult, Duration),
@@ -33,16 +33,16 @@ pub enum QueryAnswer {
 pub struct ResultView {
     answer: QueryAnswer,
     table: Table,
-    /// Chart that the statement specifies.
+    /// Chart that the header of the statement specifies.
     chart_line: Option<ChartSpec>,
     /// The chart, while it replaces the rows.
     chart: Option<ResultChart>,
     bytes: usize,
 }
 
-/// Introduction, shown before the first query.
+/// Introduction that is shown before the first query.
 const INTRODUCTION: &str =
-    "Open the library of queries with ctrl-o, type one of these, or choose a table (shift-tab, then enter):
+    "Open the library of queries with ctrl-o, type one of these queries, or choose a table (shift-tab, then enter):
 
 SELECT category, round(sum(amount)) AS dollars FROM ledger GROUP BY category ORDER BY dollars
 
@@ -54,7 +54,7 @@ FROM ad_channel_leads GROUP BY 1, 2 ORDER BY leads DESC
 
 Statements can only read. Days count from 0; amounts are in dollars.";
 
-/// Returns the byte offset of an error, if the message contains it.
+/// Returns the byte offset of a SQL error, if the message contains an offset.
 pub fn error_offset(refusal: &Rejection) -> Option<usize> {
     let (_, place) = refusal.message.rsplit_once("(at character ")?;
     place.strip_suffix(')')?.parse::<usize>().ok()?.checked_sub(1)
@@ -105,19 +105,19 @@ impl ResultView {
         self.bytes
     }
 
-    /// Returns the rows and the selected column.
+    /// Returns the rows and the index of the selected column.
     pub fn focused_column(&self) -> Option<(&QueryResult, usize)> {
         let at = self.table.selected_column();
         self.rows().filter(|rows| at < rows.columns.len()).map(|rows| (rows, at))
     }
 
-    /// Returns the rows that counts and pivots cover.
+    /// Returns the filter for the rows that counts and pivots cover.
     pub fn row_filter(&self) -> RowFilter {
         let all = |rows| RowFilter::from_filter(self.table.filter_text(), rows, self.table.visible_rows());
         self.rows().map_or(RowFilter::All, all)
     }
 
-    /// Returns the available rows among them.
+    /// Returns the loaded rows that pass a row filter.
     pub fn filtered_rows(&self, meant: &RowFilter) -> QueryResult {
         let Some(all) = self.rows() else { return QueryResult::default() };
         match (meant, self.visible_rows()) {
@@ -131,14 +131,14 @@ impl ResultView {
         self.rows().is_some()
     }
 
-    /// Returns the rows as shown, filtered and sorted.
+    /// Returns the displayed rows, filtered and sorted.
     fn visible_rows(&self) -> Option<QueryResult> {
         let all = self.rows()?;
         let rows = self.table.visible_rows().iter().map(|row| all.rows[*row].clone()).collect();
         Some(QueryResult { columns: all.columns.clone(), rows, ..QueryResult::default() })
     }
 
-    /// Describes the exported rows: `12 of 300 rows, as filtered`.
+    /// Describes the rows to export, for example `12 of 300 rows, as filtered`.
     pub fn export_label(&self) -> String {
         let Some(rows) = self.rows() else { return String::new() };
         match (self.table.visible_rows().len(), rows.rows.len()) {
@@ -148,7 +148,7 @@ impl ResultView {
         }
     }
 
-    /// Exports the rows as shown.
+    /// Returns the effects that export the displayed rows.
     pub fn export(&self, way: Action) -> Vec<Effect> {
         self.visible_rows().map_or_else(Vec::new, |rows| export::export_rows(way, &rows))
     }
@@ -169,14 +169,14 @@ impl ResultView {
         }
     }
 
-    /// Runs an action in the chart; other actions go to the rows.
+    /// Handles an action of the chart. Other actions are handled by the rows.
     fn handle_chart_action(&mut self, action: Action, page: u16) -> Vec<Effect> {
         let (Some(plot), QueryAnswer::Rows(rows, _)) = (&mut self.chart, &self.answer) else { return Vec::new() };
         match action {
             Action::ChartX => plot.next_x(rows),
             Action::ChartY => plot.next_y(rows),
             Action::MoreSeries if !plot.add_series(rows) => {
-                return vec![Effect::Complain("No other numeric column, or no room for it".to_owned())];
+                return vec![Effect::Complain("No other numeric column, or too many series".to_owned())];
             }
             Action::MoreSeries | Action::Left | Action::Right => {}
             Action::FewerSeries => plot.remove_series(),
@@ -203,18 +203,18 @@ impl ResultView {
         }
     }
 
-    /// Returns all values of the selected row.
+    /// Returns all cells of the selected row.
     fn row(&self) -> Option<&[Cell]> {
         self.rows()?.rows.get(self.table.selected()?).map(Vec::as_slice)
     }
 
-    /// Returns the column and value of the selected cell.
+    /// Returns the column name and the value of the selected cell.
     fn selected_cell(&self) -> Option<(&str, &Cell)> {
         let at = self.table.selected_column();
         Some((self.rows()?.columns.get(at)?, self.row()?.get(at)?))
     }
 
-    /// Moves, sorts, filters, copies or switches to a chart.
+    /// Handles actions on the rows or the chart, such as moving, sorting, filtering and copying.
     pub fn handle_action(&mut self, action: Action, page: u16) -> Vec<Effect> {
         match action {
             _ if self.is_chart() => self.handle_chart_action(action, page),
@@ -246,7 +246,7 @@ impl ResultView {
         }
     }
 
-    /// Handles a click on a row; a second click opens its cell.
+    /// Handles a click on a row. A second click opens the selected cell.
     pub fn handle_click(&mut self, place: usize, page: u16) -> Vec<Effect> {
         let before = self.table.selected();
         self.table.select_visible_row(place);
@@ -254,7 +254,7 @@ impl ResultView {
         if again { self.handle_action(Action::ShowCell, page) } else { Vec::new() }
     }
 
-    /// Returns the title and note: description of the result, its filter and order.
+    /// Returns the title and the note of the pane: a description of the result, its filter and its order.
     pub fn heading(&self) -> (String, String) {
         match &self.answer {
             QueryAnswer::None => ("Result".to_owned(), "no query yet".to_owned()),
@@ -266,7 +266,7 @@ impl ResultView {
         }
     }
 
-    /// Draws the time of a running statement.
+    /// Draws the elapsed time of a running statement.
     pub fn draw_running(&self, canvas: &mut Canvas<'_>, area: Rect, since: Duration) {
         let seconds = match since.as_secs() {
             0 => String::new(),
@@ -316,7 +316,7 @@ impl ResultView {
         }
     }
 
-    /// Returns the actions for the footer.
+    /// Returns the actions to show in the footer.
     pub fn hints(&self) -> Vec<Action> {
         match (self.is_chart(), self.rows()) {
             (true, _) => vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery],
@@ -325,7 +325,7 @@ impl ResultView {
         }
     }
 
-    /// Returns the actions for the current answer.
+    /// Returns the actions that the current answer supports.
     pub fn actions(&self) -> &'static [Action] {
         match (self.is_chart(), &self.answer) {
             (true, _) => &[
@@ -353,7 +353,7 @@ impl ResultView {
     }
 }
 
-/// Draws the introduction, and the library if it fits.
+/// Draws the introduction, and the query library if it fits.
 fn draw_empty_state(canvas: &mut Canvas<'_>, area: Rect, library: &QueryLibrary) {
     let used = (draw_wrapped_text(canvas, area, "", INTRODUCTION, Role::Text) + 1).min(area.height);
     let below = Rect { y: area.y + used, height: area.height - used, ..area };
@@ -365,7 +365,7 @@ fn draw_empty_state(canvas: &mut Canvas<'_>, area: Rect, library: &QueryLibrary)
     }
 }
 
-/// Returns the outcome of a statement without rows.
+/// Returns a title for a statement that was rejected or stopped.
 fn rejection_title(code: &str) -> &'static str {
     match code {
         "sql_timeout" => "stopped at a limit",
@@ -385,14 +385,14 @@ fn result_title(rows: &QueryResult, took: Duration) -> String {
     format!("Result · {of}{} · {time}", export::format_row_count(rows.rows.len()))
 }
 
-/// Returns the bytes of rows and of their cells, which contain only the start of long texts.
+/// Estimates the memory of rows and of their table cells. The table cells contain only the start of long texts.
 fn estimate_bytes(rows: &QueryResult) -> usize {
     const BYTES_PER_CELL: usize = 128;
     let text = |cell: &Cell| if let Cell::Text(text) = cell { text.len() + text.len().min(400) } else { 0 };
     rows.rows.iter().flatten().map(|cell| BYTES_PER_CELL + text(cell)).sum()
 }
 
-/// Returns a value for a separate window, with formatted JSON.
+/// Formats a value for a separate window, with line breaks and indentation in JSON.
 fn format_cell(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
@@ -405,7 +405,7 @@ fn format_cell(cell: &Cell) -> String {
     }
 }
 
-/// Draws wrapped text below a heading; returns the number of rows.
+/// Draws wrapped text below a heading and returns the number of rows.
 fn draw_wrapped_text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role) -> u16 {
     let mut rows = row_rects(area);
     let mut used = 0;

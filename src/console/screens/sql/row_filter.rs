@@ -1,25 +1,25 @@
-//! The rows of a result that a count or pivot covers: all rows, or those that pass the screen's filter if SQL
-//! can select the same rows.
+//! The rows of a result that a count or pivot covers. Counts and pivots cover the rows that pass the filter of the
+//! screen if SQL can select the same rows, otherwise all rows.
 
 use super::picker::single_line;
 use novamind_database::{Cell, QueryResult};
 
-/// Rows of a result.
+/// A selection of rows of a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RowFilter {
     All,
-    /// Rows with a text in at least one of some columns.
+    /// Rows that contain a text in at least one of the given columns.
     Containing {
-        /// The text in lower case.
+        /// The searched text in lower case.
         text: String,
         columns: Vec<usize>,
     },
-    /// All rows, despite a filter: the filter matches formatted numbers, which SQL cannot reproduce.
+    /// All rows, although a filter is set. The filter matches formatted numbers, which SQL cannot reproduce.
     AllDespiteFilter(String),
 }
 
 impl RowFilter {
-    /// Returns the rows that a filter selects; `shown` are the indexes of the rows that it shows.
+    /// Returns the row filter for a filter text. `shown` contains the indexes of the rows that the screen shows.
     pub fn from_filter(filter: &str, query_result: &QueryResult, shown: &[usize]) -> RowFilter {
         if filter.is_empty() {
             return RowFilter::All;
@@ -34,7 +34,7 @@ impl RowFilter {
         };
         let mut expected = shown.to_vec();
         expected.sort_unstable();
-        // Rows beyond the limit are unknown, and a text without letters could match any of their numbers.
+        // Rows beyond the row limit are unknown. A filter without letters could match numbers in these rows.
         let is_certain = !query_result.truncated || text.chars().any(char::is_alphabetic);
         if !is_certain || chosen(&all) != expected {
             return RowFilter::AllDespiteFilter(filter.to_owned());
@@ -43,7 +43,8 @@ impl RowFilter {
         RowFilter::Containing { text, columns: one.map_or(all, |at| vec![at]) }
     }
 
-    /// Returns the SQL clause with a leading line break; `names` are the column names in SQL.
+    /// Returns the WHERE clause with a leading line break, or an empty text for all rows. `names` contains the column
+    /// names in SQL.
     pub fn where_clause(&self, names: &[String]) -> String {
         let RowFilter::Containing { text, columns } = self else { return String::new() };
         let text = text.replace('\'', "''");
@@ -51,7 +52,7 @@ impl RowFilter {
         format!("\nWHERE {}", columns.iter().filter_map(holds).collect::<Vec<_>>().join("\n    OR "))
     }
 
-    /// Returns the suffix for titles; empty if there is no filter.
+    /// Returns a suffix for titles, which is empty if there is no filter.
     pub fn label(&self) -> String {
         match self {
             RowFilter::All => String::new(),
@@ -63,16 +64,16 @@ impl RowFilter {
     /// Returns a warning if the filter is ignored.
     pub fn warning(&self) -> Option<String> {
         let RowFilter::AllDespiteFilter(filter) = self else { return None };
-        Some(format!("all rows, without the filter \"{filter}\": SQL cannot select the rows that it shows"))
+        Some(format!("all rows, without the filter \"{filter}\": SQL cannot select the filtered rows"))
     }
 }
 
-/// Returns whether SQL sees the values of a column as displayed; decimals are rounded on the screen.
+/// Returns whether SQL compares the values of a column as they are displayed. Decimals are rounded on the screen.
 fn is_exact_in_sql(query_result: &QueryResult, at: usize) -> bool {
     query_result.rows.iter().all(|row| !matches!(row.get(at), Some(Cell::Real(_))))
 }
 
-/// Equivalent to `instr(lower(cell), text) > 0`; SQLite's `lower` changes ASCII letters only.
+/// Evaluates `instr(lower(cell), text) > 0` as SQLite does. SQLite's `lower` changes only ASCII letters.
 fn cell_contains(cell: &Cell, text: &str) -> bool {
     match cell {
         Cell::Text(cell_text) => cell_text.to_ascii_lowercase().contains(text),
@@ -89,7 +90,7 @@ mod tests {
     use crate::test_kit::new_session;
     use novamind_tui::widgets::Table;
 
-    /// Returns the rows that a filter selects, and the number of shown rows.
+    /// Returns the row filter for a filter text, and the number of displayed rows.
     fn filter_and_row_count(query_result: &QueryResult, filter: &str) -> (RowFilter, usize) {
         let mut table = Table::new(values::columns(query_result));
         table.set_rows(values::cells(query_result));

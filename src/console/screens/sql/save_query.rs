@@ -1,4 +1,4 @@
-//! Dialog that saves a statement under a name.
+//! The dialog that saves a statement as a named query.
 
 use ratatui::layout::Rect;
 
@@ -14,18 +14,18 @@ use novamind_tui::widgets::TextField;
 pub struct SaveQueryForm {
     pub field: TextField,
     sql: String,
-    /// The existing name that the user was warned about.
+    /// The existing name for which a warning is shown.
     confirmed_name: Option<String>,
 }
 
 enum NameStatus {
-    /// Not a valid name.
+    /// The text is not a valid name.
     Invalid,
-    /// Unused.
+    /// A name that no query uses yet.
     Free(String),
-    /// A query of the user.
+    /// The name of a query that the user saved.
     OwnQuery(String),
-    /// A bundled query.
+    /// The name of a bundled query.
     BundledQuery(String),
 }
 
@@ -45,7 +45,7 @@ impl SaveQueryForm {
         }
     }
 
-    /// Saves the statement; returns `None` if the user must confirm or change the name.
+    /// Returns the effect that saves the statement, or `None` if the user must confirm or change the name.
     pub fn submit(&mut self, library: &QueryLibrary) -> Option<Effect> {
         let name = match self.name_status(library) {
             NameStatus::Invalid => return None,

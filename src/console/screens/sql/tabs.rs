@@ -1,5 +1,5 @@
-//! Tabs of recent results. Each statement has its own tab, running it again updates the tab, and pinned tabs
-//! stay.
+//! Tabs of recent results. Each statement has a separate tab, which is updated when the statement runs again. Pinned
+//! tabs are not closed.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -15,15 +15,15 @@ use novamind_tui::theme::Role;
 use std::time::Duration;
 
 const MAX_TABS: usize = 9;
-/// Maximum number of pinned tabs; one is left for the next statement.
+/// Maximum number of pinned tabs. One tab is reserved for the next statement.
 const MAX_PINNED_TABS: usize = MAX_TABS - 1;
-/// Total bytes of all tabs; beyond that the oldest are closed.
+/// Maximum size of all tabs in bytes. The oldest tabs are closed if the size is exceeded.
 const MAX_TOTAL_BYTES: usize = 128 << 20;
-/// Maximum characters of a title.
+/// Maximum length of a tab title in characters.
 const MAX_TITLE_CHARS: usize = 18;
-/// Indexes of clicks on tabs follow those of all rows.
+/// Row index of a click on the first tab, which is larger than the index of any row.
 const FIRST_TAB_CLICK: usize = usize::MAX - MAX_TABS;
-/// Below this height only the border identifies the tab.
+/// Minimum height for a row with the titles of the tabs.
 const MIN_HEIGHT_FOR_TABS: u16 = 6;
 
 struct ResultTab {
@@ -33,12 +33,12 @@ struct ResultTab {
     results: ResultView,
 }
 
-/// The tabs, newest last.
+/// The tabs of results, the newest last.
 #[derive(Default)]
 pub struct ResultTabs {
     tabs: Vec<ResultTab>,
     current_index: usize,
-    /// Shown before the first statement.
+    /// View that is shown before the first statement.
     placeholder: ResultView,
 }
 
@@ -54,12 +54,13 @@ impl ResultTabs {
         }
     }
 
-    /// Returns the statement of the shown result.
+    /// Returns the statement of the displayed result.
     pub fn statement(&self) -> Option<&str> {
         self.tabs.get(self.current_index).map(|tab| tab.sql.as_str())
     }
 
-    /// Stores the answer to a statement and shows it. After an error the statement keeps its previous rows.
+    /// Stores the answer to a statement and shows the answer. If the answer is an error, the tab with earlier rows of
+    /// the statement is kept.
     pub fn add_answer(&mut self, sql: &str, answer: Result<QueryResult, Rejection>, took: Duration) {
         let renewed = |tab: &ResultTab| !tab.pinned && answer.is_ok() && tab.sql == sql;
         let known = self.tabs.iter().position(renewed);
@@ -73,7 +74,7 @@ impl ResultTabs {
         (tab.sql, tab.title) = (sql.to_owned(), tab_title(sql));
         tab.results.set_answer(sql, answer, took);
         self.current_index = at;
-        // Failed statements are dropped once another result is shown.
+        // The tab of a failed statement is removed when another result is shown.
         if let Some(other) = refused.filter(|other| *other != at) {
             self.remove(other);
         }
@@ -105,7 +106,7 @@ impl ResultTabs {
         self.current_index = (self.current_index + if on { 1 } else { count - 1 }) % count;
     }
 
-    /// Closes the shown tab; returns whether there was one.
+    /// Closes the displayed tab. Returns whether there was a tab.
     pub fn close(&mut self) -> bool {
         let is_there = self.current_index < self.tabs.len();
         if is_there {
@@ -114,10 +115,10 @@ impl ResultTabs {
         is_there
     }
 
-    /// Pins or unpins the shown tab; returns whether it is pinned.
+    /// Pins or unpins the displayed tab. Returns whether the tab is now pinned.
     ///
     /// # Errors
-    /// The reason why it cannot be pinned.
+    /// The reason why the tab cannot be pinned.
     pub fn toggle_pin(&mut self) -> Result<bool, String> {
         let pinned = self.tabs.iter().filter(|tab| tab.pinned);
         let (count, bytes) =
@@ -135,12 +136,12 @@ impl ResultTabs {
         Ok(tab.pinned)
     }
 
-    /// Returns ` 2/3` if there are several tabs.
+    /// Returns the position of the displayed tab, for example ` 2/3`, if there are several tabs.
     pub fn position_label(&self) -> String {
         if self.tabs.len() > 1 { format!(" {}/{}", self.current_index + 1, self.tabs.len()) } else { String::new() }
     }
 
-    /// Shows the clicked tab; returns false for clicks on rows.
+    /// Shows the clicked tab. Returns false for clicks on rows.
     pub fn handle_click(&mut self, place: usize) -> bool {
         let tab = place.checked_sub(FIRST_TAB_CLICK).filter(|at| *at < self.tabs.len());
         if let Some(at) = tab {
@@ -149,7 +150,7 @@ impl ResultTabs {
         tab.is_some()
     }
 
-    /// Draws the titles if they fit; returns the area for the result.
+    /// Draws the titles of the tabs if they fit. Returns the area for the result.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) -> Rect {
         if self.tabs.len() < 2 || area.height < MIN_HEIGHT_FOR_TABS {
             return area;
@@ -159,7 +160,7 @@ impl ResultTabs {
         };
         let labels: Vec<String> = self.tabs.iter().enumerate().map(label).collect();
         let width = |from: usize| labels[from..=self.current_index].iter().map(|label| label.width() + 1).sum::<usize>();
-        // Keep the shown tab visible.
+        // The title of the displayed tab must be visible.
         let first = (0..self.current_index).find(|from| width(*from) <= area.width as usize).unwrap_or(self.current_index);
         let mut x = area.x;
         for (at, label) in labels.iter().enumerate().skip(first) {

@@ -1,4 +1,4 @@
-//! Tests of the whole screen: typing, answers, drawing.
+//! Tests of the complete SQL screen: typing, answers and drawing.
 
 use std::time::Duration;
 
@@ -38,7 +38,7 @@ fn receive_answer(screen: &mut Sql, company: &DisplayedCompany, answer: Result<Q
     with_context(company, |context| screen.take_answers(context));
 }
 
-/// Returns the SQL of the only effect.
+/// Returns the statement of the only effect.
 fn sql(effects: &[Effect]) -> &str {
     &asked::<Query>(effects).sql
 }
@@ -432,7 +432,7 @@ fn count_and_pivot_use_the_filtered_rows() {
     assert!(contains(&screen_rows(&screen, &company, 60, 12), &format!("rows with \"{word}\"")));
     let asked = handle_action(&mut screen, &company, Action::Open);
     assert!(sql(&asked).contains(&clause), "{asked:?}");
-    // In SQL no row has the text "null".
+    // In SQL, a NULL does not match the text "null".
     let mut rows = three_rows();
     rows.rows[1][0] = Cell::Null;
     let mut screen = screen_with_result(&company, "SELECT * FROM ad_channel_leads", rows);

@@ -1,4 +1,4 @@
-//! Formats of result values: rounded on the screen, in full for copying and export.
+//! Formats of values in query results: rounded on the screen, in full for copying and export.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use novamind_session::rows_to_json;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn};
 
-/// Maximum column width on the screen; longer values can be opened.
+/// Maximum column width on the screen. The user can open longer values.
 const MAX_COLUMN_WIDTH: u16 = 48;
 
 /// Returns whether a column contains only numbers.
@@ -18,12 +18,12 @@ pub fn is_numeric(rows: &QueryResult, at: usize) -> bool {
     values.next().is_some_and(is_number) && values.all(is_number)
 }
 
-/// Returns the number of decimals shown in a column.
+/// Returns the number of decimals that a column shows.
 pub fn decimals_shown(rows: &QueryResult, at: usize) -> usize {
     NumberFormat::for_column(rows, at).decimals
 }
 
-/// Returns the columns of a result for the screen.
+/// Returns the table columns for a result.
 pub fn columns(rows: &QueryResult) -> Vec<TableColumn> {
     let column = |(at, name): (usize, &String)| {
         if is_numeric(rows, at) { TableColumn::numeric(name.as_str()) } else { TableColumn::text(name.as_str()) }
@@ -31,14 +31,14 @@ pub fn columns(rows: &QueryResult) -> Vec<TableColumn> {
     rows.columns.iter().enumerate().map(column).map(|column| column.with_max_width(MAX_COLUMN_WIDTH)).collect()
 }
 
-/// Returns the cells of a result for the screen.
+/// Returns the table cells for a result.
 pub fn cells(rows: &QueryResult) -> Vec<Vec<TableCell>> {
     let styles: Vec<NumberFormat> = (0..rows.columns.len()).map(|at| NumberFormat::for_column(rows, at)).collect();
     let row = |row: &Vec<Cell>| row.iter().zip(&styles).map(|(cell, style)| style.display_cell(cell)).collect();
     rows.rows.iter().map(row).collect()
 }
 
-/// Number format of a column, the same for all rows.
+/// Number format of a column, which is the same for all rows.
 struct NumberFormat {
     decimals: usize,
     groups_digits: bool,
@@ -60,7 +60,7 @@ impl NumberFormat {
             _ if largest >= 1.0 => 4,
             _ => 6,
         };
-        // Identifiers and days have no thousands separators.
+        // Identifiers and days are shown without thousands separators.
         let name = rows.columns.get(at).map_or(String::new(), |name| name.to_lowercase());
         let names = ["id", "day", "week", "year", "seed"];
         let groups = !names
@@ -91,12 +91,12 @@ impl NumberFormat {
     }
 }
 
-/// Returns the number of decimals of the shortest exact form.
+/// Returns the number of decimals in the shortest exact notation of a number.
 fn decimals_of(number: f64) -> usize {
     number.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len())
 }
 
-/// Returns a whole number with separators; converting to float would lose digits.
+/// Formats a whole number with thousands separators. A conversion to a float would lose digits.
 fn grouped_integer(number: i64) -> String {
     let digits = number.unsigned_abs().to_string();
     let mut text = String::from(if number < 0 { "-" } else { "" });
@@ -109,12 +109,12 @@ fn grouped_integer(number: i64) -> String {
     text
 }
 
-/// Returns the start of a text in one line.
+/// Formats the start of a text in one line.
 fn single_line(text: &str) -> String {
     text.chars().take(400).map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
-/// Returns a value in full for copying and export; NULL is empty.
+/// Formats a value in full for copying and export. NULL becomes an empty text.
 pub fn full_text(cell: &Cell) -> String {
     match cell {
         Cell::Null => String::new(),
@@ -124,13 +124,13 @@ pub fn full_text(cell: &Cell) -> String {
     }
 }
 
-/// Returns a row with tab separators, as spreadsheets accept it.
+/// Formats a row as tab-separated values for a spreadsheet.
 pub fn tab_separated_row(row: &[Cell]) -> String {
     let clean = |cell: &Cell| escape_for_spreadsheet(cell).replace(['\t', '\n', '\r'], " ");
     row.iter().map(clean).collect::<Vec<_>>().join("\t")
 }
 
-/// Returns a result with headings and tab separators.
+/// Formats a result as tab-separated values with column headings.
 pub fn to_tab_separated(rows: &QueryResult) -> String {
     let mut text = rows.columns.join("\t") + "\n";
     for row in &rows.rows {
@@ -139,7 +139,7 @@ pub fn to_tab_separated(rows: &QueryResult) -> String {
     text
 }
 
-/// Returns a result as a Markdown table; numbers are right-aligned.
+/// Formats a result as a Markdown table with right-aligned numbers.
 pub fn to_markdown(rows: &QueryResult) -> String {
     let clean = |text: &str| {
         escape_control_characters(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ")
@@ -154,10 +154,10 @@ pub fn to_markdown(rows: &QueryResult) -> String {
     text
 }
 
-/// Returns a result as CSV with headings.
+/// Formats a result as CSV with column headings.
 ///
 /// # Errors
-/// Never for a buffer in memory; the writer's type requires the result.
+/// Writing to memory does not fail. The CSV writer requires the error type.
 pub fn to_csv(rows: &QueryResult) -> Result<Vec<u8>, String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&rows.columns).map_err(|error| error.to_string())?;
@@ -167,7 +167,7 @@ pub fn to_csv(rows: &QueryResult) -> Result<Vec<u8>, String> {
     writer.into_inner().map_err(|error| error.to_string())
 }
 
-/// Returns a complete value, safe for spreadsheet programs.
+/// Formats a value in full, so that spreadsheet programs do not interpret it as a formula.
 fn escape_for_spreadsheet(cell: &Cell) -> String {
     match cell {
         Cell::Text(text) => escape_csv_cell(text).into_owned(),
@@ -175,7 +175,7 @@ fn escape_for_spreadsheet(cell: &Cell) -> String {
     }
 }
 
-/// Returns a result as a JSON list with one object per row.
+/// Formats a result as a JSON list with one object per row.
 pub fn to_json(rows: &QueryResult) -> Vec<u8> {
     let list = rows_to_json(rows).remove("rows").unwrap_or(Value::Array(Vec::new()));
     let mut text = serde_json::to_vec_pretty(&list).unwrap_or_default();

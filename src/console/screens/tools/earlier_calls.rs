@@ -10,7 +10,7 @@ use novamind_worker::company::DisplayedCompany;
 
 pub const MAX_EARLIER_CALLS: usize = 10;
 
-/// Calls of a tool, newest first: decision day and arguments, without consecutive duplicates.
+/// Returns the calls of a tool, the newest first, as decision day and arguments. Consecutive duplicates are omitted.
 pub fn earlier_calls(tool: ToolId, company: &DisplayedCompany, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {
         JournalEntry::Call { day, tool: tool_id, args, .. } if *tool_id == tool => Some((*day, args)),

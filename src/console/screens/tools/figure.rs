@@ -1,4 +1,4 @@
-//! The figure selected on the Tools screen: a tool, or a value of its form with a query for the history of that value.
+//! The figure that is selected on the Tools screen: a tool, or a value of its form with a query for the history of that value.
 
 use std::sync::LazyLock;
 
@@ -6,7 +6,7 @@ use super::form::ToolForm;
 use crate::context::Figure;
 use novamind_tools::{ArgumentKind, CATALOGUE, MapKey, ToolSpec, ToolId};
 
-/// Names of all arguments with their tools: `set_prices.A`.
+/// Names of all arguments, prefixed with their tools, for example `set_prices.A`.
 static ARGUMENT_TERMS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let of =
         |spec: &'static ToolSpec| spec.arguments.iter().map(move |argument| format!("{}.{}", spec.name(), argument.name));
@@ -36,7 +36,7 @@ pub(super) fn cell_figure(form: &ToolForm) -> Option<Figure> {
     })
 }
 
-/// Returns the query for the value over time, or for its effect.
+/// Returns the query for the history of the focused value, or for its effect.
 fn value_history(form: &ToolForm) -> Option<String> {
     let block = form.sheet.blocks.get(form.focus.block)?;
     let name = block.argument.name;

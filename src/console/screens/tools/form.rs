@@ -1,4 +1,4 @@
-//! A form: position in the sheet, typed input, check of the call, and the last answer.
+//! The form of a tool: the focused cell, typed input, the check of the call, and the last answer.
 
 use std::collections::BTreeMap;
 
@@ -28,28 +28,28 @@ pub struct ToolForm {
     is_available: bool,
     pub sheet: ToolSheet,
     pub focus: CellPosition,
-    /// While the user types into the cell: its previous draft.
+    /// The previous draft of the focused cell, while the user types into the cell.
     pub draft_before_edit: Option<Option<TextField>>,
-    /// The code editor; the draft of the cell follows its text.
+    /// The code editor, whose text is copied to the draft of the cell.
     code_editor: Option<Box<TextEditor>>,
-    /// The cell that enter has just left. Copying down then uses the typed value.
+    /// The cell whose value the user has just accepted with enter. Copying down then uses that value.
     committed_cell: Option<CellPosition>,
-    /// The customer number being typed to add a row to a block.
+    /// The block to which the user adds a row, and the field for the customer number.
     pub new_customer: Option<(usize, TextField)>,
     /// Drafts that the last reset discarded, by path. A second reset restores them.
     discarded_drafts: BTreeMap<String, String>,
     /// The check of the call, if it has arrived.
     pub preview: Option<Result<Preview, Rejection>>,
     checking: Pending<CallCheck>,
-    /// The last sent arguments of a tool that keeps its form.
+    /// The arguments that were sent last, for a tool whose form keeps its values.
     sent_arguments: Option<Value>,
     pub answer: Option<Result<Value, Rejection>>,
-    /// Earlier calls of the tool: decision day and arguments, newest first.
+    /// Earlier calls of the tool, the newest first, as decision day and arguments.
     pub earlier_calls: Vec<(u32, String)>,
 }
 
 impl ToolForm {
-    /// Returns the form with the current values.
+    /// Returns the form of a tool with the current values.
     pub fn new(spec: &'static ToolSpec, company: &DisplayedCompany) -> ToolForm {
         ToolForm {
             spec,
@@ -69,8 +69,8 @@ impl ToolForm {
         }
     }
 
-    /// Returns whether it has unsent values that can be sent. Reading tools have none, and lessons lock some
-    /// tools.
+    /// Returns whether the form has unsent values that can be sent. Read-only tools have no drafts, and lessons lock
+    /// some tools.
     pub fn has_draft(&self) -> bool {
         let is_sent = || self.sent_arguments.is_some() && self.sheet.arguments().ok() == self.sent_arguments;
         let can_be_sent = self.spec.kind.changes_company() || (self.spec.id.executes_code() && !is_sent());
@@ -106,7 +106,7 @@ impl ToolForm {
         self.clamp_focus();
     }
 
-    /// Discards the drafts. Repeated before other input, it restores them.
+    /// Discards the drafts of the form. If no drafts exist, restores the drafts that were discarded last.
     fn toggle_drafts(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         if self.sheet.is_changed() {
             let typed = self.sheet.drafts();
@@ -132,7 +132,7 @@ impl ToolForm {
         }
     }
 
-    /// Returns the equivalent call in a program.
+    /// Returns the tool call that the form would send, as text.
     pub fn call_text(&self) -> String {
         let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| format_json(&arguments));
         format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name())
@@ -154,7 +154,7 @@ impl ToolForm {
         self.preview = None;
         self.checking.cancel();
         if self.spec.id.executes_code() {
-            // The answer belonged to the previous code.
+            // The answer is removed, because it belongs to the previous code.
             self.answer = None;
         }
         let quiet = match self.spec.kind {
@@ -176,7 +176,7 @@ impl ToolForm {
         }
     }
 
-    /// Sends the call, or explains why it cannot be sent.
+    /// Sends the call, or explains why the call cannot be sent.
     pub fn submit(&mut self) -> Vec<Effect> {
         (self.draft_before_edit, self.code_editor) = (None, None);
         let arguments = match self.sheet.arguments() {
@@ -262,7 +262,7 @@ impl ToolForm {
         }
     }
 
-    /// Continues typing after the text of the cell.
+    /// Resumes typing at the end of the text in the cell.
     fn resume_typing(&mut self) {
         if let Some(slot) = self.sheet.cell_mut(self.focus) {
             self.draft_before_edit = Some(slot.draft.clone());
@@ -305,8 +305,8 @@ impl ToolForm {
             Action::CommitPrevious => self.move_focus(Action::Up),
             _ => self.move_focus(Action::Down),
         }
-        // Enter ends typing; movement keys continue typing in the next cell. Below the last row, typing stays
-        // open so that further digits do not switch screens.
+        // Enter ends typing. Movement keys continue typing in the next cell. In the last row, the down key keeps
+        // typing active so that further digits do not switch screens.
         match action {
             Action::CommitDown if self.focus == left => self.resume_typing(),
             Action::Commit => self.committed_cell = Some(left),
@@ -323,7 +323,7 @@ impl ToolForm {
         if let Some(slot) = self.sheet.cell_mut(self.focus) {
             let text = slot.draft.as_ref().map_or("", TextField::text).trim();
             let same = !slot.is_changed() && parse_number(text).is_some();
-            // The text equals the current value, or a number was cleared: the cell is unchanged.
+            // The cell has no draft if its text equals the current value or if a number was cleared.
             if same || (scalar && text.is_empty()) {
                 slot.draft = None;
             }
@@ -339,7 +339,7 @@ impl ToolForm {
         }
     }
 
-    /// Returns the typed text in the order of the cells.
+    /// Returns the texts of all drafts in the order of the cells.
     pub fn typed_text(&self) -> String {
         let adding = self.new_customer.iter().map(|(_, field)| field.text());
         let drafts = self.sheet.positions().filter_map(|place| self.sheet.cell(place)?.draft.as_ref());
@@ -353,7 +353,7 @@ impl ToolForm {
             return vec![Effect::Complain("This cell is empty. There is no value to copy down.".to_owned())];
         }
         let below = self.sheet.blocks[from.block].rows.len();
-        // A block of one row is a single argument, so the blocks below are filled.
+        // A scalar block has only one row, so the value is copied to the scalar blocks below.
         let blocks = if self.sheet.blocks[from.block].is_scalar() {
             (from.block..self.sheet.blocks.len()).filter(|at| self.sheet.blocks[*at].is_scalar()).collect()
         } else {
@@ -378,7 +378,7 @@ impl ToolForm {
         self.check()
     }
 
-    /// Returns the focusable lines in reading order: block, row, number of cells.
+    /// Returns the focusable lines in reading order, as block, row and number of cells.
     fn lines(&self) -> Vec<(usize, usize, usize)> {
         let mut lines = Vec::new();
         for (at, block) in self.sheet.blocks.iter().enumerate() {
@@ -480,7 +480,7 @@ impl ToolForm {
     }
 }
 
-/// Returns the JSON with spaces after commas and colons, so that lines can wrap.
+/// Formats a JSON value with spaces after commas and colons, so that lines can be wrapped.
 pub(super) fn format_json(value: &Value) -> String {
     match value {
         Value::Object(fields) => {

@@ -1,4 +1,4 @@
-//! The form of the selected tool: description, values, check of the call, and earlier calls.
+//! The pane with the form of the selected tool: description, values, check of the call, and earlier calls.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -119,7 +119,7 @@ impl Pane<Tools> for FormPane {
         let FormLayout { head, outcome, gap } = layout_form(tools, form, inside, context);
         let lines = form_lines(form);
         let below = draw_head(&head, canvas, inside);
-        // A dense form keeps the edited values visible; otherwise up to half of the rows are for the outcome.
+        // In a dense layout, the values can use all rows. Otherwise, up to half of the rows are reserved for the outcome.
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
         let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
@@ -139,25 +139,24 @@ fn draw_code(editor: &TextEditor, canvas: &mut Canvas<'_>, area: Rect, focused: 
     editor.draw(canvas, area_below(area, 1), focused, "SQL, or Python that starts with #");
 }
 
-/// Returns the area below its first rows.
+/// Returns the part of an area below its first `rows` rows.
 fn area_below(area: Rect, rows: u16) -> Rect {
     let rows = rows.min(area.height);
     Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
-/// Width from which the short margins have a line per plan.
+/// Minimum width at which the brief margins have one line per plan.
 const MIN_BRIEF_WIDTH: usize = 36;
 
 struct FormLayout {
     /// Description and cost of the tool, with a blank row if it fits.
     head: Vec<(String, Role)>,
     outcome: OutcomeLines,
-    /// Blank rows below the values.
+    /// Number of blank rows below the values.
     gap: u16,
 }
 
-/// Chooses the normal layout if the margins fit, otherwise a denser one with as much of the description as
-/// fits.
+/// Returns the normal layout if the margins fit. Otherwise, returns a denser layout with as much of the description as fits.
 fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenContext<'_>) -> FormLayout {
     let (width, values) = (area.width as usize, form_lines(form).len());
     let lines = |text: &str, role: Role| wrap(text, width).into_iter().map(move |line| (line, role));
@@ -168,7 +167,7 @@ fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenConte
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
     let outcome_with_detail = |detail| outcome_lines(form, &tools.leads, &tools.sales, context, (width, detail));
-    // Keep a row for the note that text is cut.
+    // One row is reserved for the note that the text is truncated.
     let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
         head.len() + values + gap + outcome.required_lines < area.height as usize && !outcome.is_truncated(width)
     };
@@ -189,11 +188,11 @@ fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Re
     area_below(area, head.len() as u16)
 }
 
-/// Draws the check of the call and the answer; returns the number of rows.
+/// Draws the check of the call and the answer. Returns the number of rows.
 fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) -> u16 {
     let mut shown: Vec<TextLine<'_>> =
         lines.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
-    // The manual has the complete text.
+    // If the text is truncated, the last row names the key that shows the complete text.
     if shown.len() > area.height as usize && area.height > 0 {
         shown.truncate(area.height as usize - 1);
         let explain = context.keys.label(Action::Explain).unwrap_or_default();
@@ -204,7 +203,7 @@ fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, c
     shown.len() as u16
 }
 
-/// Draws earlier calls if they fit; returns the number of rows, including a blank one.
+/// Draws earlier calls if they fit. Returns the number of rows, including a blank row.
 fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) -> u16 {
     if calls.is_empty() || area.height < 3 {
         return 0;
@@ -212,7 +211,7 @@ fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) ->
     let used = (calls.len() as u16 + 2).min(area.height);
     let mut rows = row_rects(area);
     if let Some(row) = rows.next() {
-        canvas.draw_text(row, "earlier in this run", Role::Header);
+        canvas.draw_text(row, "earlier calls", Role::Header);
     }
     for (row, (day, arguments)) in rows.zip(calls) {
         canvas.draw_text(row, &format!("day {day:>3}  {arguments}"), Role::Dim);
@@ -242,7 +241,7 @@ fn key_hints(form: &ToolForm, context: &ScreenContext<'_>) -> String {
         _ => {}
     }
     match form.sheet.blocks.is_empty() {
-        true => "enter runs it".to_owned(),
+        true => "enter runs the tool".to_owned(),
         false if form.code_editor().is_some() => context.hints(&[Action::Apply, Action::LeaveEditor]),
         false if form.is_typing() => context.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
         false => format!(
@@ -268,7 +267,7 @@ fn effect_label(spec: &ToolSpec) -> &'static str {
     }
 }
 
-/// Returns the cost and effect date of any call of the tool.
+/// Describes the cost of a call of the tool and the day on which the call takes effect.
 fn cost_and_effect_text(spec: &ToolSpec, numbers: &ParameterNumbers, today: u32) -> String {
     let from = match spec.effect_timing {
         EffectTiming::NextDay => format!(" Takes effect on day {}.", today + 1),

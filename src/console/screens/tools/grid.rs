@@ -1,4 +1,4 @@
-//! Draws the values of a form: now → new, one line per value or row of a matrix, with sums.
+//! Draws the current and new values of a form, with one line per value or matrix row, and sums.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
@@ -13,23 +13,23 @@ use novamind_tui::widgets::table::first_visible_row;
 
 const NAME_WIDTH: u16 = 19;
 
-/// Width of the column with the results of a channel.
+/// Width of the additional column with the leads of each channel.
 const SIDE_WIDTH: u16 = 20;
 
-/// Returns the width of a cell; blocks with many columns have narrower cells.
+/// Returns the width of a cell. Blocks with several columns have narrower cells.
 fn cell_width(block: &ArgumentBlock) -> u16 {
     if block.columns.len() > 1 { 9 } else { 12 }
 }
 
 pub(super) enum FormLine {
-    /// Name of an argument with its column headings.
+    /// Line with the name of an argument and its column headings.
     Head(usize),
     Row(usize, usize),
-    /// Input to add a customer.
+    /// Line in which the user adds a customer.
     Add(usize),
-    /// Sums of a block.
+    /// Line with the sums of a block.
     Total(usize),
-    /// Current sums, below those of a changed matrix.
+    /// Line with the current sums of a changed matrix, below its new sums.
     CurrentTotal(usize),
 }
 
@@ -54,7 +54,7 @@ pub(super) fn form_lines(form: &ToolForm) -> Vec<FormLine> {
     lines
 }
 
-/// Draws the lines that fit, including the focused one.
+/// Draws as many lines as fit, including the focused line.
 pub(super) fn draw_sheet(
     form: &ToolForm,
     leads: &ChannelLeads,
@@ -86,7 +86,7 @@ pub(super) fn draw_sheet(
     }
 }
 
-/// Returns the area for the results of each channel: next to a complete matrix, or in wide windows.
+/// Returns the area for the leads of each channel, next to the matrix.
 fn side_area(form: &ToolForm, leads: &ChannelLeads, area: Rect) -> Rect {
     let none = Rect { width: 0, ..area };
     let Some(block) = form.sheet.blocks.iter().find(|block| leads.applies_to(block)) else { return none };
@@ -108,7 +108,7 @@ fn draw_side(form: &ToolForm, leads: &ChannelLeads, line: &FormLine, canvas: &mu
     }
 }
 
-/// Returns the columns of a block that fit, including the focused one.
+/// Returns the columns of a block that fit, including the focused column.
 fn visible_columns(form: &ToolForm, at: usize, width: u16) -> std::ops::Range<usize> {
     let block = &form.sheet.blocks[at];
     let cell = cell_width(block);
@@ -146,7 +146,7 @@ fn draw_head(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
         canvas.draw_aligned(cell_area(block, row, place), &block.columns[column], Role::Header, Align::Right);
     }
     canvas.draw_aligned(cell_area(block, row, shown.len()), "total", Role::Header, Align::Right);
-    // Signs mark columns that do not fit.
+    // Signs indicate that further columns do not fit.
     let between =
         |place: usize| Rect { x: row.x + NAME_WIDTH + place as u16 * cell_width(block) - 1, width: 1, ..row };
     if shown.start > 0 {
@@ -192,14 +192,14 @@ fn draw_row(form: &ToolForm, at: usize, index: usize, canvas: &mut Canvas<'_>, r
     if block.is_scalar() {
         let short = format!("{}, {}", block.argument.unit, block.range().describe());
         let brief = block.doc.split("; ").next().unwrap_or_default();
-        // The longest text that fits.
+        // The longest wording that fits is used.
         let words = [format!("{short} · {}", block.doc), format!("{short} · {brief}")];
         let fitting = words.into_iter().find(|words| words.width() <= usize::from(doc.width));
         canvas.draw_text(doc, &fitting.unwrap_or(short), Role::Text);
     }
 }
 
-/// Draws a text line, which takes the whole row.
+/// Draws a text argument, which uses the complete row.
 fn draw_text(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: bool) {
     let place = CellPosition { block: at, row: 0, column: 0 };
     let Some(slot) = form.sheet.cell(place) else { return };
@@ -219,7 +219,7 @@ fn draw_text(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect, her
     canvas.draw_text(row, if text.is_empty() { "·" } else { &text }, role);
 }
 
-/// Returns a text in one line: its first line, and the number of lines.
+/// Formats a text in one line: its first line, and the number of lines if there are several.
 fn first_line_label(text: &str) -> String {
     match text.split_once('\n') {
         None => text.to_owned(),
@@ -310,7 +310,7 @@ fn draw_total(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     }
 }
 
-/// Draws the current sums of a matrix and their change.
+/// Draws the current sums of a matrix and the changes of the sums.
 fn draw_current_total(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
     let block = &form.sheet.blocks[at];
     let change = block.total() - block.current_total();

@@ -1,4 +1,4 @@
-//! List of all tools.
+//! The pane with the list of all tools.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -131,7 +131,7 @@ impl Pane<Tools> for ToolListPane {
     }
 }
 
-/// A line of the list: the heading of a module, or a tool with its index.
+/// A line of the list: the heading of a module of tools, or a tool with its index.
 enum ListLine {
     Module(ToolModule),
     Tool(usize, &'static ToolSpec),
@@ -151,7 +151,7 @@ fn lines_of(tools: &Tools) -> Vec<ListLine> {
     lines
 }
 
-/// Draws a tool, marked if the lesson locks it; the selected one shows whether the list has the focus.
+/// Draws a tool of the list. A tool that the lesson locks is marked. The selected tool shows whether the list has the focus.
 fn draw_tool(
     tools: &Tools,
     canvas: &mut Canvas<'_>,

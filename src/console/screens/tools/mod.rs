@@ -1,4 +1,4 @@
-//! Forms of all tools, generated from the catalog.
+//! The tools screen with forms for all tools, which are generated from the catalog.
 
 mod earlier_calls;
 mod figure;
@@ -39,7 +39,7 @@ use novamind_worker::message::Response;
 use novamind_worker::readings::Reading;
 use outcome::ChannelLeads;
 
-/// Panes of the screen.
+/// Panes of the tools screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum ToolsPane {
     /// List of all tools.
@@ -53,7 +53,7 @@ pub enum ToolsPane {
 #[derive(Default)]
 pub struct Tools {
     focus: ToolsPane,
-    /// Index among the shown tools.
+    /// Index of the selected tool among the displayed tools.
     selected: usize,
     filter: String,
     filter_field: Option<TextField>,
@@ -101,7 +101,7 @@ impl Tools {
         }
     }
 
-    /// Shows the form of a tool and focuses the first cell of a group, plan or similar.
+    /// Shows the form of a tool and focuses the first cell for a key, for example a group or a plan.
     pub fn show_cell(&mut self, tool: ToolId, of: &str, company: &DisplayedCompany) {
         self.show_tool(tool, company);
         if let Some(form) = self.form(company)
@@ -119,7 +119,7 @@ impl Tools {
         Some(block.path(form.focus.row, form.focus.column))
     }
 
-    /// Returns the arguments that the shown form would send.
+    /// Returns the arguments that the displayed form would send.
     #[cfg(test)]
     pub fn typed_arguments(&self) -> Option<Value> {
         self.visible_form()?.sheet.arguments().ok()
@@ -154,14 +154,14 @@ impl Tools {
         unsent.filter_map(|tool| Some((tool, self.forms.get(&tool)?.sheet.drafts()))).collect()
     }
 
-    /// Restores unsent values.
+    /// Restores unsent values in the form of a tool.
     pub fn restore_drafts(&mut self, tool: ToolId, values: &BTreeMap<String, String>, company: &DisplayedCompany) {
         let Some(spec) = CATALOGUE.iter().map(|definition| definition.spec()).find(|spec| spec.id == tool) else { return };
         let form = self.forms.entry(tool).or_insert_with(|| ToolForm::new(spec, company));
         form.sheet.restore_drafts(values);
     }
 
-    /// Opens the separate screen or dialog of a tool, if it has one.
+    /// Returns the effect that opens the separate screen or dialog of the selected tool, if it has one.
     fn dedicated_screen_effect(&self) -> Option<Effect> {
         match self.selected_tool()?.id {
             ToolId::NextWeek => Some(Effect::Do(Action::NextWeek)),
@@ -170,7 +170,7 @@ impl Tools {
         }
     }
 
-    /// Returns this week's calls and drafts, one per line, for copying.
+    /// Returns the calls and drafts of this week as text, one per line.
     fn calls_text(&self, company: &DisplayedCompany) -> String {
         let day = company.observation.day;
         let done = company.journal.iter().filter_map(|entry| match entry {
@@ -220,18 +220,18 @@ impl ScreenState for Tools {
 
     fn handle_response(&mut self, news: &Response, context: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
-            // The last check and answer are outdated.
+            // Undo and redo change settings, so that earlier answers are outdated.
             Response::SettingRestored(_, Ok(_), _) => {
                 self.forms.values_mut().for_each(|form| form.answer = None);
             }
             Response::ToolCalled(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
                     if answer.is_ok() && tool.executes_code() {
-                        // The user can correct the call and send it again.
+                        // The form keeps its code, so that the user can change and send it again.
                         form.stop_typing();
                     } else if answer.is_ok() {
                         form.reset(context.company);
-                        // A sent form returns the focus to the list.
+                        // After a call that changes the company, the list gets the focus.
                         if form.spec.kind.changes_company() {
                             self.focus = ToolsPane::List;
                         }
@@ -273,8 +273,7 @@ impl ScreenState for Tools {
     }
 }
 
-/// Returns an answer as users see it: estimates as ranges with their day, and the minimum for means of
-/// projects.
+/// Returns an answer as shown to users: estimates as ranges with their day, and means of projects with their minimum.
 fn display_value(answer: &Answer, company: &DisplayedCompany) -> Value {
     let value = normalize_json_numbers(answer.to_json());
     match answer {
@@ -308,7 +307,7 @@ impl PaneScreen for Tools {
     fn set_focused_pane(&mut self, name: ToolsPane) {
         self.focus = name;
         if name == ToolsPane::List {
-            // The text stays a draft, but typing does not continue when the focus returns.
+            // The typed text stays a draft. Typing does not resume when the form gets the focus again.
             self.forms.values_mut().for_each(ToolForm::stop_typing);
         }
     }
@@ -319,7 +318,7 @@ impl PaneScreen for Tools {
             ToolsPane::Form if narrow => 0,
             _ if narrow => 34,
             _ if area.width < 112 => 32,
-            // The longest name, its code and the gap.
+            // Width of the longest tool name, its code and the gap between them.
             _ => 37,
         };
         let [left, right] = Layout::horizontal([Constraint::Length(list), Constraint::Min(0)]).areas(area);

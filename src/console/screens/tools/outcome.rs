@@ -1,4 +1,4 @@
-//! Text below the values of a form, and advertising results so far.
+//! Text below the values of a form, and the leads of each channel.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use novamind_tools::{ArgumentKind, MapKey};
 use novamind_tui::text::{format_count, format_number, wrap};
 use novamind_tui::theme::Role;
 
-/// Leads and spend of the last four weeks by channel and group, from `ad_channel_leads`.
+/// Leads and advertising spending of the last four weeks by channel and group, from `ad_channel_leads`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct ChannelLeads(BTreeMap<(String, String), (f64, f64)>);
 
@@ -32,12 +32,12 @@ impl ChannelLeads {
         ChannelLeads(rows.rows.iter().map(to_pair).collect())
     }
 
-    /// Returns whether a block shows them.
+    /// Returns whether the leads belong to the values of a block.
     pub fn applies_to(&self, block: &ArgumentBlock) -> bool {
         matches!(block.argument.kind, ArgumentKind::Matrix(MapKey::Channel, MapKey::Group, _))
     }
 
-    /// Returns the groups with the most leads per dollar in a channel, best first: `S1 298 · S3 71`.
+    /// Formats the groups with the most leads per dollar in a channel, the best first: `S1 298 · S3 71`.
     pub fn best_groups(&self, channel: &str) -> Option<String> {
         let mut rates: Vec<(&str, f64)> = self
             .0
@@ -51,7 +51,7 @@ impl ChannelLeads {
         (!best.is_empty()).then(|| best.join(" · "))
     }
 
-    /// Describes the results of one channel and group.
+    /// Describes the leads and the spending of one channel and group.
     pub fn pair_summary(&self, channel: &str, group: &str) -> Option<String> {
         let (leads, spend) =
             self.0.get(&(channel.to_owned(), group.to_owned())).filter(|(_, spend)| *spend > 0.0)?;
@@ -68,32 +68,32 @@ fn format_rate(rate: f64) -> String {
     grouped_number(rate, if rate < 10.0 { 1 } else { 0 })
 }
 
-/// Amount of text below the values.
+/// Level of detail of the text below the values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DetailLevel {
-    /// Everything, with blank rows.
+    /// Complete text with blank rows.
     Full,
-    /// No repeated text and no blank rows.
+    /// Text without repetitions and blank rows.
     Compact,
-    /// Dense, with margins of the set model tiers only.
+    /// Compact text with margins of the set model tiers only.
     Brief,
 }
 
 pub(super) struct OutcomeLines {
     pub lines: Vec<(String, Role)>,
-    /// Number of leading lines up to the last row of margins, or of the project's range; 0 for other tools.
+    /// Number of leading lines that must be visible, up to the last row of margins or of the project's range. The
+    /// number is 0 for other tools.
     pub required_lines: usize,
 }
 
 impl OutcomeLines {
-    /// Returns whether a row of the margins is too wide.
+    /// Returns whether a required line is wider than `width`.
     pub fn is_truncated(&self, width: usize) -> bool {
         self.lines.iter().take(self.required_lines).any(|(line, _)| line.chars().count() > width)
     }
 }
 
-/// Returns the text below the values: check of the call, the call, its effect, reference figures, and the
-/// answer.
+/// Returns the text below the values: the draft, the check of the call, the call itself, reference figures, and the answer.
 pub(super) fn outcome_lines(
     form: &ToolForm,
     leads: &ChannelLeads,
@@ -121,7 +121,7 @@ pub(super) fn outcome_lines(
         Some(Err(refusal)) => paragraph(&format!("! {}", refusal.message), Role::Bad),
         None => {}
     }
-    // The answer of code needs the room more than the code itself.
+    // The output of code has precedence over the call text.
     let answer = form.answer.as_ref().filter(|_| !form.sheet.is_changed() || form.spec.id.executes_code());
     let is_said = answer.is_some() && form.spec.id.executes_code();
     if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.changes_company()) {
@@ -144,7 +144,7 @@ pub(super) fn outcome_lines(
         }
         for (at, line) in table.iter().enumerate() {
             let role = if at == 0 { Role::Header } else { Role::Text };
-            // Table rows keep their spaces; sentences may wrap.
+            // Table rows keep their spaces, and only sentences are wrapped.
             let is_row = line.contains("  ") || line.chars().count() <= width;
             let parts = if is_row { vec![line.clone()] } else { wrap(line, width) };
             lines.extend(parts.into_iter().map(|part| (part, role)));
@@ -163,7 +163,7 @@ pub(super) fn outcome_lines(
     OutcomeLines { lines, required_lines: needed }
 }
 
-/// Describes the draft: values as old → new, and the keys to send or discard it.
+/// Describes the draft: values as old → new, and the keys that send or discard the draft.
 fn draft_line(form: &ToolForm, context: &ScreenContext<'_>, dense: bool) -> String {
     let changes: Vec<String> = form
         .sheet
@@ -195,7 +195,7 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Rejection>, paragraph: &m
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
             if let (Some(text), Some(remarks)) = (value["stdout"].as_str(), value["stderr"].as_str()) {
-                // Keep the line breaks of a script's output.
+                // Line breaks in the output of a script are kept.
                 text.lines().for_each(|line| paragraph(line, Role::Text));
                 return remarks.lines().for_each(|line| paragraph(line, Role::Dim));
             }
@@ -213,7 +213,7 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Rejection>, paragraph: &m
     }
 }
 
-/// Returns an answer as indented lines, with flat objects on one line.
+/// Formats an answer as indented lines, with flat objects on one line.
 fn format_answer(value: &Value, depth: usize) -> Vec<String> {
     let indent = "  ".repeat(depth + 1);
     let flat = |value: &Value| !matches!(value, Value::Object(_) | Value::Array(_));

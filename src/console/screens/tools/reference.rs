@@ -1,4 +1,4 @@
-//! Reference figures for a form: tier prices, available projects, current budgets.
+//! Reference figures for a form: tier prices, available projects, waiting threads and current settings.
 
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
@@ -10,7 +10,7 @@ use novamind_tools::{ResearchTierFacts, ToolId};
 use novamind_tui::text::format_number;
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the lines next to a form, heading first; empty for tools without reference figures.
+/// Returns the reference lines of a form, with the heading first. Returns no lines for tools without reference figures.
 pub fn reference_lines(tool: ToolId, company: &DisplayedCompany) -> Vec<String> {
     match tool {
         ToolId::SetModelTiers | ToolId::SetUsageQuotas => models(company),
@@ -22,7 +22,7 @@ pub fn reference_lines(tool: ToolId, company: &DisplayedCompany) -> Vec<String> 
     }
 }
 
-/// Returns the tiers by number.
+/// Returns the tiers in the order of their numbers.
 fn tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
     let mut tiers: Vec<(u8, &T)> = costs.iter().map(|(tier, facts)| (*tier, facts)).collect();
     tiers.sort_by_key(|(tier, _)| *tier);

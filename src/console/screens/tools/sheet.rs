@@ -1,5 +1,4 @@
-//! The values of a form: one block per argument, generated from the catalog, with drafts over the current
-//! values.
+//! The values of a form, with one block per argument. Each value has a current value and an optional draft.
 
 use std::collections::BTreeMap;
 
@@ -14,12 +13,12 @@ use novamind_worker::company::DisplayedCompany;
 
 const CODE_ARGUMENT: &str = "code";
 
-/// An editable value.
+/// A value of a form that the user can edit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EditableCell {
-    /// Current value; `None` if nothing is set.
+    /// Current value, or `None` if no value is set.
     pub current: Option<f64>,
-    /// Typed draft; `None` while unchanged.
+    /// Typed draft, or `None` while the cell is unchanged.
     pub draft: Option<TextField>,
 }
 
@@ -36,7 +35,7 @@ impl EditableCell {
         }
     }
 
-    /// Returns the number to send; `None` if empty.
+    /// Returns the number to send, or `None` if the cell is empty.
     ///
     /// # Errors
     /// The text is not a number.
@@ -48,7 +47,7 @@ impl EditableCell {
         }
     }
 
-    /// Returns whether it differs from the current value.
+    /// Returns whether the draft differs from the current value.
     pub fn is_changed(&self) -> bool {
         self.value().map_or(true, |value| value.unwrap_or(0.0) != self.current.unwrap_or(0.0))
     }
@@ -58,15 +57,15 @@ fn format_plain(value: f64) -> String {
     format_number(value).replace(',', "")
 }
 
-/// The cells of an argument.
+/// The cells of one argument.
 #[derive(Debug, Clone)]
 pub struct ArgumentBlock {
     pub argument: &'static Argument,
-    /// Description, with the current parameters.
+    /// Description of the argument, with the parameters of the scenario inserted.
     pub doc: String,
-    /// Names of the rows; the argument itself for a single number.
+    /// Names of the rows. A single number has one row with the name of the argument.
     pub rows: Vec<String>,
-    /// Names of the columns; a single empty name for a number or a map.
+    /// Names of the columns. A number or a map has one column with an empty name.
     pub columns: Vec<String>,
     pub cells: Vec<Vec<EditableCell>>,
 }
@@ -123,12 +122,12 @@ impl ArgumentBlock {
         matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
     }
 
-    /// Returns whether it is a program or a statement with several lines.
+    /// Returns whether the argument is code, such as a script or a SQL statement.
     pub fn is_code(&self) -> bool {
         self.argument.kind == ArgumentKind::Text && self.argument.name == CODE_ARGUMENT
     }
 
-    /// Returns the name of its content for key hints.
+    /// Returns the name of the content for key hints.
     pub fn kind_label(&self) -> &'static str {
         match self.argument.kind {
             _ if self.is_code() => "the code",
@@ -138,7 +137,7 @@ impl ArgumentBlock {
         }
     }
 
-    /// Returns whether rows can be added because customers are too many to list.
+    /// Returns whether the user can add rows. Rows for customers can be added, because there are too many customers to list.
     pub fn accepts_new_rows(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Map(MapKey::Customer, _))
     }
@@ -160,7 +159,7 @@ impl ArgumentBlock {
         self.cells.iter().flatten().filter_map(|slot| slot.current).sum()
     }
 
-    /// Returns the path of a cell, as in rejections.
+    /// Returns the path of a cell in the notation of rejections.
     pub fn path(&self, row: usize, column: usize) -> String {
         match self.argument.kind {
             ArgumentKind::Map(..) => format!("{}.{}", self.argument.name, self.rows[row]),
@@ -181,12 +180,12 @@ impl ArgumentBlock {
         }
     }
 
-    /// Returns the error text for invalid input.
+    /// Returns the error message for invalid input.
     pub fn expected(&self) -> &'static str {
         if self.is_text() { "enter a list or object as JSON" } else { "enter a number" }
     }
 
-    /// Returns the value to send.
+    /// Returns the value of the argument to send.
     fn value(&self) -> Result<Option<Value>, CellPosition> {
         let number = |row: usize, column: usize| {
             self.cells[row][column].value().map_err(|()| CellPosition { block: 0, row, column })
@@ -228,11 +227,11 @@ pub struct CellPosition {
     pub column: usize,
 }
 
-/// All blocks of a tool.
+/// All argument blocks of a tool.
 #[derive(Debug, Clone)]
 pub struct ToolSheet {
     pub spec: &'static ToolSpec,
-    /// One block per argument. Tools with a separate screen or dialog have blocks for numbers only.
+    /// One block per argument. A tool with a separate screen or dialog has blocks only for numbers.
     pub blocks: Vec<ArgumentBlock>,
 }
 
@@ -248,7 +247,7 @@ impl ToolSheet {
         ToolSheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 
-    /// Returns the sheet with updated values, and the drafts that still differ.
+    /// Returns the sheet with updated current values and the drafts that still differ from them.
     pub fn with_current_values(&self, company: &DisplayedCompany) -> ToolSheet {
         let mut sheet = ToolSheet::new(self.spec, company);
         for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {
@@ -272,7 +271,7 @@ impl ToolSheet {
         sheet
     }
 
-    /// Fills in arguments; other cells keep their values.
+    /// Fills in the values of arguments. Other cells keep their values.
     pub fn fill(&mut self, arguments: &Value) {
         let places: Vec<CellPosition> = self.positions().collect();
         for place in places {
@@ -318,10 +317,10 @@ impl ToolSheet {
         self.blocks.iter().any(ArgumentBlock::is_changed)
     }
 
-    /// Returns the arguments of the call: required ones, and changed ones.
+    /// Returns the arguments of the call: all required arguments and all changed arguments.
     ///
     /// # Errors
-    /// The first cell with invalid input.
+    /// The position of the first cell with invalid input.
     pub fn arguments(&self) -> Result<Value, CellPosition> {
         let mut arguments = Map::new();
         for (at, block) in self.blocks.iter().enumerate() {
@@ -335,12 +334,12 @@ impl ToolSheet {
         Ok(Value::Object(arguments))
     }
 
-    /// Returns the cell that a rejection names.
+    /// Returns the position of the cell with a path, as named by a rejection.
     pub fn position_of_path(&self, path: &str) -> Option<CellPosition> {
         self.positions().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
     }
 
-    /// Returns the first cell with this name in its path.
+    /// Returns the position of the first cell with a name in its path.
     pub fn position_of_name(&self, name: &str) -> Option<CellPosition> {
         let is_for = |place: &CellPosition| {
             self.blocks[place.block].path(place.row, place.column).split('.').any(|text| text == name)
@@ -364,7 +363,7 @@ impl ToolSheet {
         self.blocks.get_mut(place.block)?.cells.get_mut(place.row)?.get_mut(place.column)
     }
 
-    /// Adds a row for a customer; returns false if the text is not a customer number.
+    /// Adds a row for a customer. Returns false if the text is not a customer number.
     pub fn add_customer(&mut self, block: usize, text: &str) -> bool {
         let Some(number) =
             text.trim().trim_start_matches('#').parse::<u32>().ok().filter(|number| *number > 0)
@@ -442,7 +441,7 @@ mod tests {
         type_cell(&mut deals, "deals", "[[7, ");
         assert_eq!(deals.arguments(), Err(CellPosition::default()));
         assert!(deals.blocks[0].expected().contains("JSON"));
-        // Tools with a separate screen have no cells.
+        // Tools with a separate screen have no cells for text arguments.
         assert!(sheet("query").blocks.is_empty() && sheet("next_week").blocks.is_empty());
     }
 

@@ -86,7 +86,7 @@ fn tab_keeps_the_typed_value_and_forms_open_at_the_first_cell() {
 fn leaving_the_form_keeps_the_draft() {
     let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "down", "backspace"]);
     assert!(tools.visible_form().is_some_and(ToolForm::is_typing));
-    // A click on the list while a number is empty in the form.
+    // The user clicks on the list while a number in the form is empty.
     tools.set_focused_pane(ToolsPane::List);
     let form = tools.visible_form().expect("a form");
     assert!(!form.is_typing(), "enter must start typing, not end it");
@@ -179,7 +179,7 @@ fn escape_restores_the_previous_value() {
 
 #[test]
 fn copy_down_fills_the_column() {
-    // The value of the focused cell, or of the cell that enter has just left.
+    // The copied value is the value of the focused cell, or the value that was just accepted with enter.
     for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
         let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, keys);
         let arguments = tools.visible_form().expect("a form").sheet.arguments().expect("numbers");
@@ -419,7 +419,7 @@ fn code_keeps_its_lines_when_pasted() {
     let (_, effects) = form_after_keys(ToolId::PythonExec, &[&keys[..], &["ctrl-s"]].concat());
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# p\nx");
-    // Reopened, the form has the code and shows its number of lines.
+    // A reopened form still contains the code and shows its number of lines.
     let (mut tools, _) = form_after_keys(ToolId::PythonExec, &[&keys[..], &["esc"]].concat());
     let (company, bindings) = (new_company(), KeyBindings::bundled());
     let text = screen_text(&tools, &company, 80, 21);

@@ -1,5 +1,4 @@
-//! Input of the x-ray screen: groups and customers with an optional day, days, components, conditions,
-//! numbers, commands.
+//! Input on the x-ray screen: groups and customers with an optional day, days, components, conditions, numbers and commands.
 
 use super::view::{ViewChoices, XrayView};
 use novamind_base::similar_names;
@@ -19,13 +18,13 @@ pub enum InputKind {
     Day,
     Condition,
     Days,
-    /// The fixed value of a factor of the leads.
+    /// The fixed value of a factor in the equation of leads.
     HeldValue(LeadFactor),
-    /// A command that inspects, or sets a parameter.
+    /// A command that inspects hidden state or sets a parameter.
     Command,
 }
 
-/// Parsed input.
+/// Input after parsing.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParsedInput {
     /// A group, with the day if one was typed.
@@ -38,9 +37,9 @@ pub enum ParsedInput {
     Condition(Condition),
     /// A number of days, at least 1.
     Days(u32),
-    /// A factor and its fixed value.
+    /// A factor in the equation of leads and its fixed value.
     HeldValue(LeadFactor, f64),
-    /// A command as text and parsed.
+    /// A command as text and in parsed form.
     Command(String, InspectionCommand),
 }
 
@@ -61,7 +60,7 @@ const FACTOR_LABELS: [&str; LeadFactor::ALL.len()] = [
 ];
 
 impl InputKind {
-    /// Returns the kind of input of a view; `None` if it has nothing to choose.
+    /// Returns the kind of input that a view accepts, or `None` if the view accepts no input.
     pub fn for_view(view: XrayView) -> Option<InputKind> {
         match (view, view.choices()) {
             (XrayView::Customer, _) => Some(InputKind::Customer),
@@ -87,10 +86,10 @@ impl InputKind {
         }
     }
 
-    /// Parses a line.
+    /// Parses an input line.
     ///
     /// # Errors
-    /// The expected input, with a suggestion if one is similar.
+    /// The input is invalid. The message names the expected input, and a similar name if there is one.
     pub fn parse(self, text: &str) -> Result<ParsedInput, String> {
         let text = text.trim();
         match self {
@@ -134,10 +133,10 @@ impl InputKind {
 }
 
 impl ParsedInput {
-    /// Checks that the day has been simulated.
+    /// Checks that the day in the input has been simulated.
     ///
     /// # Errors
-    /// The range of simulated days.
+    /// The day has not been simulated. The message contains the range of simulated days.
     pub fn check_day(self, last_day: u32) -> Result<ParsedInput, String> {
         match self {
             ParsedInput::Group(_, Some(day)) | ParsedInput::Customer(_, Some(day)) | ParsedInput::Day(day)
@@ -153,7 +152,7 @@ impl ParsedInput {
     }
 }
 
-/// Returns the first word, and the day after it, if there is one.
+/// Returns the first word, and the day after the first word if there is one.
 fn split_day(text: &str) -> Result<(&str, Option<u32>), String> {
     match text.split_once(char::is_whitespace) {
         Some((first, day)) => Ok((first, Some(parse_day(day.trim())?))),

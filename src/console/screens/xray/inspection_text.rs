@@ -1,4 +1,4 @@
-//! Draws results: wrapped text, sparklines of daily figures, and spillover as a heat map.
+//! Draws the results of inspections: wrapped text, sparklines of daily figures, and spillover as a heat map.
 
 use unicode_width::UnicodeWidthStr;
 
@@ -22,7 +22,7 @@ pub type StyledRow = Vec<(String, Role)>;
 
 const MAX_CURVE_DAYS: usize = 28;
 
-/// Draws the wrapped result, with the cursor on a factor of the leads.
+/// Draws the wrapped result. In the leads view, the selected factor is marked.
 pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
     let width = usize::from(placement.area.width);
     let rows = match shown_content(xray, context) {
@@ -51,7 +51,7 @@ pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, cont
     }
 }
 
-/// Returns the wrapped rows, with sparklines after their lines, or below them if they do not fit.
+/// Returns the wrapped rows. A sparkline is at the end of its line, or below the line if it does not fit.
 fn text_rows(found: &InspectionAnswer, marked: Option<usize>, focused: bool, width: usize) -> Vec<StyledRow> {
     let mut rows = Vec::new();
     for (at, line) in found.lines.iter().enumerate() {
@@ -76,7 +76,8 @@ fn text_rows(found: &InspectionAnswer, marked: Option<usize>, focused: bool, wid
     rows
 }
 
-/// Rounds values to the precision of the text, so that equal texts have equal bars.
+/// Formats the curve of an inspection as a sparkline. Values are rounded to the precision of the text, so that values
+/// with equal texts have equal bars.
 fn curve_sparkline(curve: &InspectionCurve) -> String {
     let shown: Vec<f64> = curve.values_by_day.iter().map(|value| (value * 1e4).round() / 1e4).collect();
     sparkline(&shown, MAX_CURVE_DAYS)
@@ -124,13 +125,13 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a>
     }
 }
 
-/// Indentation of continued rows.
+/// Indentation of continuation rows, in columns.
 const CONTINUATION_INDENT: usize = 6;
 
 const COLUMN_GAP: &str = "  ";
 
-/// Wraps a line. Table rows keep the spaces that align their columns; cells that do not fit continue in the
-/// next row.
+/// Wraps a line of an inspection. Table rows keep the spaces that align their columns, and cells that do not fit are
+/// moved to the next row.
 fn wrap_table_row(line: &str, width: usize) -> Vec<String> {
     if line.width() <= width || !line.trim_start().contains(COLUMN_GAP) {
         return wrap(line, width);

@@ -1,7 +1,7 @@
-//! The x-ray of a run, if it is permitted: the views of plain mode by day, and breakpoints.
+//! The x-ray screen of a run that permits inspections: the inspections of plain mode by day, and breakpoints.
 //!
-//! The session's worker thread re-simulates days for an inspection. One question is answered at a time. Of
-//! read-only questions only the newest waits; confirmed changes and breakpoint commands are queued.
+//! The session's worker thread re-simulates days for an inspection. The worker answers one question at a time. Only
+//! the newest read-only question waits. Confirmed changes and breakpoint commands are queued.
 
 mod questions;
 mod spillover_map;
@@ -37,22 +37,22 @@ use novamind_worker::inspection::{BreakpointCommand, InspectionAnswer, Inspectio
 use novamind_worker::message::DebugRunResult;
 use novamind_worker::request::Request;
 
-/// Panes in tab order.
+/// Panes of the x-ray screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum XrayPane {
     /// List of views.
     #[default]
     Views,
-    /// Groups, components or breakpoints of the view.
+    /// List of groups, components or breakpoints that the view can show.
     Choices,
-    /// The result.
+    /// Result of the inspection.
     Inspection,
 }
 
 /// Minimum width at which the lists stay visible next to the focused result.
 const MIN_WIDE_WIDTH: u16 = 90;
 const LIST_WIDTH: u16 = 16;
-/// Minimum height at which both lists are stacked.
+/// Minimum height at which both lists are drawn below each other.
 const MIN_STACKED_HEIGHT: u16 = 20;
 
 struct InspectionResult {
@@ -64,7 +64,7 @@ struct InspectionResult {
 #[derive(Default)]
 pub struct Xray {
     focus: XrayPane,
-    /// Whether the run permits the x-ray.
+    /// Whether the run permits inspections.
     can_inspect: bool,
     views: Table,
     groups: Table,
@@ -72,20 +72,20 @@ pub struct Xray {
     breakpoint_table: Table,
     breakpoints: Vec<Breakpoint>,
     last_day: u32,
-    /// The selected day; `None` for the last one.
+    /// The selected day, or `None` for the last day.
     day: Option<u32>,
     customer: Option<u32>,
-    /// Factors of the leads with fixed values.
+    /// Factors in the equation of leads with their fixed values.
     held_factors: Vec<(LeadFactor, f64)>,
     /// Index of the factor at the cursor.
     selected_factor: usize,
     input: Option<InputLine>,
     problem: Option<String>,
     asked: Pending<InspectionQuestion>,
-    /// Typed questions that wait, in order.
+    /// Questions that wait for the worker, in the order of input.
     queued: VecDeque<InspectionQuestion>,
     inspection: Option<InspectionResult>,
-    /// The answer to the last command.
+    /// The result of the last command.
     command_output: Option<InspectionResult>,
     scroll: ScrollState,
 }
@@ -125,8 +125,7 @@ impl Xray {
         }
     }
 
-    /// Returns the question for the current view; `None` if a selection is missing or no day has been
-    /// simulated.
+    /// Returns the question for the current view, or `None` if a selection is missing or no day has been simulated.
     fn wanted_question(&self) -> Option<InspectionQuestion> {
         let day = self.day();
         let needs_day = !matches!(self.view(), XrayView::Breakpoints | XrayView::Commands);
@@ -144,18 +143,18 @@ impl Xray {
             XrayView::Draws => InspectionQuestion::Draws(self.selected_part()?, self.last_day),
             XrayView::Customer => InspectionQuestion::Customer(self.customer?, day),
             XrayView::Breakpoints => InspectionQuestion::Breakpoints(BreakpointCommand::List),
-            // Commands are sent once, because they may change the run.
+            // A command is sent only when the user enters it, because it may change the run.
             XrayView::Commands => return None,
         })
     }
 
-    /// Returns the day of the result. For a former customer it is at most the last day as a subscriber.
+    /// Returns the day of the displayed result. For a former customer, the day is at most the last day as a subscriber.
     fn shown_day(&self) -> u32 {
         let seen = self.inspection.as_ref().filter(|seen| self.wanted_question().as_ref() == Some(&seen.question));
         seen.and_then(|seen| seen.found.as_ref().ok()?.day).unwrap_or_else(|| self.day())
     }
 
-    /// Sends the question for the current view if its answer is missing and no other is being answered.
+    /// Sends the question for the current view if its answer is missing and the worker is not busy with another question.
     fn request_inspection(&mut self) -> Vec<Effect> {
         let wanted = self.wanted_question();
         let is_known = wanted.as_ref() == self.inspection.as_ref().map(|seen| &seen.question);
@@ -224,7 +223,7 @@ impl Xray {
         self.request_inspection()
     }
 
-    /// Selects a day; the last day follows the run.
+    /// Selects the day to inspect. If the last day is selected, the selection stays on the last day while the run continues.
     fn set_day(&mut self, day: Option<u32>) {
         self.day = day.filter(|day| *day != self.last_day);
     }
@@ -291,7 +290,7 @@ impl Xray {
         self.request_inspection()
     }
 
-    /// Sends a command; commands that change the run need confirmation.
+    /// Sends a command to the worker. A command that changes the run requires confirmation.
     fn submit_command(&mut self, words: String, inspection_command: InspectionCommand) -> Vec<Effect> {
         match inspection_command.changes_run() {
             true => vec![Effect::ConfirmWords(words)],
@@ -416,7 +415,7 @@ impl PaneScreen for Xray {
         if lists == 0 {
             return;
         }
-        // If both do not fit, only the focused list is drawn.
+        // If both lists do not fit, only the focused list is drawn.
         let views = XrayView::VARIANTS.len() as u16 + 3;
         let upper = match (self.focus, area.height >= MIN_STACKED_HEIGHT && self.choice_table().is_some()) {
             (_, true) => views,

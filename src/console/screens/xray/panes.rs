@@ -1,4 +1,4 @@
-//! Panes of the x-ray: views, choices and results.
+//! Panes of the x-ray screen: views, choices and results.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -19,7 +19,7 @@ use novamind_worker::inspection::InspectionQuestion;
 
 pub struct ViewsPane;
 
-/// Groups, components or breakpoints of the view.
+/// Pane with the groups, components or breakpoints that the view can show.
 pub struct ChoicesPane;
 
 pub struct InspectionPane;

@@ -1,4 +1,4 @@
-//! Queue of questions: one is answered at a time, and results are stored.
+//! The queue of inspection questions. The worker answers one question at a time, and the answers are stored.
 
 use super::{InspectionResult, Xray};
 use crate::effect::Effect;
@@ -10,7 +10,8 @@ impl Xray {
         vec![Effect::Ask(self.asked.ask(question))]
     }
 
-    /// Sends a question at once or after the current one. A new read-only command replaces waiting ones.
+    /// Sends a question immediately, or queues it after the current question. The new question replaces all waiting
+    /// read-only questions.
     pub(super) fn enqueue_question(&mut self, question: InspectionQuestion) -> Vec<Effect> {
         if !self.asked.is_waiting() {
             return self.send_question(question);
@@ -20,7 +21,7 @@ impl Xray {
         Vec::new()
     }
 
-    /// Queues a change of breakpoints.
+    /// Sends or queues a command that changes breakpoints.
     pub(super) fn send_breakpoint_work(&mut self, work: BreakpointCommand) -> Vec<Effect> {
         self.enqueue_question(InspectionQuestion::Breakpoints(work))
     }
@@ -41,7 +42,7 @@ impl Xray {
         }
     }
 
-    /// Stores an answer; returns true if the current view shows it.
+    /// Stores an answer of the worker. Returns true if the current view shows the answer.
     fn store_answer(&mut self, mut question: InspectionQuestion, found: Result<InspectionAnswer, Rejection>) -> bool {
         let found = found.map_err(|refusal| refusal.message);
         if let InspectionQuestion::Command(_, inspection_command) = &question {
@@ -52,7 +53,7 @@ impl Xray {
             return false;
         }
         if let InspectionQuestion::Breakpoints(work) = &mut question {
-            // Show the result like the list, and do not repeat the change.
+            // The answer is stored as the list of breakpoints, so that the change is not repeated.
             *work = BreakpointCommand::List;
             if let Ok(found) = &found {
                 self.breakpoints = found.breakpoints.clone();
@@ -67,7 +68,7 @@ impl Xray {
     }
 }
 
-/// Returns whether a question changes nothing.
+/// Returns whether a question changes neither the run nor the breakpoints.
 fn is_read_only(question: &InspectionQuestion) -> bool {
     match question {
         InspectionQuestion::Command(_, inspection_command) => !inspection_command.changes_run(),

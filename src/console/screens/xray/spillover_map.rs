@@ -1,4 +1,4 @@
-//! Spillover between groups as a heat map. Glyphs and signs repeat what colors show.
+//! Spillover between groups as a heat map. Glyphs and signs show the same information as colors.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use novamind_report::inspection::{HEAT_MARKS, SpilloverCell, SpilloverMap, Spill
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
-/// Width of a cell with its number.
+/// Width of a cell that contains its number.
 const WIDE_CELL_WIDTH: usize = 13;
-/// Width of a cell with a glyph and a sign.
+/// Width of a cell that contains only a glyph and a sign.
 const NARROW_CELL_WIDTH: usize = 5;
 const NAME_WIDTH: usize = 6;
 
-/// Returns the rows of a map in a given width. Numbers are in the cells if they fit, otherwise below the map.
-/// Columns that do not fit continue in another block.
+/// Returns the rows of a map that fit into a width. Numbers are in the cells if they fit, otherwise below the map.
+/// Columns that do not fit are in an additional block.
 pub fn rows(map: &SpilloverMap, width: usize) -> Vec<StyledRow> {
     let plain = |text: &str, role| wrap(text, width).into_iter().map(move |part| vec![(part, role)]);
     let mut rows: Vec<StyledRow> = plain(&map.heading, Role::Header).collect();
@@ -71,7 +71,7 @@ fn role_of(change: f64) -> Role {
     if change < 0.0 { Role::Bad } else { Role::Good }
 }
 
-/// Returns the numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; `None` if no group received a spillover.
+/// Formats the numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`. Returns `None` if no group received spillover.
 fn row_numbers(row: &SpilloverRow, map: &SpilloverMap) -> Option<String> {
     let changes = row.cells.iter().zip(&map.targets).filter_map(|(cell, to)| match cell {
         SpilloverCell::Applied(change, _) => Some(format!("{to} {change:+.6}")),

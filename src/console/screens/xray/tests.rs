@@ -49,7 +49,7 @@ fn questions_are_sent_one_at_a_time_newest_next() {
     assert!(receive_inspection(&mut screen, &company, inspection_with_line("of day 11")).is_empty());
     let text = screen_text(&screen, &company, 80, 21);
     assert!(text.contains("of day 11") && !text.contains("of day 14"), "{text}");
-    // A known answer is not requested again, and an unexpected answer is ignored.
+    // A question with a known answer is not sent again, and an unexpected answer is ignored.
     assert!(screen.request_inspection().is_empty());
     assert!(receive_inspection(&mut screen, &company, inspection_with_line("of another run")).is_empty());
     assert!(!screen_text(&screen, &company, 80, 21).contains("another run"));
@@ -123,7 +123,7 @@ fn input_accepts_existing_days_with_or_without_a_target() {
     assert_eq!(day, 9);
     let (asked, ..) = typed(XrayView::Customer, Action::TypeTarget, "7 12");
     assert!(matches!(asked, Some(InspectionQuestion::Customer(7, 12))));
-    // Without a day the question is for the last day, as in plain mode.
+    // Input without a day selects the last day, as in plain mode.
     let (asked, ..) = typed(XrayView::Customer, Action::TypeTarget, "8");
     assert!(matches!(asked, Some(InspectionQuestion::Customer(8, 14))));
     let (asked, ..) = typed(XrayView::Drift, Action::TypeTarget, "3");
@@ -153,7 +153,7 @@ fn no_question_is_sent_without_permission() {
     }
     assert!(!screen.scopes().iter().any(|scope| scope.is_text()));
     let text = screen_text(&screen, &company, 100, 30);
-    assert!(text.contains("The x-ray works in debug runs and in runs that are over."), "{text}");
+    assert!(text.contains("The x-ray is available in debug runs and in runs that have ended."), "{text}");
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn no_question_is_sent_before_the_first_day() {
     assert!(screen_text(&screen, &company, 80, 21).contains("No day has been simulated yet"));
 }
 
-/// Requests that bypass the screen must not reveal, record or change hidden state.
+/// Checks that requests that bypass the screen do not reveal, record or change hidden state.
 #[test]
 fn requests_that_bypass_the_screen_are_rejected() {
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {

@@ -1,4 +1,4 @@
-//! Views of the x-ray and their choices.
+//! Views of the x-ray screen and their lists of choices.
 
 use strum::VariantArray;
 
@@ -13,7 +13,7 @@ pub enum XrayView {
     Satisfaction,
     /// Causes of a group's reputation.
     Reputation,
-    /// Spillover of reputation.
+    /// Spillover of reputation between groups.
     Spillover,
     Competitors,
     Drift,
@@ -32,7 +32,7 @@ pub enum ViewChoices {
     /// Components with random draws.
     Parts,
     Breakpoints,
-    /// None: the view shows the whole market, or typed commands.
+    /// No list: the view shows the complete market, a customer, or the result of a command.
     Nothing,
 }
 
@@ -62,7 +62,7 @@ impl XrayView {
         }
     }
 
-    /// Returns whether it shows one day. The others show future values or settings.
+    /// Returns whether the view shows the state of one day. Other views show future values, breakpoints or command results.
     pub fn has_day(self) -> bool {
         !matches!(self, XrayView::Draws | XrayView::Breakpoints | XrayView::Commands)
     }

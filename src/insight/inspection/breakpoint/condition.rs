@@ -1,25 +1,25 @@
-//! A condition on the figures of a day.
+//! Conditions on the figures of a day.
 
 use std::fmt;
 
 use super::measure::Quantity;
 use super::measured_days::MeasuredDay;
 
-/// A comparison of a figure with a number.
+/// An operator that compares a figure with a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
-    /// `>`
+    /// Greater than, `>`.
     Above,
-    /// `>=`
+    /// Greater than or equal to, `>=`.
     AtLeast,
-    /// `<`
+    /// Less than, `<`.
     Below,
-    /// `<=`
+    /// Less than or equal to, `<=`.
     AtMost,
 }
 
 impl Relation {
-    /// Returns the operator.
+    /// Returns the operator as written in conditions.
     pub fn symbol(self) -> &'static str {
         match self {
             Relation::Above => ">",
@@ -29,7 +29,7 @@ impl Relation {
         }
     }
 
-    /// Returns whether the comparison is true.
+    /// Returns whether the comparison of `value` with `threshold` is true.
     pub fn is_satisfied(self, value: f64, threshold: f64) -> bool {
         match self {
             Relation::Above => value > threshold,
@@ -40,17 +40,17 @@ impl Relation {
     }
 }
 
-/// The direction of a figure compared with the day before.
+/// A direction in which a figure changes from one day to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// The figure is higher.
+    /// An increase from the day before.
     Rises,
-    /// The figure is lower.
+    /// A decrease from the day before.
     Falls,
 }
 
 impl Direction {
-    /// Returns the keyword.
+    /// Returns the keyword of the direction in conditions.
     pub fn name(self) -> &'static str {
         match self {
             Direction::Rises => "rises",
@@ -59,25 +59,25 @@ impl Direction {
     }
 }
 
-/// An event of a day.
+/// A world event that a condition can test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WorldEvent {
-    /// A competitor move.
+    /// A competitor move on the day.
     Competitor,
-    /// Drift of expectations and budgets.
+    /// Drift of expectations and budgets on the day.
     Drift,
-    /// A demand surge is active.
+    /// An active demand surge.
     Surge,
-    /// An outage.
+    /// An outage on the day.
     Outage,
 }
 
 impl WorldEvent {
-    /// All events.
+    /// All world events.
     pub const ALL: [WorldEvent; 4] =
         [WorldEvent::Competitor, WorldEvent::Drift, WorldEvent::Surge, WorldEvent::Outage];
 
-    /// Returns the name in conditions.
+    /// Returns the identifier of the event in conditions.
     pub fn id(self) -> &'static str {
         ["rival", "drift", "surge", "outage"][self as usize]
     }
@@ -92,19 +92,19 @@ impl WorldEvent {
     }
 }
 
-/// A condition on a day.
+/// A condition that is evaluated for a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
-    /// A figure is above or below a number.
+    /// A comparison of a figure with a threshold.
     Compared(Quantity, Relation, f64),
-    /// A figure differs from the day before.
+    /// A change of a figure compared with the day before.
     Changed(Quantity, Direction),
-    /// An event occurs.
+    /// True on days on which the event occurs.
     Event(WorldEvent),
 }
 
 impl Condition {
-    /// Returns the figure; `None` for an event.
+    /// Returns the figure of the condition, or `None` for an event.
     pub fn quantity(&self) -> Option<&Quantity> {
         match self {
             Condition::Compared(quantity, ..) | Condition::Changed(quantity, _) => Some(quantity),
@@ -128,7 +128,7 @@ impl Condition {
         }
     }
 
-    /// Returns whether the condition is true on a day. It is false if the figure has no value, and on day 0.
+    /// Returns whether the condition is true on a day. The condition is false on day 0 and if the figure has no value.
     fn is_true_on(&self, days: &[MeasuredDay], day: u32) -> bool {
         let at = |quantity: &Quantity, day: u32| quantity.value(days, day);
         match self {
@@ -150,13 +150,13 @@ impl Condition {
     }
 }
 
-/// Writes `churn(S1) > 0.05 over 7`, `reputation(S3) falls` or `event rival`.
+/// Formats a condition: `churn(S1) > 0.05 over 7`, `reputation(S3) falls` or `event rival`.
 impl fmt::Display for Condition {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Condition::Compared(quantity, relation, threshold) => {
                 let (sign, span) = (relation.symbol(), quantity.describe_days());
-                // Removes the sign of zero, and uses exponents for large numbers.
+                // Replaces -0 by 0, and uses exponents for large numbers.
                 match threshold + 0.0 {
                     large if large.abs() >= 1e15 => write!(formatter, "{quantity} {sign} {large:e}{span}"),
                     plain => write!(formatter, "{quantity} {sign} {plain}{span}"),
@@ -173,23 +173,23 @@ impl fmt::Display for Condition {
 /// The state of a condition on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionState {
-    /// The day, from 1.
+    /// Evaluated day, from 1.
     pub day: u32,
-    /// Value of the figure; `None` for an event, or without a value.
+    /// Value of the figure on the day; `None` for an event or if the figure has no value.
     pub value: Option<f64>,
-    /// Value of the figure on the day before.
+    /// Value of the figure on the previous day; `None` if it has no value.
     pub before: Option<f64>,
-    /// Whether the condition is true.
+    /// Whether the condition is true on the day.
     pub is_true: bool,
-    /// Whether the condition was true on the day before.
+    /// Whether the condition was true on the previous day.
     pub was_true: bool,
-    /// Whether a figure over several days has its first value, or its first value after a gap.
+    /// Whether the day has the first value of a figure over several days, or the first value after a gap.
     pub is_first_value: bool,
 }
 
 impl ConditionState {
-    /// Returns whether the condition became true on the day. The first value of a figure over several days is not a change, because its
-    /// days were incomplete before.
+    /// Returns whether the condition became true on the day. The first value of a figure over several days does not
+    /// count, because the condition could not be evaluated before.
     pub fn becomes_true(&self) -> bool {
         self.is_true && !self.was_true && !self.is_first_value
     }

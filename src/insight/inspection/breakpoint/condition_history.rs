@@ -1,25 +1,25 @@
-//! The history of a condition over the completed days of a run.
+//! The history of a condition on the completed days of a run.
 
 use super::condition::{Condition, ConditionState};
 use crate::inspection::inspector::Inspector;
 use novamind_session::InspectionPermit;
 use novamind_tools::Rejection;
 
-/// The current state of a condition, and the last days in each state.
+/// The current state of a condition, with the last day on which it was true and the last day on which it was false.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionHistory {
-    /// The condition.
+    /// The evaluated condition.
     pub condition: Condition,
-    /// State on the last day.
+    /// State of the condition on the last completed day.
     pub today: ConditionState,
-    /// Last day on which the condition was true.
+    /// State on the last day on which the condition was true; `None` if it was never true.
     pub last_true: Option<ConditionState>,
-    /// Last day on which the condition was false.
+    /// State on the last day on which the condition was false; `None` if it was never false.
     pub last_false: Option<ConditionState>,
 }
 
 impl ConditionHistory {
-    /// Returns the first day of the current state.
+    /// Returns the first day since which the condition has been unchanged.
     pub fn unchanged_since(&self) -> u32 {
         let other = if self.today.is_true { self.last_false } else { self.last_true };
         other.map_or(1, |other| other.day + 1)
@@ -27,7 +27,7 @@ impl ConditionHistory {
 }
 
 impl Inspector<'_> {
-    /// Returns since when a condition is true or false. Records the inspection.
+    /// Returns the history of a condition. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -41,10 +41,10 @@ impl Inspector<'_> {
         Ok(ConditionHistory { condition, today, last_true: last(true), last_false: last(false) })
     }
 
-    /// Calls [`Inspector::condition_history`] for each breakpoint, or for the one with a number.
+    /// Returns the condition history of every breakpoint, or of the breakpoint with the given number.
     ///
     /// # Errors
-    /// As [`Inspector::condition_history`], and `breakpoint_unknown`.
+    /// Same errors as [`Inspector::condition_history`], and `breakpoint_unknown`.
     pub fn breakpoint_histories(&mut self, number: Option<u32>) -> Result<Vec<ConditionHistory>, Rejection> {
         let set = self.breakpoints()?;
         let chosen: Vec<Condition> = set
@@ -58,11 +58,11 @@ impl Inspector<'_> {
         chosen.into_iter().map(|condition| self.condition_history(condition)).collect()
     }
 
-    /// Returns the days on which a condition became true, and those on which the first value of its figure made it true. Records
-    /// the inspection.
+    /// Returns the days on which a condition became true. Includes days on which the first value of the figure
+    /// satisfies the condition. Records the inspection in the trajectory.
     ///
     /// # Errors
-    /// As [`Inspector::condition_history`].
+    /// Same errors as [`Inspector::condition_history`].
     pub fn find_condition_days(&mut self, condition: Condition) -> Result<Vec<ConditionState>, Rejection> {
         let all = self.evaluate_days("find", condition)?;
         Ok(all

@@ -7,23 +7,23 @@ use super::measure::{Measure, MeasureKind, Quantity, QuantityError};
 use novamind_base::similar_names;
 use novamind_world::identifiers::Group;
 
-/// A syntax error with its position.
+/// A syntax error in a condition, with its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConditionParseError {
-    /// Error message with the expected syntax.
+    /// Error message, which names the expected syntax.
     pub message: String,
-    /// Column in the text, in characters from 1.
+    /// Column of the error in the text, in characters from 1.
     pub column: usize,
 }
 
-/// A word or an operator.
+/// A word or an operator of a condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Token<'a> {
     text: &'a str,
     column: usize,
 }
 
-/// Reads tokens in order; `#` starts a comment.
+/// Reads the tokens of a condition in order. `#` starts a comment.
 pub(crate) struct TokenReader<'a> {
     tokens: Vec<Token<'a>>,
     at: usize,
@@ -62,7 +62,7 @@ impl<'a> TokenReader<'a> {
         ConditionParseError { message: message.into(), column: token.map_or(self.end, |token| token.column) }
     }
 
-    /// Reads the next word, which must be in a list. The error suggests similar words.
+    /// Reads the next word, which must be one of the listed names. The error message suggests similar names.
     fn expect_one_of<T: Copy>(
         &mut self,
         known: &[T],
@@ -87,7 +87,7 @@ impl<'a> TokenReader<'a> {
         })
     }
 
-    /// Reads `(S1)`, if the next token is a bracket.
+    /// Reads a group in brackets, for example `(S1)`, if the next token is a bracket.
     pub(crate) fn parse_group(&mut self) -> Result<Option<Group>, ConditionParseError> {
         if !self.next_if("(") {
             return Ok(None);
@@ -105,7 +105,7 @@ impl<'a> TokenReader<'a> {
         }
     }
 
-    /// Reads a name of a list, with its column.
+    /// Reads a name that must be in a list. Returns the name with its column.
     pub(crate) fn parse_name<T: Copy>(
         &mut self,
         known: &[T],
@@ -115,7 +115,7 @@ impl<'a> TokenReader<'a> {
         self.expect_one_of(known, id, what).map(|(found, token)| (found, token.column))
     }
 
-    /// Reads a whole number, if any token is left.
+    /// Reads a whole number. Returns `None` if no token is left.
     pub(crate) fn parse_whole_number(&mut self) -> Result<Option<u32>, ConditionParseError> {
         let Some(token) = self.next() else { return Ok(None) };
         let number = token.text.parse().map(Some);
@@ -132,7 +132,7 @@ impl<'a> TokenReader<'a> {
         }
     }
 
-    /// Reads ` over 7`, if it is next.
+    /// Reads the optional number of days, for example ` over 7`.
     fn parse_days(&mut self) -> Result<Option<(u32, usize)>, ConditionParseError> {
         let column = self.tokens.get(self.at).map_or(self.end, |token| token.column);
         if !self.next_if("over") {
@@ -160,7 +160,7 @@ impl<'a> TokenReader<'a> {
     }
 }
 
-/// Returns the length in bytes of the first token of a text.
+/// Returns the length of the first token of `text`, in bytes.
 fn token_length(text: &str, first: char) -> usize {
     let is_word = |letter: char| letter.is_alphanumeric() || "_.-+%".contains(letter);
     let is_sign = |letter: char| "<>=".contains(letter);
@@ -176,7 +176,7 @@ fn token_length(text: &str, first: char) -> usize {
 impl FromStr for Condition {
     type Err = ConditionParseError;
 
-    /// Parses `churn(S1) > 0.05 over 7`, `reputation(S3) falls` or `event rival`.
+    /// Parses a condition: `churn(S1) > 0.05 over 7`, `reputation(S3) falls` or `event rival`.
     fn from_str(text: &str) -> Result<Condition, ConditionParseError> {
         let mut words = TokenReader::new(text);
         let condition = match words.next_if("event") {
@@ -193,7 +193,7 @@ enum FigurePredicate {
     Changed(Direction),
 }
 
-/// Parses a condition on a figure. Its days follow the figure or the predicate.
+/// Parses a condition on a figure. The number of days can follow the figure or the comparison.
 fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, ConditionParseError> {
     let (measure, column) = words.parse_name(Measure::ALL, Measure::id, "a figure")?;
     let group = words.parse_group()?;
@@ -219,7 +219,7 @@ fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, Cond
     })
 }
 
-/// Describes why a figure is invalid, and the valid form.
+/// Describes why a figure is invalid, and how to write a valid figure.
 pub(crate) fn quantity_error(id: &str, no: QuantityError) -> String {
     match no {
         QuantityError::CompanyOnly => {
@@ -227,9 +227,9 @@ pub(crate) fn quantity_error(id: &str, no: QuantityError) -> String {
         }
         QuantityError::GroupOnly => format!("{id} is a figure of a group; write for example {id}(S1)"),
         QuantityError::NotSummable => {
-            format!("{id} has a value for one day; over works only with sums and shares")
+            format!("{id} is a value of one day; over applies only to sums and shares")
         }
-        QuantityError::DaysOutOfRange => format!("over takes 1 to {} days", Quantity::MAX_DAYS),
+        QuantityError::DaysOutOfRange => format!("over needs 1 to {} days", Quantity::MAX_DAYS),
     }
 }
 

@@ -8,9 +8,9 @@ use super::measured_days::MeasuredDays;
 /// A condition that stops a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Breakpoint {
-    /// Number, from 1; never reused.
+    /// Number of the breakpoint, from 1; never reused.
     pub number: u32,
-    /// The condition.
+    /// The condition that stops the run.
     pub condition: Condition,
 }
 
@@ -19,7 +19,7 @@ pub struct Breakpoint {
 pub(crate) struct Breakpoints {
     set: Vec<Breakpoint>,
     last_number: u32,
-    /// Recorded figures of the days.
+    /// Recorded figures of the simulated days.
     pub(crate) measured_days: Arc<MeasuredDays>,
 }
 
@@ -28,7 +28,7 @@ impl Breakpoints {
         &self.set
     }
 
-    /// Sets a breakpoint, or returns the existing one with the same condition.
+    /// Sets a breakpoint, or returns the existing breakpoint with the same condition.
     pub(crate) fn set(&mut self, condition: Condition) -> Breakpoint {
         if let Some(known) = self.set.iter().find(|breakpoint| breakpoint.condition == condition) {
             return *known;
@@ -39,7 +39,7 @@ impl Breakpoints {
         breakpoint
     }
 
-    /// Removes the breakpoint with a number. Returns `None` if it does not exist.
+    /// Removes and returns a breakpoint. Returns `None` if no breakpoint has the number.
     pub(crate) fn clear(&mut self, number: u32) -> Option<Breakpoint> {
         let at = self.set.iter().position(|breakpoint| breakpoint.number == number)?;
         Some(self.set.remove(at))

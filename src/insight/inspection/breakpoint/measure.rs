@@ -7,18 +7,18 @@ use novamind_record::figures::GroupFigures;
 use novamind_record::figures::churn;
 use novamind_world::identifiers::Group;
 
-/// The relation of a figure to time.
+/// How a figure relates to time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeasureKind {
     /// The value at the end of a day.
     State,
-    /// A number of a day, or its sum over several days.
+    /// A count or amount of a day, which can be summed over several days.
     Flow,
     /// A share over several days, with the default number of days.
     Share(u32),
 }
 
-// For a share, the expression is the numerator; the denominator is computed with it.
+// For a share, the function returns the numerator. `Quantity::value` divides the sum by the denominator.
 type CompanyFigureFn = Option<fn(&MeasuredDay) -> f64>;
 type GroupFigureFn = Option<fn(&GroupFigures) -> Option<f64>>;
 
@@ -30,15 +30,15 @@ macro_rules! measures {
         pub enum Measure { $($measure),* }
 
         impl Measure {
-            /// All figures.
+            /// All daily figures.
             pub const ALL: &'static [Measure] = &[$(Measure::$measure),*];
 
-            /// Returns the name in conditions and data.
+            /// Returns the identifier of the figure in conditions and data.
             pub fn id(self) -> &'static str {
                 match self { $(Measure::$measure => $id),* }
             }
 
-            /// Returns the relation to time.
+            /// Returns how the figure relates to time.
             pub fn kind(self) -> MeasureKind {
                 match self { $(Measure::$measure => $kind),* }
             }
@@ -89,20 +89,20 @@ measures! {
     Relationship = "relationship", MeasureKind::State, None, Some(|figures| figures.relationship);
 }
 
-/// The reason why a figure is invalid.
+/// The reason why a quantity is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum QuantityError {
-    /// Only the company has the figure.
+    /// A group is given, but only the company has the figure.
     CompanyOnly,
-    /// Only groups have the figure.
+    /// No group is given, but only groups have the figure.
     GroupOnly,
-    /// The figure is a value at the end of a day and has no sum.
+    /// A number of days is given, but the figure is a value at the end of a day.
     NotSummable,
-    /// The number of days is out of range.
+    /// The number of days is 0 or above [`Quantity::MAX_DAYS`].
     DaysOutOfRange,
 }
 
-/// A figure of the company or of a group, over a number of days up to the evaluated one.
+/// A figure of the company or of a group, over one or more days that end with the evaluated day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quantity {
     measure: Measure,
@@ -111,10 +111,10 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// Maximum number of days of a sum or a share.
+    /// Maximum number of days over which a figure can be summed.
     pub const MAX_DAYS: u32 = 1000;
 
-    /// Creates a figure. `days`, if given, must be from 1 to [`Quantity::MAX_DAYS`].
+    /// Creates a quantity. `days`, if given, must be from 1 to [`Quantity::MAX_DAYS`].
     pub(crate) fn new(
         measure: Measure,
         group: Option<Group>,
@@ -137,12 +137,12 @@ impl Quantity {
         Ok(Quantity { measure, group, days })
     }
 
-    /// Returns the figure.
+    /// Returns the daily figure without its group and days.
     pub fn measure(&self) -> Measure {
         self.measure
     }
 
-    /// Returns the group, or `None` for the company.
+    /// Returns the group of the figure, or `None` for the company.
     pub fn group(&self) -> Option<Group> {
         self.group
     }
@@ -160,7 +160,8 @@ impl Quantity {
         }
     }
 
-    /// Returns the value on a day. `days` starts with day 1. Returns `None` if there are too few days, or if the denominator is 0.
+    /// Returns the value of the figure on a day. `days` starts with day 1. Returns `None` if too few days have been
+    /// simulated or the denominator is 0.
     pub(crate) fn value(&self, days: &[MeasuredDay], day: u32) -> Option<f64> {
         let value = match self.measure {
             Measure::Churn => {
@@ -192,7 +193,7 @@ impl Quantity {
     }
 }
 
-/// Writes `churn(S1)` or `cash`.
+/// Formats a figure: `churn(S1)` or `cash`.
 impl fmt::Display for Quantity {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.group {

@@ -1,4 +1,4 @@
-//! The figures of simulated days, for conditions.
+//! The recorded figures of simulated days, for conditions.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -18,9 +18,9 @@ pub(crate) struct MeasuredDay {
     pub(crate) figures: DayFigures,
     pub(crate) groups: ByGroup<GroupFigures>,
     pub(crate) has_competitor_move: bool,
-    /// Whether drift was applied.
+    /// Whether drift was applied on the day.
     pub(crate) has_drift: bool,
-    /// Whether a demand surge is active.
+    /// Whether a demand surge is active on the day.
     pub(crate) has_surge: bool,
 }
 
@@ -57,7 +57,7 @@ struct RecordedMeasurements {
 }
 
 impl MeasuredDays {
-    /// Calls a function with the days from day 1.
+    /// Calls `work` with the recorded days, which start with day 1.
     pub(crate) fn with_days<R>(&self, work: impl FnOnce(&[MeasuredDay]) -> R) -> R {
         work(&self.lock().days)
     }

@@ -1,4 +1,4 @@
-//! Breakpoints of a debug run, and simulation up to the first that becomes true.
+//! Breakpoints of a debug run, and simulation until the first breakpoint becomes true.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -10,21 +10,21 @@ use crate::inspection::inspector::Inspector;
 use novamind_session::{DayReport, InspectionPermit, WatchedDays, WeekResult};
 use novamind_tools::Rejection;
 
-/// A breakpoint that became true.
+/// A breakpoint whose condition became true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BreakpointHit {
-    /// The breakpoint.
+    /// The breakpoint that was reached.
     pub breakpoint: Breakpoint,
-    /// State of its condition.
+    /// State of the breakpoint's condition.
     pub state: ConditionState,
 }
 
-/// Simulated days, and the reason for the stop.
+/// The simulated days and the breakpoints that stopped the simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BreakpointRun {
-    /// First day.
+    /// First simulated day.
     pub from: u32,
-    /// Figures of the last week, and notices of all days.
+    /// Figures of the last week, and notifications of all days.
     pub week: WeekResult,
     /// Breakpoints that became true on the last day; empty if the simulation stopped for another reason.
     pub hits: Vec<BreakpointHit>,
@@ -32,19 +32,20 @@ pub struct BreakpointRun {
     pub still_true: Vec<StillTrueBreakpoint>,
 }
 
-/// A breakpoint that was true at the start of the days and became true on none of them.
+/// A breakpoint that was true on some of the simulated days but became true on none of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StillTrueBreakpoint {
     /// The breakpoint with its state on the last day.
     pub hit: BreakpointHit,
-    /// Last day on which the condition was true.
+    /// Last simulated day on which the condition was true.
     pub last_true_day: u32,
-    /// Day on which the first value of its figure over several days made it true; `None` if it was true before these days.
+    /// Day on which the first value of a figure over several days satisfied the condition; `None` if the condition was
+    /// true before the simulated days.
     pub first_value_day: Option<u32>,
 }
 
 impl Inspector<'_> {
-    /// Returns all breakpoints.
+    /// Returns all breakpoints of the run.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -53,7 +54,7 @@ impl Inspector<'_> {
         Ok(self.cache.breakpoints.all().to_vec())
     }
 
-    /// Sets a breakpoint. This reveals no hidden state, so no inspection is recorded.
+    /// Sets a breakpoint. A breakpoint reveals no hidden state, so no inspection is recorded.
     ///
     /// # Errors
     /// `not_in_this_mode`.
@@ -62,7 +63,7 @@ impl Inspector<'_> {
         Ok(self.cache.breakpoints.set(condition))
     }
 
-    /// Removes and returns a breakpoint, or all of them.
+    /// Removes and returns the breakpoint with the given number, or all breakpoints.
     ///
     /// # Errors
     /// `not_in_this_mode`, `breakpoint_unknown`.
@@ -85,8 +86,8 @@ impl Inspector<'_> {
         Rejection::for_field("number", "breakpoint_unknown", message)
     }
 
-    /// Simulates days of a debug run and stops after the first day on which a breakpoint becomes true. Records an inspection of the
-    /// last day for each breakpoint, because a run without a stop reveals hidden state, too.
+    /// Simulates days of a debug run and stops after the first day on which a breakpoint becomes true. Records an
+    /// inspection of the last day for each breakpoint, because the absence of a stop also reveals hidden state.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; after `not_saved`, days may have been simulated.
@@ -118,7 +119,7 @@ impl Inspector<'_> {
         Ok(BreakpointRun { from, week, hits, still_true: true_before })
     }
 
-    /// Returns the figures of all days up to the inspected one. Re-simulates days without recorded figures.
+    /// Returns the figures of all days up to the inspected day. Re-simulates days without recorded figures.
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
@@ -146,7 +147,7 @@ fn breakpoints_hit(day: u32, set: &[Breakpoint], series: &MeasuredDays) -> Vec<B
     })
 }
 
-/// Returns the breakpoints that were true on some days and became true on none of them.
+/// Returns the breakpoints that were true on some of the simulated days and became true on none of them.
 fn breakpoints_still_true(
     days: RangeInclusive<u32>,
     set: &[Breakpoint],

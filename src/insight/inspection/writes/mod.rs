@@ -1,4 +1,5 @@
-//! The changes of a figure on a day: each mechanism with its amount, in the order of the day (docs/debugging.md#who-writes).
+//! The changes of a figure on a day, in the order of the day, each with its mechanism and amount
+//! (docs/debugging.md#who-writes).
 
 mod recorder;
 pub(crate) mod target;
@@ -14,41 +15,41 @@ use novamind_tools::Rejection;
 use novamind_world::events::{Category, EndCause, Source};
 use novamind_world::reputation::ReputationCause;
 
-/// The source of a change.
+/// The mechanism that changes a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WriteSource {
-    /// A mechanism of reputation.
+    /// A mechanism that changes reputation.
     Reputation(ReputationCause),
-    /// Ledger entries of a category, by calls before the day or by the day.
+    /// Ledger entries of a category, from calls before the day or from the simulation of the day.
     LedgerEntries(Category),
-    /// Cancellations, by reason.
+    /// Cancellations with the same reason.
     Cancellations(EndCause),
-    /// New individual subscribers, by source.
+    /// New individual subscribers from the same source.
     Signups(Source),
-    /// Enterprises with their first accepted deal.
+    /// Enterprises that accepted their first deal.
     FirstDeals,
 }
 
-/// Consecutive changes by one mechanism.
+/// Consecutive changes of a figure by one mechanism.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureWrite {
-    /// The mechanism.
+    /// The mechanism that made the changes.
     pub source: WriteSource,
-    /// Amounts in order, before limits.
+    /// Amounts in the order of the changes, before limits.
     pub changes: Vec<f64>,
-    /// Value before.
+    /// Value before the changes.
     pub before: f64,
-    /// Value after.
+    /// Value after the changes.
     pub after: f64,
 }
 
 impl FigureWrite {
-    /// Returns the change of the figure.
+    /// Returns the actual change of the figure.
     pub fn amount(&self) -> f64 {
         self.after - self.before
     }
 
-    /// Returns the change without limits.
+    /// Returns the sum of the changes before limits.
     pub fn requested_change(&self) -> f64 {
         self.changes.iter().sum()
     }
@@ -62,20 +63,20 @@ impl FigureWrite {
 /// All changes of a figure on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureWrites {
-    /// The figure.
+    /// The changed figure.
     pub target: WriteTarget,
-    /// The day.
+    /// Day of the changes.
     pub day: u32,
-    /// Value at the end of the day before.
+    /// Value of the figure at the end of the previous day.
     pub opening_value: f64,
-    /// Value at the end of the day.
+    /// Value of the figure at the end of the day.
     pub closing_value: f64,
-    /// Changes in order; each starts with the result of the previous one.
+    /// Changes in order. Each change starts with the result of the previous change.
     pub writes: Vec<FigureWrite>,
 }
 
 impl Inspector<'_> {
-    /// Returns the changes of a figure on a day, by default the last one. Records the inspection.
+    /// Returns the changes of a figure on a day, by default the last day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

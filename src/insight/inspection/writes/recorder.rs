@@ -1,4 +1,4 @@
-//! Records the changes of a figure on one day.
+//! Recorder of the changes of a figure on one day.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -21,23 +21,23 @@ pub(super) struct WriteRecorder {
 }
 
 struct RecordedWrites {
-    /// Value at the end of the day before.
+    /// Value of the figure at the end of the previous day.
     opening_value: f64,
-    /// Changes since then.
+    /// Changes since the end of the previous day.
     writes: Vec<FigureWrite>,
-    /// The result after the day.
+    /// Company figures of the day.
     figures: DayFigures,
-    /// Requested day.
+    /// Changes on the requested day, once it is simulated.
     result: Option<FigureWrites>,
 }
 
 impl RecordedWrites {
-    /// Returns the value after all changes.
+    /// Returns the value of the figure after all recorded changes.
     fn current_value(&self) -> f64 {
         self.writes.last().map_or(self.opening_value, |write| write.after)
     }
 
-    /// Adds an amount in the same way as the simulator.
+    /// Adds an amount with the same floating-point operations as the simulator.
     fn add_amount(&mut self, by: WriteSource, amount: f64) {
         let before = self.current_value();
         self.push_write(by, &[amount], before, before + amount);
@@ -62,7 +62,7 @@ impl RecordedWrites {
 }
 
 impl WriteRecorder {
-    /// Creates a recorder of a figure on a day, with its value before day 1.
+    /// Creates a recorder for a figure on a day. `opening` is the figure's value before day 1.
     pub(super) fn new(target: WriteTarget, day: u32, opening: f64) -> WriteRecorder {
         let pages = RecordedWrites {
             opening_value: opening,
@@ -73,7 +73,7 @@ impl WriteRecorder {
         WriteRecorder { target, day, recorded: Mutex::new(pages) }
     }
 
-    /// Takes the changes of the day; `None` if the day was not simulated.
+    /// Removes and returns the changes of the day, or `None` if the day was not simulated.
     pub(super) fn take_result(&self) -> Option<FigureWrites> {
         self.lock().result.take()
     }
@@ -133,7 +133,7 @@ impl DayObserver for WriteRecorder {
     }
 }
 
-/// Adds changes of cash in the order of the day: lead costs, payments of subscribers, other ledger entries.
+/// Adds the changes of cash on a day, in this order: lead costs, payments of subscribers, other ledger entries.
 fn add_cash_writes(pages: &mut RecordedWrites, params: &Params, facts: &Facts) {
     let DayFigures { new_leads, payments_received, .. } = pages.figures;
     let leads = f64::from(new_leads) * params.leads.lead_acquisition_cost;
@@ -142,7 +142,7 @@ fn add_cash_writes(pages: &mut RecordedWrites, params: &Params, facts: &Facts) {
     pages.add_ledger_entries(&facts.ledger);
 }
 
-/// Adds cancellations by reason and new subscribers by source.
+/// Adds the changes of a group's subscriptions: cancellations by reason and new subscribers by source.
 fn add_subscriber_writes(pages: &mut RecordedWrites, group: Group, world: &World, facts: &Facts) {
     let has_left = |subscription_ended: &&SubscriptionEnded| {
         subscription_ended.group == group && subscription_ended.status == SubscriptionStatus::Cancelled

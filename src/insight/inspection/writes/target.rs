@@ -17,14 +17,14 @@ pub enum WriteTarget {
     Subscribers(Group),
 }
 
-/// Names of the figures, without groups.
+/// Names of the figures in their text form, without groups.
 const NAMES: [&str; 3] = ["reputation", "cash", "subscribers"];
 
 impl WriteTarget {
-    /// Parses a figure and an optional day: `reputation(S3) 84`.
+    /// Parses a figure and an optional day, for example `reputation(S3) 84`.
     ///
     /// # Errors
-    /// Returns the syntax error with its position.
+    /// Returns a syntax error with its position.
     pub fn parse_with_day(text: &str) -> Result<(WriteTarget, Option<u32>), ConditionParseError> {
         let mut words = TokenReader::new(text);
         let (name, column) = words.parse_name(&NAMES, |name| name, "a figure with recorded writes")?;
@@ -57,7 +57,7 @@ impl FromStr for WriteTarget {
     }
 }
 
-/// Writes `reputation(S3)` or `cash`.
+/// Formats the figure: `reputation(S3)` or `cash`.
 impl fmt::Display for WriteTarget {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

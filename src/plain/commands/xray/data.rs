@@ -1,4 +1,4 @@
-//! X-ray views as data.
+//! Converts x-ray views to JSON.
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use novamind_insight::{
 };
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// Values of a plan, with its name.
+/// Values of a plan together with the plan's name.
 #[derive(Serialize)]
 struct PlanEntry<'a, T> {
     plan: Plan,

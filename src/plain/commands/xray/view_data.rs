@@ -1,4 +1,4 @@
-//! X-ray views of groups, of the market and of draws, as data.
+//! Converts the x-ray views of groups, the market and random draws to JSON.
 
 use serde_json::{Map, Value, json};
 

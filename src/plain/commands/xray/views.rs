@@ -1,4 +1,4 @@
-//! `xray quality …` and the other views of groups, of the market and of draws.
+//! `xray quality …` and the other x-ray views of groups, the market and random draws.
 
 use serde_json::Value;
 
@@ -19,10 +19,10 @@ use novamind_report::inspection::{
 use novamind_session::identifiers::Group;
 use novamind_tools::Rejection;
 
-/// The answer of a view, a rejection, or a usage problem.
+/// The response of a view, a rejection, or an error in the arguments.
 type ViewResult = Result<Result<CommandResponse, Rejection>, ParseError>;
 
-/// Returns a view as text and data.
+/// Returns the response that contains a view as text and JSON.
 fn view_response<T>(
     seen: Result<T, Rejection>,
     words: fn(&T) -> Vec<String>,
@@ -32,7 +32,7 @@ fn view_response<T>(
 }
 
 impl Interpreter {
-    /// `xray quality GROUP [DAY]`
+    /// Executes `xray quality GROUP [DAY]`.
     pub(super) fn show_quality(&mut self, arguments: &[Argument]) -> ViewResult {
         let (group, day) = parse_group_view("quality", arguments)?;
         Ok(view_response(
@@ -42,27 +42,27 @@ impl Interpreter {
         ))
     }
 
-    /// `xray satisfaction GROUP [DAY]`
+    /// Executes `xray satisfaction GROUP [DAY]`.
     pub(super) fn show_satisfaction(&mut self, arguments: &[Argument]) -> ViewResult {
         let (group, day) = parse_group_view("satisfaction", arguments)?;
         let seen = self.session.inspect().satisfaction_equation(group, day);
         Ok(view_response(seen, describe_satisfaction, satisfaction_to_json))
     }
 
-    /// `xray reputation GROUP [DAY]`
+    /// Executes `xray reputation GROUP [DAY]`.
     pub(super) fn show_reputation(&mut self, arguments: &[Argument]) -> ViewResult {
         let (group, day) = parse_group_view("reputation", arguments)?;
         let seen = self.session.inspect().reputation_equation(group, day);
         Ok(view_response(seen, describe_reputation, reputation_to_json))
     }
 
-    /// `xray spillover [DAY]`
+    /// Executes `xray spillover [DAY]`.
     pub(super) fn show_spillover(&mut self, arguments: &[Argument]) -> ViewResult {
         let day = parse_optional_day("spillover", arguments)?;
         Ok(view_response(self.session.inspect().spillover(day), describe_spillover, spillover_to_json))
     }
 
-    /// `xray rivals [DAY]`
+    /// Executes `xray rivals [DAY]`.
     pub(super) fn show_competitors(&mut self, arguments: &[Argument]) -> ViewResult {
         let day = parse_optional_day("rivals", arguments)?;
         Ok(view_response(
@@ -72,13 +72,13 @@ impl Interpreter {
         ))
     }
 
-    /// `xray drift [DAY]`
+    /// Executes `xray drift [DAY]`.
     pub(super) fn show_drift(&mut self, arguments: &[Argument]) -> ViewResult {
         let day = parse_optional_day("drift", arguments)?;
         Ok(view_response(self.session.inspect().drift_state(day), describe_drift, drift_to_json))
     }
 
-    /// `xray streams PART [N]`
+    /// Executes `xray streams PART [N]`.
     pub(super) fn streams(&mut self, arguments: &[Argument]) -> ViewResult {
         let (part, count) = parse_part_and_count(arguments)?;
         Ok(view_response(
@@ -89,24 +89,24 @@ impl Interpreter {
     }
 }
 
-/// Parses a group and an optional day.
+/// Parses the arguments of a view that needs a group and an optional day.
 fn parse_group_view(view: &str, arguments: &[Argument]) -> Result<(Group, Option<u32>), ParseError> {
     parse_group_and_day(view, &arguments.iter().collect::<Vec<_>>())
 }
 
-/// Parses an optional day.
+/// Parses the argument of a view that accepts only an optional day.
 fn parse_optional_day(view: &str, arguments: &[Argument]) -> Result<Option<u32>, ParseError> {
     match arguments {
         [] => Ok(None),
         [day] => parse_whole_number(day).map(Some),
         [_, second, ..] => {
-            let text = format!("give a day, or nothing for the last one: xray {view} 84");
+            let text = format!("give a day, or no argument for the last day: xray {view} 84");
             Err(ParseError { text, column: second.column })
         }
     }
 }
 
-/// Parses a part of the world and an optional number of draws.
+/// Parses the arguments of `xray streams`: a part of the world and an optional number of draws.
 fn parse_part_and_count(arguments: &[Argument]) -> Result<(RandomPart, Option<usize>), ParseError> {
     let parts = RandomPart::ALL.map(RandomPart::id).join(", ");
     let usage = || ParseError {

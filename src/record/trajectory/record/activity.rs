@@ -1,5 +1,5 @@
-//! Activity of a user that does not change the run: viewed screens, opened objects, typed texts, presence. A replay skips
-//! it.
+//! Activity of a user that does not change the run: viewed screens, opened objects, typed texts, presence. A replay
+//! skips lines of activity.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -8,52 +8,52 @@ use super::lesson::LessonNote;
 use super::presence::{Clock, Limit, Presence};
 use super::questions::{QuestionAnswer, QuestionShown};
 
-/// An activity that does not change the run.
+/// An activity of the user or the program that does not change the run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Activity {
     /// The program attached to or detached from the run, or the user left or returned.
     Session(Box<Presence>),
-    /// The user stopped or restarted the clock.
+    /// The clock was stopped or restarted.
     Clock(Clock),
-    /// A time limit approached or was reached.
+    /// The participant was warned about a time limit, or a time limit was reached.
     Limit(Limit),
-    /// A screen was viewed.
+    /// The user viewed a screen.
     View(ScreenView),
-    /// An object was opened: a group, a thread, a tool, a post, a study.
+    /// The user opened an object, for example a group, a thread, a tool or a post.
     Select(ObjectSelection),
-    /// A dialog was open.
+    /// The user opened a dialog and closed it.
     Dialog(DialogUse),
-    /// A term was explained.
+    /// The user requested the explanation of a term.
     Help(HelpRequest),
-    /// A text was edited and sent, or abandoned.
+    /// The user edited a text and then sent or abandoned it.
     Draft(TextEdit),
-    /// A question of the study was shown.
+    /// A study question was shown to the participant.
     Question(QuestionShown),
-    /// A question was answered or skipped.
+    /// The participant answered or skipped a study question.
     Answer(QuestionAnswer),
-    /// An event of the lesson of the run.
+    /// An event occurred in the lesson of the run.
     Lesson(LessonNote),
-    /// A command read the run without playing it.
+    /// A command outside the session read the run.
     ExternalRead(ExternalRead),
-    /// Hidden state was shown.
+    /// The user inspected hidden state.
     Inspection(Inspection),
 }
 
-/// A view of a screen.
+/// The period for which a screen was viewed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ScreenView {
-    /// Screen.
+    /// Name of the viewed screen.
     pub screen: String,
-    /// Previous screen; empty if there was none.
+    /// Name of the previous screen; empty for the first screen.
     pub from: String,
-    /// Milliseconds.
+    /// Milliseconds for which the screen was viewed.
     pub for_ms: u64,
 }
 
 /// An object that was opened on a screen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ObjectSelection {
-    /// Screen.
+    /// Name of the screen on which the object was opened.
     pub screen: String,
     /// Kind of the object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`, `command`.
     pub what: String,
@@ -61,16 +61,16 @@ pub struct ObjectSelection {
     pub which: String,
 }
 
-/// A dialog that was open.
+/// The use of a dialog, recorded when the dialog is closed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DialogUse {
     /// Name of the dialog.
     pub what: String,
-    /// Outcome.
+    /// Whether the user confirmed or cancelled the dialog.
     pub outcome: DialogOutcome,
-    /// Milliseconds for which it was open.
+    /// Milliseconds for which the dialog was open.
     pub for_ms: u64,
-    /// Its steps in the order in which they were entered, with their durations.
+    /// Steps of the dialog in the order in which the user entered them, with their durations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<DialogStep>,
 }
@@ -79,9 +79,9 @@ pub struct DialogUse {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DialogOutcome {
-    /// The user confirmed it.
+    /// The user confirmed the dialog.
     Confirmed,
-    /// The user left it.
+    /// The user closed the dialog without confirming.
     Cancelled,
 }
 
@@ -90,37 +90,37 @@ pub enum DialogOutcome {
 pub struct DialogStep {
     /// Name of the step.
     pub step: String,
-    /// Milliseconds.
+    /// Milliseconds for which the step was shown.
     pub for_ms: u64,
 }
 
-/// A term that was explained.
+/// A request for the explanation of a term.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HelpRequest {
-    /// Term, tool, table or column.
+    /// Explained term, tool, table or column.
     pub term: String,
-    /// Place of the request: a screen, a dialog, `plain`.
+    /// Where the user requested the explanation: a screen, a dialog or `plain`.
     pub place: String,
 }
 
-/// A text that was edited.
+/// Statistics about a text that the user edited.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextEdit {
-    /// Place: `rationale`, `forecasts`, `notes`, `sql`, `post`, or `form` and the tool.
+    /// Edited field: `rationale`, `forecasts`, `notes`, `sql`, `post`, or `form` and the tool.
     pub place: String,
-    /// Outcome.
+    /// Whether the text was sent, abandoned or restored.
     pub outcome: TextEditOutcome,
-    /// Characters of the text when it was sent or abandoned.
+    /// Length of the text when it was sent or abandoned, in characters.
     pub length: u64,
-    /// Typed characters.
+    /// Number of typed characters.
     pub typed: u64,
-    /// Deleted characters.
+    /// Number of deleted characters.
     pub deleted: u64,
-    /// Pasted characters.
+    /// Number of pasted characters.
     pub pasted: u64,
-    /// Number of pauses of more than two seconds between keys.
+    /// Number of pauses of more than two seconds between key presses.
     pub pauses: u32,
-    /// Milliseconds from the first key to the last.
+    /// Milliseconds from the first key press to the last.
     pub for_ms: u64,
     /// The abandoned text, if the rules keep it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -131,42 +131,42 @@ pub struct TextEdit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TextEditOutcome {
-    /// It was sent or saved.
+    /// The text was sent or saved.
     Sent,
-    /// It was abandoned.
+    /// The text was abandoned.
     Left,
-    /// It was restored after a restart of the program.
+    /// The text was restored after a restart of the program.
     Restored,
 }
 
-/// A command that read the run without playing it.
+/// A command outside the session that read the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExternalRead {
     /// Command: `query`, `report`, `replay`, `pictures`, `compare`.
     pub command: String,
-    /// Details: the statement or the format.
+    /// SQL statement or output format of the command.
     pub detail: String,
 }
 
 /// An inspection of hidden state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Inspection {
-    /// Kind of the inspection: `leads`, `customer`, `sql` and so on.
+    /// Kind of the inspection, for example `leads`, `customer` or `sql`.
     pub what: String,
-    /// Group, customer or part, or the statement of `sql`; empty if there is no choice.
+    /// Inspected group, customer or part, or the SQL statement; empty if the inspection has no choice.
     pub which: String,
-    /// The day that was shown.
+    /// Day whose hidden state was shown.
     pub shown_day: u32,
 }
 
 impl Activity {
-    /// Kinds that a study can exclude from the record. Inspections and lesson events are always recorded.
+    /// Kinds of activity that a study can exclude from the record. Inspections and lesson events are always recorded.
     pub const OPTIONAL_KINDS: [&str; 11] = [
         "session", "clock", "limit", "view", "select", "dialog", "help", "draft", "question", "answer",
         "look",
     ];
 
-    /// Returns the name of the kind.
+    /// Returns the `kind` field of the activity's line.
     pub fn kind(&self) -> &'static str {
         match self {
             Activity::Session(_) => "session",
@@ -185,7 +185,7 @@ impl Activity {
         }
     }
 
-    /// Returns whether the activity is evidence that no other line has. Such lines are synced at once.
+    /// Returns whether the activity is evidence that no other line contains. Lines with evidence are synced at once.
     pub fn is_evidence(&self) -> bool {
         !matches!(
             self,
@@ -197,7 +197,7 @@ impl Activity {
         )
     }
 
-    /// Parses a line of a kind. Returns `None` if the kind is not an activity.
+    /// Parses a line of the given kind. Returns `None` if the kind is not an activity.
     pub(super) fn parse(kind: &str, line: &[u8]) -> Option<serde_json::Result<Activity>> {
         fn parse_as<'a, T: Deserialize<'a>>(
             line: &'a [u8],
@@ -223,7 +223,7 @@ impl Activity {
         })
     }
 
-    /// Returns the fields, in order.
+    /// Returns the fields of the activity, in the order of the line.
     pub(super) fn fields(&self) -> serde_json::Result<Value> {
         match self {
             Activity::Session(presence) => serde_json::to_value(presence),
@@ -243,7 +243,7 @@ impl Activity {
     }
 }
 
-/// The fields of an activity, in order.
+/// Returns the fields of an activity, in the order of the line.
 impl From<&Activity> for Map<String, Value> {
     fn from(activity: &Activity) -> Self {
         match activity.fields() {

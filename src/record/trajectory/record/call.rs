@@ -7,80 +7,80 @@ use super::called_tool::CalledTool;
 use super::request_id::RequestId;
 use novamind_tools::Rejection;
 
-/// A tool call.
+/// A recorded tool call and its outcome.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CallFields", into = "CallFields")]
 pub struct Call {
-    /// Tool, or an unknown name if the call was rejected for it.
+    /// Called tool, or the unknown name for which the call was rejected.
     pub tool: CalledTool,
-    /// Arguments: as parsed for an accepted call, as sent for a rejected one.
+    /// Arguments: parsed arguments of an accepted call, or unparsed arguments of a rejected call.
     pub args: Value,
-    /// Outcome.
+    /// Outcome of the call.
     pub outcome: Outcome,
     /// Source of the call.
     pub via: Via,
-    /// Duration in milliseconds.
+    /// Duration of the call in milliseconds.
     pub took_ms: f64,
-    /// Whether it undoes or redoes an earlier call.
+    /// Earlier call that this call undoes or redoes, if any.
     pub reversal: Option<Reversal>,
     /// Request id that the client sent.
     pub request: Option<RequestId>,
 }
 
-/// Outcome of a call.
+/// Outcome of a tool call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// Accepted, with the result.
+    /// The call was accepted and returned this result.
     Accepted(Value),
-    /// Rejected.
+    /// The call was rejected.
     Rejected(RejectionRecord),
 }
 
-/// Source of an action.
+/// Source of a recorded call or week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Via {
-    /// A form of the console.
+    /// Form of the console.
     Form,
-    /// The palette of the console.
+    /// Command palette of the console.
     Palette,
-    /// A line of plain mode.
+    /// Input line of plain mode.
     Plain,
-    /// The HTTP interface.
+    /// HTTP interface.
     Http,
-    /// A client of the Model Context Protocol.
+    /// Client of the Model Context Protocol.
     Mcp,
-    /// A policy.
+    /// Policy that decides the run.
     Policy,
-    /// A stored script.
+    /// Script stored in the run.
     Script,
-    /// A branch that copies the decisions of its parent run.
+    /// Branch that copies the decisions of its parent run.
     Branch,
-    /// The file of a lesson: its start and its automatic actions.
+    /// Lesson file, for its initial calls and automatic actions.
     Lesson,
 }
 
-/// Relation of a call to an earlier call of its week.
+/// Relation of a call to an earlier call in the same week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reversal {
-    /// It undoes the call of this line.
+    /// The call undoes the call on the line with this number.
     Undoes(u64),
-    /// It redoes what the undo of this line reverted.
+    /// The call reapplies the changes that the undo on the line with this number reverted.
     Redoes(u64),
 }
 
-/// A rejection in a line.
+/// A rejection as recorded in a line.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RejectionRecord {
-    /// Code.
+    /// Error code of the rejection.
     pub code: String,
-    /// Message.
+    /// Message for the user.
     pub message: String,
-    /// Argument at fault.
+    /// Name of the invalid argument.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// Reasons for each deal, if a call has several deals and all were rejected.
+    /// Rejection reason for each deal, if a call has several deals and all were rejected.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<Value>,
 }
@@ -164,7 +164,7 @@ impl From<Call> for CallFields {
     }
 }
 
-/// Distinguishes a null field from a missing one.
+/// Distinguishes a null field from a missing field.
 fn present_or_null<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Value>, D::Error> {
     Value::deserialize(field).map(Some)
 }

@@ -1,4 +1,4 @@
-//! The tool of a call, which may not exist.
+//! The tool that a call names, which may not exist.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use novamind_tools::ToolId;
 
-/// Maximum characters of a recorded unknown name. Longer names are truncated with an ellipsis.
+/// Maximum length of a recorded unknown name, in characters. Longer names are truncated and end with an ellipsis.
 const MAX_NAME_CHARACTERS: usize = 128;
 
-/// The tool of a call.
+/// The tool that a call names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CalledTool {
-    /// A tool of the catalogue.
+    /// A tool of the benchmark.
     Known(ToolId),
-    /// An unknown name.
+    /// A name that is not the name of a tool.
     Unknown(String),
 }
 
 impl CalledTool {
-    /// Returns an unknown name as it is recorded.
+    /// Returns the called tool for an unknown name. Truncates long names.
     pub fn from_unknown_name(name: &str) -> CalledTool {
         let is_long = name.chars().nth(MAX_NAME_CHARACTERS).is_some();
         CalledTool::Unknown(match is_long {
@@ -28,7 +28,7 @@ impl CalledTool {
         })
     }
 
-    /// Returns the name.
+    /// Returns the name of the called tool, known or unknown.
     pub fn name(&self) -> &str {
         match self {
             CalledTool::Known(tool) => tool.name(),
@@ -36,7 +36,7 @@ impl CalledTool {
         }
     }
 
-    /// Returns the tool, or `None` if no tool has the name.
+    /// Returns the called tool, or `None` if no tool has this name.
     pub fn tool_id(&self) -> Option<ToolId> {
         match self {
             CalledTool::Known(tool) => Some(*tool),

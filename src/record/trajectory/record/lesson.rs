@@ -1,26 +1,26 @@
-//! Events of a lesson.
+//! Recorded events of a lesson.
 
 use serde::{Deserialize, Serialize};
 
 use super::serialize_shortest_option;
 
-/// An event of a lesson.
+/// A recorded event of a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LessonNote {
     /// Kind of the event.
     pub event: LessonEvent,
-    /// Step, from 1.
+    /// Number of the step, from 1.
     pub step: u32,
     /// Number of the attempt, hint or goal, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub number: Option<u32>,
-    /// Name of a pitfall.
+    /// Name of the triggered pitfall.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Guessed or measured value; for choices the number of the choice, from 1.
+    /// Guessed or measured value. For choices, the number of the choice, from 1.
     #[serde(default, serialize_with = "serialize_shortest_option", skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// Value to reach.
+    /// Value that the goal requires.
     #[serde(default, serialize_with = "serialize_shortest_option", skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
     /// Whether the goal was reached, or the guess was correct.
@@ -32,17 +32,17 @@ pub struct LessonNote {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LessonEvent {
-    /// A step started.
+    /// The student started a step.
     Begun,
-    /// The question of the step was answered.
+    /// The student answered the question of the step.
     Guess,
-    /// A hint was requested.
+    /// The student requested a hint.
     Hint,
-    /// A pitfall was triggered.
+    /// The student's decisions triggered a pitfall.
     Pitfall,
     /// The outcome of a guess was measured.
     Outcome,
-    /// A goal was judged.
+    /// A goal was checked at the end of the step.
     Goal,
 }
 

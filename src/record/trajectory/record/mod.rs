@@ -1,7 +1,7 @@
 //! Events of a trajectory, by the kind of their line.
 //!
-//! Fields are declared in the order in which they are written. Unknown fields are not an error: a line keeps its text, so
-//! copies of it are complete.
+//! Fields are declared in the order in which they are written. Unknown fields are not an error: a parsed line keeps
+//! its text, so copies of the line are complete.
 
 mod activity;
 mod call;
@@ -39,19 +39,19 @@ pub use week::{Advance, Branch, CalculationOutput, Closing, End, FiledForecast, 
 /// An event of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Record {
-    /// The first line: what the run is.
+    /// The first line, with the manifest of the run.
     Start(Box<Start>),
-    /// A tool was called.
+    /// A tool was called in the run.
     Call(Call),
-    /// The database was queried.
+    /// An SQL statement was executed in the database.
     Query(Query),
     /// An activity that does not change the run.
     Activity(Activity),
-    /// The notes were saved; format 1.
+    /// The player's notes were saved; used in format 1.
     Memo(Memo),
-    /// The notes were saved.
+    /// The player's notes were saved.
     Note(Note),
-    /// Rationale and forecasts were submitted for a week.
+    /// The player submitted a rationale and forecasts for a week.
     Advance(Advance),
     /// A language model responded or failed.
     Voice(VoiceAnswer),
@@ -59,18 +59,18 @@ pub enum Record {
     Week(Closing),
     /// Single days of a debug run were simulated.
     Step(Closing),
-    /// A parameter was changed in a debug run.
+    /// A parameter was changed in a debug run or a lesson.
     Override(Override),
-    /// The end of the lines that a branch copied.
+    /// The copied lines of a branch end before this line.
     Branch(Branch),
-    /// The end of the run.
+    /// The run ended.
     End(End),
-    /// A kind that this version does not know, with its name.
+    /// An event of a kind that this version does not define, with the name of the kind.
     Unknown(String),
 }
 
 impl Record {
-    /// Returns the name of the kind.
+    /// Returns the `kind` field of the event's line.
     pub fn kind(&self) -> &str {
         match self {
             Record::Start(_) => "start",
@@ -90,7 +90,7 @@ impl Record {
         }
     }
 
-    /// Parses a line of a kind.
+    /// Parses a line of the given kind.
     pub fn parse(kind: &str, line: &[u8]) -> serde_json::Result<Record> {
         Ok(match kind {
             "start" => Record::Start(serde_json::from_slice(line)?),
@@ -112,7 +112,7 @@ impl Record {
         })
     }
 
-    /// Returns the fields, in order.
+    /// Returns the fields of the event, in the order of the line.
     pub fn fields(&self) -> Map<String, Value> {
         let fields = match self {
             Record::Start(start) => serde_json::to_value(start),
@@ -131,7 +131,7 @@ impl Record {
         };
         match fields {
             Ok(Value::Object(fields)) => fields,
-            // Events have only values that JSON supports.
+            // Serialization cannot fail: events contain only values that JSON supports.
             _ => Map::new(),
         }
     }
@@ -144,7 +144,7 @@ impl Record {
         }
     }
 
-    /// Returns the digest of the saved notes, if any.
+    /// Returns the digest of the saved notes, if the event saves notes.
     pub fn notes_digest(&self) -> Option<&str> {
         match self {
             Record::Memo(memo) => Some(&memo.digest),
@@ -153,7 +153,7 @@ impl Record {
         }
     }
 
-    /// Returns the call and its result for an accepted call.
+    /// Returns an accepted call and its result, or `None` for other events.
     pub fn accepted_call(&self) -> Option<(&Call, &Value)> {
         match self {
             Record::Call(call @ Call { outcome: Outcome::Accepted(answer), .. }) => Some((call, answer)),

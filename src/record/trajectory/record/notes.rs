@@ -2,64 +2,64 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A query of the database.
+/// An SQL statement that was executed in the database, with its outcome.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Query {
-    /// Statement.
+    /// SQL statement.
     pub sql: String,
-    /// Rows of the result; `None` without a result.
+    /// Number of returned rows; `None` if the query failed.
     pub rows: Option<u64>,
-    /// Whether more rows exist than were returned.
+    /// Whether the result was truncated to the maximum number of rows.
     pub truncated: bool,
-    /// Error code.
+    /// Error code of a failed query.
     pub error: Option<String>,
-    /// Error message.
+    /// Error message of a failed query.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
-    /// Whether the user cancelled it.
+    /// Whether the user cancelled the query.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stopped: bool,
     /// Source of the statement; `None` in lines of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub via: Option<QuerySource>,
-    /// Duration in milliseconds.
+    /// Duration of the query in milliseconds.
     pub took_ms: f64,
 }
 
-/// Source of a statement.
+/// Source of an SQL statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum QuerySource {
-    /// The user typed it.
+    /// Statement that the user typed.
     Typed,
-    /// A query of the library, unchanged.
+    /// Unchanged query of the query library.
     Library,
-    /// The rows behind a figure.
+    /// Statement that shows the rows behind a figure.
     DrillDown,
-    /// The program derived it from a result: counts, pivots.
+    /// Statement that the program derived from a result: counts, pivots.
     Derived,
-    /// A Python script.
+    /// Statement of a Python script.
     Script,
-    /// A program, over HTTP or the Model Context Protocol.
+    /// Statement of a program that uses HTTP or the Model Context Protocol.
     Program,
 }
 
-/// Saved notes in lines of format 1; their text is in a separate file.
+/// Saved notes in lines of format 1. The text of the notes is in a separate file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Memo {
-    /// BLAKE3 digest of the text, in hexadecimal digits.
+    /// BLAKE3 digest of the notes, in hexadecimal digits.
     pub digest: String,
-    /// Bytes of the text.
+    /// Length of the notes, in bytes.
     pub length: u64,
 }
 
-/// Saved notes.
+/// Saved notes of the player.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Note {
-    /// BLAKE3 digest of the text, in hexadecimal digits.
+    /// BLAKE3 digest of the notes, in hexadecimal digits.
     pub digest: String,
-    /// Bytes of the text.
+    /// Length of the notes, in bytes.
     pub length: u64,
-    /// The text; `None` if the rules mask it.
+    /// Text of the notes; `None` if the session rules mask free text.
     pub text: Option<String>,
 }

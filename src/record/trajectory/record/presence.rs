@@ -11,25 +11,25 @@ pub struct Presence {
     /// Why the program detached from the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<LeavingCause>,
-    /// Interface: `console`, `plain`, `http`, `policy`.
+    /// Interface that attached to the run: `console`, `plain`, `http` or `policy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<String>,
     /// Pseudonym of the machine: 16 hexadecimal digits of a keyed hash.
     pub machine: String,
-    /// Pseudonym of the boot of the machine, likewise.
+    /// Pseudonym of the current boot of the machine: 16 hexadecimal digits of a keyed hash.
     pub boot: String,
-    /// Milliseconds since the boot, by the monotonic clock.
+    /// Milliseconds since the boot, according to the monotonic clock.
     pub monotonic_ms: u64,
-    /// Columns and rows of the terminal.
+    /// Size of the terminal, in columns and rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<(u16, u16)>,
     /// Version of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub version: Option<String>,
-    /// Milliseconds since the last key, if the user was idle.
+    /// Milliseconds since the last key press, if the user was idle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub idle_ms: Option<u64>,
-    /// Length and last hash of `worlds.jsonl`, a list of earlier builds. It is read and never written.
+    /// Length and last hash of `worlds.jsonl`, a file of earlier builds. This field is read and never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worlds: Option<Value>,
 }
@@ -42,9 +42,9 @@ pub enum PresenceEvent {
     Opened,
     /// The program detached from the run.
     Closed,
-    /// No key for a minute.
+    /// The user has not pressed a key for a minute.
     Idle,
-    /// The first key after an idle period.
+    /// The user pressed the first key after an idle period.
     Active,
     /// The terminal lost the focus.
     FocusLost,
@@ -52,7 +52,7 @@ pub enum PresenceEvent {
     FocusGained,
     /// The shell suspended the program.
     Suspended,
-    /// The program resumed.
+    /// The program resumed after a suspension.
     Resumed,
     /// The window was resized.
     Resized,
@@ -64,7 +64,7 @@ pub enum PresenceEvent {
 pub enum LeavingCause {
     /// The user quit.
     Quit,
-    /// The input ended.
+    /// The standard input of plain mode ended.
     EndOfInput,
     /// A signal terminated the program.
     Signal,
@@ -81,10 +81,10 @@ pub enum LeavingCause {
 pub struct Clock {
     /// Kind of the event.
     pub event: ClockEvent,
-    /// Reason of the stop that the user entered, if the study asks for it.
+    /// Reason for the stop that the user entered, if the study asks for a reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Milliseconds for which the clock had been stopped; only in events that start it.
+    /// Milliseconds for which the clock was stopped; only in events that start the clock.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stood_ms: Option<u64>,
 }
@@ -93,24 +93,24 @@ pub struct Clock {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClockEvent {
-    /// Stopped; the screen is covered.
+    /// The user stopped the clock, and the screen is covered.
     Stopped,
-    /// Started by the user.
+    /// The user started the clock.
     Started,
-    /// Started on reopening the run, after the program had detached with a stopped clock.
+    /// The clock started when the run was reopened, because the program had detached with a stopped clock.
     Forgotten,
 }
 
 /// An event of a time limit.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limit {
-    /// Scope: `week`, `session`, `study`.
+    /// Scope of the limit: `week`, `session` or `study`.
     pub limit: LimitScope,
     /// Kind of the event.
     pub event: LimitEvent,
-    /// Allowed minutes.
+    /// Allowed active time in minutes.
     pub minutes: u32,
-    /// Used active time in milliseconds.
+    /// Active time used in the scope, in milliseconds.
     pub used_ms: u64,
 }
 
@@ -118,11 +118,11 @@ pub struct Limit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitScope {
-    /// One week of the company.
+    /// One simulated week.
     Week,
-    /// One session.
+    /// One session of the participant.
     Session,
-    /// All sessions of the study.
+    /// All sessions of the participant in the study.
     Study,
 }
 
@@ -130,7 +130,7 @@ pub enum LimitScope {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitEvent {
-    /// The participant was warned.
+    /// The participant was warned before the limit was reached.
     Warned,
     /// The limit was reached, and the participant was reminded.
     Reminded,

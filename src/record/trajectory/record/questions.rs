@@ -3,40 +3,40 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// A question that was shown.
+/// A study question that was shown to the participant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct QuestionShown {
-    /// Questionnaire.
+    /// Name of the questionnaire.
     pub questionnaire: String,
-    /// Occasion: `before`, `week 4`, `break`, `end`.
+    /// Occasion of the questionnaire, for example `before`, `week 4`, `break` or `end`.
     pub occasion: String,
     /// Name of the question.
     pub id: String,
-    /// Text as shown.
+    /// Text of the question as shown.
     pub text: String,
-    /// `likert`, `number`, `choice`, `text` or `attention`.
+    /// Answer format: `likert`, `number`, `choice`, `text` or `attention`.
     pub form: String,
-    /// Options, for questions with choices.
+    /// Options that the participant can choose; empty for other questions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<String>,
 }
 
-/// The answer to a question.
+/// The answer to a study question.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct QuestionAnswer {
-    /// Questionnaire.
+    /// Name of the questionnaire.
     pub questionnaire: String,
-    /// Occasion.
+    /// Occasion of the questionnaire.
     pub occasion: String,
     /// Name of the question.
     pub id: String,
-    /// A number, a text, or a list of options; null if the question was skipped.
+    /// Answer: a number, a text, or a list of options; null if the question was skipped.
     pub value: Value,
-    /// Whether the answer is the expected one; attention checks only.
+    /// Whether the participant gave the expected answer; attention checks only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub as_expected: Option<bool>,
-    /// Milliseconds from the question to the answer.
+    /// Milliseconds from showing the question to the answer.
     pub for_ms: u64,
-    /// Number of changes before the answer was submitted.
+    /// Number of times the answer was changed before it was submitted.
     pub changes: u32,
 }

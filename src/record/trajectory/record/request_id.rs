@@ -1,14 +1,14 @@
-//! Request ids of clients, which prevent a retry from running a request twice.
+//! Request ids of clients, which prevent a retried request from being executed twice.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 const DIGEST_DIGITS: usize = 16;
 
-/// The id of a request with a digest of its content.
+/// A request id with a digest of the request's content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RequestId {
-    /// The id.
+    /// Id that the client sent.
     #[serde(rename = "request_id")]
     pub id: String,
     /// First digits of the BLAKE3 hash of the tool name, a line feed, and the sent arguments as JSON without spaces and with
@@ -18,7 +18,7 @@ pub struct RequestId {
 }
 
 impl RequestId {
-    /// Returns the id together with the digest of a call.
+    /// Creates a request id for a call, with the digest of tool and arguments.
     pub fn new(id: &str, tool: &str, args: &Value) -> RequestId {
         let mut sorted = args.clone();
         sorted.sort_all_objects();

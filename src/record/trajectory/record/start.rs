@@ -1,4 +1,4 @@
-//! The first line of a trajectory.
+//! The event in the first line of a trajectory.
 
 use serde::{Deserialize, Serialize};
 use toml::Table;
@@ -13,52 +13,52 @@ use crate::stamp::{EarlierRun, StudyStamp};
 use novamind_voice::model::settings::ModelStamp;
 use novamind_world::fault::Fault;
 
-/// The first line: manifest and rules of a run.
+/// The event in the first line: manifest and rules of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Start {
-    /// Format of the trajectory.
+    /// Format number of the trajectory.
     pub format: u32,
-    /// Version that created the run.
+    /// Version of the program that created the run.
     pub version: String,
-    /// Number of the mechanics.
+    /// Version number of the mechanics.
     #[serde(default = "first_mechanics")]
     pub mechanics: u32,
     /// Id of the run.
     pub run: String,
-    /// Seed.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// Last day.
+    /// Last day of the run.
     pub days: u32,
     /// Cash on day 0, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
-    /// Scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Parameters that differ from the bundled ones.
+    /// Parameters whose values differ from the bundled parameters.
     #[serde(default)]
     pub overrides: Table,
-    /// The seeded fault; debug runs only.
+    /// Seeded fault of the mechanics; debug runs only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fault: Option<Fault>,
     /// Digest of the effective parameters.
     pub parameters_digest: String,
-    /// Mode.
+    /// Mode of the run.
     pub mode: Mode,
     /// Label of the participant.
     pub participant: Option<String>,
-    /// Consent of the participant.
+    /// Consent of the participant, if consent was required.
     #[serde(default)]
     pub consent: Option<Consent>,
-    /// The study of the run.
+    /// Study to which the run belongs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<StudyStamp>,
-    /// The lesson of the run.
+    /// Lesson to which the run belongs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonStamp>,
-    /// The handout from which the run started.
+    /// Handout from which the run started.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub handout: Option<HandoutStamp>,
-    /// The language model that words texts, if any.
+    /// Language model that words posts and messages, if one is used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelStamp>,
     /// Session rules; `None` in runs of format 1.
@@ -67,14 +67,14 @@ pub struct Start {
     /// Earlier runs of the same participant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier_runs: Vec<EarlierRun>,
-    /// Origin of a branch.
+    /// Parent run and last copied line, if the run is a branch.
     pub parent: Option<Parent>,
-    /// Whether every line has a sum; false in runs of the first builds.
+    /// Whether every line has a checksum; false in runs of the first builds.
     #[serde(default)]
     pub line_sums: bool,
 }
 
-/// Origin of a branch.
+/// The parent run of a branch, and the last line that the branch copied.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parent {
@@ -84,7 +84,7 @@ pub struct Parent {
     pub seq: u64,
 }
 
-/// Returns the number of the mechanics of runs whose first line has none.
+/// Returns the mechanics number for runs whose first line has no mechanics number.
 pub(crate) fn first_mechanics() -> u32 {
     1
 }

@@ -1,35 +1,35 @@
-//! Responses of the language model that words public texts. A replay uses these instead of the model.
+//! Recorded responses of the language model that words public texts. A replay uses these responses instead of the model.
 
 use serde::{Deserialize, Serialize};
 
 use super::serialize_shortest;
 use novamind_voice::model::scoring::ModelScore;
 
-/// A response of a language model, or its failure.
+/// A response of the language model, or a failed request.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "lowercase")]
 pub enum VoiceAnswer {
-    /// Scores of a post of the player.
+    /// Scores for a post of the player.
     Scores(JudgedPost),
     /// Reworded posts of other authors.
     Words(WordedPosts),
-    /// The model failed, and the built-in voice was used.
+    /// A request to the model failed, and the built-in voice was used.
     Failed(FailedAnswer),
 }
 
-/// Scores of a post of the player.
+/// Scores of the language model for a post of the player.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JudgedPost {
     /// Number of the post.
     pub post: u32,
-    /// Day of the post.
+    /// Day on which the post was published.
     pub posted: u32,
-    /// Text.
+    /// Text of the post.
     pub content: String,
-    /// Number of the post to which it replies.
+    /// Number of the post to which the player's post replies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reply_to: Option<u32>,
-    /// One score for each group that was known.
+    /// One score for each group that was known on the day of the post.
     pub scores: Vec<ModelScore>,
     /// Duration of the response in milliseconds.
     #[serde(serialize_with = "serialize_shortest")]
@@ -39,7 +39,7 @@ pub struct JudgedPost {
 /// Posts of other authors, reworded by the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WordedPosts {
-    /// Number and text of each.
+    /// Reworded posts, each with its number and text.
     pub posts: Vec<WordedPost>,
     /// Duration of the response in milliseconds.
     #[serde(serialize_with = "serialize_shortest")]
@@ -51,28 +51,28 @@ pub struct WordedPosts {
 pub struct WordedPost {
     /// Number of the post.
     pub post: u32,
-    /// New text.
+    /// Text of the post after rewording.
     pub text: String,
 }
 
 /// A request to the model without a usable response.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FailedAnswer {
-    /// Requested response.
+    /// Task that was requested from the model.
     pub asked: ModelTask,
-    /// The problem.
+    /// Description of the problem.
     pub problem: String,
-    /// Duration in milliseconds.
+    /// Duration of the request in milliseconds.
     #[serde(serialize_with = "serialize_shortest")]
     pub took_ms: f64,
 }
 
-/// Task of a model.
+/// A task for the language model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ModelTask {
-    /// Scores for a post of the player.
+    /// Score a post of the player.
     Scores,
-    /// Texts for posts of other authors.
+    /// Reword posts of other authors.
     Words,
 }

@@ -11,16 +11,16 @@ use super::start::Parent;
 use super::{serialize_shortest, serialize_shortest_option};
 use novamind_tools::Forecast;
 
-/// The submission before a week.
+/// The player's submission before a week is simulated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advance {
-    /// Rationale.
+    /// Rationale of the week.
     pub rationale: String,
-    /// Forecasts of cash, one for each horizon.
+    /// Forecasts of cash, one forecast for each horizon.
     pub forecasts: Vec<FiledForecast>,
-    /// Source.
+    /// Source of the submission.
     pub via: Via,
-    /// Outputs of the registered calculations.
+    /// Outputs of the registered calculations before the week.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calculations: Vec<CalculationOutput>,
     /// Request id that the client sent.
@@ -29,17 +29,17 @@ pub struct Advance {
 }
 
 impl Advance {
-    /// Returns whether at least one forecast was filled in by the naive projection, or `None` without forecasts.
+    /// Returns whether at least one submitted forecast is a naive forecast, or `None` if there are no forecasts.
     pub fn has_naive_forecasts(&self) -> Option<bool> {
         let any = self.forecasts.iter().any(|forecast| forecast.filled_naively);
         (!self.forecasts.is_empty()).then_some(any)
     }
 }
 
-/// A forecast in a line.
+/// A submitted forecast as recorded in a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FiledForecast {
-    /// Days ahead.
+    /// Days from the submission to the target of the forecast.
     pub horizon_days: u32,
     /// Most likely value, dollars.
     #[serde(serialize_with = "serialize_shortest")]
@@ -50,58 +50,58 @@ pub struct FiledForecast {
     /// Upper end of the 95 % interval, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub upper: f64,
-    /// Whether the naive projection filled it in, completely or partly.
+    /// Whether values of the naive forecast were submitted, completely or partly.
     #[serde(default)]
     pub filled_naively: bool,
 }
 
 impl FiledForecast {
-    /// Returns the forecast.
+    /// Returns the forecast without the information on how it was entered.
     pub fn to_forecast(self) -> Forecast {
         let FiledForecast { horizon_days, point, lower, upper, .. } = self;
         Forecast { horizon_days, point, lower, upper }
     }
 }
 
-/// Simulated days and the state after them.
+/// Figures of simulated days, and the state after these days.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Closing {
-    /// Number of days.
+    /// Number of simulated days.
     pub days_run: u32,
-    /// Figures by name.
+    /// Figures of the simulated days, by name.
     pub figures: Map<String, Value>,
-    /// Cash after them, dollars.
+    /// Cash after the simulated days, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
-    /// State hash.
+    /// Hash of the complete simulator state.
     pub state_hash: String,
-    /// Prefixes of the hashes of the state's parts.
+    /// Prefix of the hash of each part of the state, by name.
     pub parts: BTreeMap<String, String>,
 }
 
-/// A change of a parameter.
+/// A parameter change in a debug run or a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Override {
     /// Key of a parameter, or of a list or table of parameters: `table.key`, `group.S1.c_max_mean`.
     pub key: String,
     /// Value before the change.
     pub old: Value,
-    /// New value.
+    /// Value after the change.
     pub new: Value,
-    /// First day that is simulated with the new value; `None` if it acts at once.
+    /// First day that is simulated with the new value; `None` if the change takes effect at once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_day: Option<u32>,
 }
 
-/// Origin of a branch.
+/// The event after the copied lines of a branch.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Branch {
-    /// Parent run and its last copied line.
+    /// Parent run and last copied line.
     #[serde(deserialize_with = "required_nullable")]
     pub from: Option<Parent>,
 }
 
-/// Reason of the end of a run.
+/// The reason for the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunEndReason {
@@ -111,12 +111,12 @@ pub enum RunEndReason {
     Bankruptcy,
     /// The user abandoned the run.
     Abandoned,
-    /// The lesson of the run was over.
+    /// The last step of the lesson ended.
     Lesson,
 }
 
 impl RunEndReason {
-    /// Returns the name in trajectories.
+    /// Returns the name of the reason in trajectories.
     pub fn id(self) -> &'static str {
         match self {
             RunEndReason::Horizon => "horizon",
@@ -127,20 +127,20 @@ impl RunEndReason {
     }
 }
 
-/// The end of a run.
+/// The event at the end of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct End {
-    /// Reason.
+    /// Reason for the end of the run.
     pub reason: RunEndReason,
-    /// Cash, dollars.
+    /// Cash at the end of the run, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
-    /// Score; `None` for an abandoned run or a lesson.
+    /// Score of the run; `None` for an abandoned run or a lesson.
     #[serde(serialize_with = "serialize_shortest_option")]
     pub score: Option<f64>,
 }
 
-/// Accepts null, but not a missing field.
+/// Accepts a null field and rejects a missing field.
 fn required_nullable<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Parent>, D::Error> {
     Option::deserialize(field)
 }
@@ -148,8 +148,8 @@ fn required_nullable<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Paren
 /// The output of a calculation before a week.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CalculationOutput {
-    /// Name.
+    /// Name of the calculation.
     pub name: String,
-    /// Output, cut to what the dashboard shows.
+    /// Output of the calculation, truncated to the length that the dashboard shows.
     pub output: String,
 }

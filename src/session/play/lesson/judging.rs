@@ -1,5 +1,5 @@
-//! Judgement of a step: measurements of goals, guesses and pitfalls, and the reference play that goals are compared
-//! with.
+//! Evaluation of a lesson step: measurements of goals, guesses and pitfalls, and the reference play with which goals
+//! are compared.
 
 use super::progress::weeks_passed;
 use super::reference::{PartPlay, play_part, uses_rules};
@@ -11,7 +11,7 @@ use novamind_record::lesson::{
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_tools::Rejection;
 
-/// Returns the value of a measurement over the weeks that end after `from_day`; `None` if it has no value.
+/// Evaluates a measurement over the weeks that end after `from_day`. Returns `None` if the measurement has no value.
 ///
 /// # Errors
 /// The statement is rejected, or does not return one number.
@@ -39,8 +39,8 @@ fn query_number(session: &mut Session, sql: &str) -> Result<Option<f64>, String>
 }
 
 impl Session {
-    /// Sets the function that evaluates rules, needed for goals relative to a reference play with rules. Judges a
-    /// step that has waited for it.
+    /// Sets the function that evaluates rules. Goals relative to a reference play with rules need this function.
+    /// Judges a completed step that could not be judged without it.
     pub fn set_rule_evaluator(&mut self, answers: RuleEvaluator) {
         self.rule_evaluator = Some(answers);
         if self.log().is_written() && self.awaits_judgement() {
@@ -60,7 +60,7 @@ impl Session {
         })
     }
 
-    /// Returns whether judging a step needs a function that evaluates rules, and none is set.
+    /// Returns whether judging a step needs a function that evaluates rules, and this function is not set.
     pub(super) fn lacks_rule_evaluator(&self, standing: &LessonProgress, step: usize) -> bool {
         let is_relative = |goal: &LessonGoal| goal.bound.is_relative();
         self.rule_evaluator.is_none()
@@ -68,7 +68,7 @@ impl Session {
             && uses_rules(&standing.lesson.plan.good.plays)
     }
 
-    /// Records the pitfalls that occurred in the last week for the first time.
+    /// Records the pitfalls that were first triggered in the last week.
     pub(super) fn record_pitfalls(&mut self, standing: &LessonProgress, step: usize, weeks: u32) {
         let texts = standing.met_pitfalls();
         let is_open =
@@ -84,7 +84,8 @@ impl Session {
         }
     }
 
-    /// Records the outcomes of guesses of a completed step; at the end of the part also of guesses that wait for it.
+    /// Records the outcomes of the guesses of a completed step. At the end of the part, also records the outcomes that
+    /// are due then.
     pub(super) fn judge_guesses(&mut self, standing: &LessonProgress, step: usize, is_over: bool) {
         let part = standing.current_part();
         let is_last = is_over || step + 1 == part.steps.len();
@@ -145,8 +146,8 @@ impl Session {
         }
     }
 
-    /// Returns the reference play on the seed of this run, up to the end of a step. `None` if no goal of the step
-    /// depends on it, or if it cannot be played.
+    /// Returns the reference play on the seed of this run, up to the end of a step. Returns `None` if no goal of the
+    /// step depends on the reference play, or if it cannot be simulated.
     fn reference_play(&self, standing: &LessonProgress, step: usize) -> Option<Session> {
         let goals = &standing.step(step)?.goals;
         let mut relative = goals.iter().filter(|goal| goal.bound.is_relative()).peekable();
@@ -157,7 +158,7 @@ impl Session {
             seed: Some(self.manifest().seed),
             scheduled_calls: &standing.lesson.plan.good.plays,
             weeks: Some(standing.current_part().step_weeks(step).1),
-            // Judging its goals would need the reference play again.
+            // Do not judge the goals of the reference play: this would need another reference play.
             is_judged: false,
             needs_database: relative.any(|goal| goal.measurement.needs_database()),
         };

@@ -1,4 +1,4 @@
-//! Lessons in a run: their start, the judgement of steps, and reference plays in memory.
+//! Lessons in a run: the start of a lesson, the evaluation of steps, and reference plays in memory.
 //!
 //! The definition of lessons is in `novamind-record`; pages, answers and debriefs are in `novamind-course`.
 

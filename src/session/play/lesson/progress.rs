@@ -1,4 +1,4 @@
-//! Progress of a lesson before and after a week, and its restrictions.
+//! Restrictions of a lesson before a week, and its progress after a week.
 
 use serde_json::json;
 
@@ -9,19 +9,19 @@ use novamind_record::trajectory::record::{Activity, LessonNote, RunEndReason, Vi
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Rejection, ToolId};
 
-/// Returns the whole weeks that have passed.
+/// Returns the number of whole weeks that have been simulated.
 pub fn weeks_passed(session: &Session) -> u32 {
     session.day() / session.params().run.days_per_week
 }
 
-/// Returns the step that the next week belongs to, counted from 0; `None` outside lessons and once the part has ended.
+/// Returns the index of the step to which the next week belongs. Returns `None` outside lessons and after the part has ended.
 pub fn lesson_step(session: &Session) -> Option<usize> {
     let standing = session.lesson().filter(|_| session.ended().is_none())?;
     standing.current_part().step_after(weeks_passed(session))
 }
 
 impl Session {
-    /// Returns the position of the student in the lesson of this run; `None` outside lessons.
+    /// Returns the student's progress in the lesson of this run, or `None` if the run is not a lesson run.
     pub fn lesson(&self) -> Option<&LessonProgress> {
         self.lesson.as_deref()
     }
@@ -31,7 +31,7 @@ impl Session {
         standing.map_or(Ok(()), |standing| standing.check_tool(tool))
     }
 
-    /// Rejects a week if the question of the lesson has no answer yet, or if the lesson has ended.
+    /// Rejects a week if the question of the step is unanswered, or if the lesson has ended.
     pub(crate) fn check_lesson_week(&self, via: Via) -> Result<(), Rejection> {
         let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
         let Some(step) = lesson_step(self) else {
@@ -63,13 +63,13 @@ impl Session {
         self.call(ToolId::SetCapacityTier, &json!({ "tier": next }), Via::Lesson).map(|_| ())
     }
 
-    /// Judges a week, before the line that ends the run. When a step has ended, judges it and starts the next one;
-    /// after the last step the run ends. Existing judgements are not changed.
+    /// Judges a week before the `end` line of the run is written. If a step has ended, judges the step and starts the
+    /// next step. After the last step, ends the run. Does not change existing judgements.
     pub(crate) fn finish_lesson_week(&mut self) {
         let is_open = self.ended().is_none();
         let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
         let is_over = self.simulation().world.is_over(self.params());
-        // A week with a bankruptcy counts.
+        // A week that ends early by bankruptcy counts as a week.
         let weeks = self.day().div_ceil(self.params().run.days_per_week);
         let part = standing.current_part();
         let step = part.step_after(weeks.saturating_sub(1));
@@ -78,7 +78,7 @@ impl Session {
             return;
         };
         if standing.is_judged {
-            // Statements must see the week.
+            // SQL statements must return the rows of the week.
             self.commit_projection();
             self.record_pitfalls(&standing, step, weeks);
         }
@@ -88,7 +88,7 @@ impl Session {
         }
         if standing.is_judged {
             if self.lacks_rule_evaluator(&standing, step) {
-                // It is judged when `set_rule_evaluator` is called.
+                // `set_rule_evaluator` judges the step later.
                 return;
             }
             self.judge_guesses(&standing, step, is_over);
@@ -110,7 +110,7 @@ impl Session {
     /// Records an event of the lesson on the current day.
     ///
     /// # Errors
-    /// `not_in_a_lesson`, `not_saved`.
+    /// One of the rejections `not_in_a_lesson`, `not_saved`.
     pub fn record_lesson_event(&mut self, note: LessonNote) -> Result<(), Rejection> {
         if self.lesson.is_none() {
             return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));

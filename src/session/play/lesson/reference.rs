@@ -1,4 +1,4 @@
-//! Reference plays: scheduled calls of a lesson, played in memory.
+//! Reference plays: scheduled calls of a lesson that are executed in a run in memory.
 
 use super::progress::lesson_step;
 use std::sync::Arc;
@@ -13,22 +13,22 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote, Via};
 use novamind_tools::Rejection;
 
-/// A scheduled play of a part.
+/// A play of a lesson part with scheduled calls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartPlay<'a> {
-    /// The lesson.
+    /// Lesson that contains the part.
     pub lesson: &'a Arc<Lesson>,
     /// Index of the part, from 0.
     pub part: usize,
-    /// The seed; by default that of the part.
+    /// Seed of the run; defaults to the seed of the part.
     pub seed: Option<u64>,
-    /// Scheduled calls.
+    /// Calls of the play, by part and week.
     pub scheduled_calls: &'a [ScheduledCalls],
-    /// Number of weeks after which the play stops; by default at the end of the part.
+    /// Number of weeks after which the play stops; defaults to the length of the part.
     pub weeks: Option<u32>,
     /// Whether goals and pitfalls are checked.
     pub is_judged: bool,
-    /// Whether it needs a database.
+    /// Whether the play needs a database for measurements.
     pub needs_database: bool,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn uses_rules(plays: &[ScheduledCalls]) -> bool {
     plays.iter().any(|play| play.calls.iter().any(is_rules))
 }
 
-/// Plays a part in memory.
+/// Plays a part in memory and returns its session.
 ///
 /// # Errors
 /// The part cannot start, or a call is rejected.
@@ -45,11 +45,11 @@ pub fn play_part(play: &PartPlay<'_>, answers: RuleEvaluator) -> Result<Session,
     play_part_with_hooks(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
 }
 
-/// Like [`play_part`]. `before_week` is called before each week, after its calls. `after_week` is called with the
-/// number of weeks that have passed.
+/// Plays a part like [`play_part`]. Calls `before_week` before each week, after the scheduled calls of that week.
+/// Calls `after_week` with the number of simulated weeks.
 ///
 /// # Errors
-/// As [`play_part`], and the errors of `after_week`.
+/// The same errors as [`play_part`], and the errors of `after_week`.
 pub fn play_part_with_hooks(
     play: &PartPlay<'_>,
     answers: RuleEvaluator,

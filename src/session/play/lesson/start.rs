@@ -1,4 +1,4 @@
-//! Start of a lesson and of its steps, and completion of a start that was interrupted.
+//! Start of a lesson and of its steps, and completion of an interrupted start.
 
 use super::progress::{lesson_step, weeks_passed};
 use std::path::Path;
@@ -14,10 +14,10 @@ use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Rejection;
 
 impl Session {
-    /// Plays the start of a lesson, until the student can decide. Calls `tell` for each simulated day.
+    /// Executes the calls and weeks of a lesson before the student can decide. Calls `tell` for each simulated day.
     ///
     /// # Errors
-    /// A call of the start is rejected.
+    /// One of the initial calls is rejected.
     pub(crate) fn start_lesson(
         &mut self,
         entry: &LessonEntry,
@@ -33,7 +33,8 @@ impl Session {
         self.continue_start(0, tell)
     }
 
-    /// Continues the start of a lesson in the current week, of which `made` calls exist; then starts the first step.
+    /// Continues the start of a lesson in the current week, whose first `made` calls are recorded already. Then starts
+    /// the first step.
     fn continue_start(&mut self, made: usize, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), RunError> {
         let Some(standing) = self.lesson.as_deref() else { return Ok(()) };
         let (lesson, part) = (standing.lesson.clone(), standing.part);
@@ -83,10 +84,10 @@ impl Session {
         self.record_lesson_event(note)
     }
 
-    /// Restores the lesson of a run that was opened again.
+    /// Restores the lesson of a run that was reopened.
     ///
     /// # Errors
-    /// The lesson in the run folder is missing or invalid, or is not the one of the first line.
+    /// The lesson in the run folder is missing or invalid, or differs from the lesson in the first line.
     pub(crate) fn resume_lesson(&mut self, folder: &Path, lines: &[Line]) -> Result<(), RunError> {
         let Some(stamp) = self.manifest().lesson.clone() else { return Ok(()) };
         let lesson = Lesson::from_run(folder, &stamp.name)?;
@@ -95,13 +96,13 @@ impl Session {
             return Err(RunError::Damaged {
                 path: folder.join("lesson.toml"),
                 line: 1,
-                problem: format!("this is not the recorded lesson, {}", stamp.name),
+                problem: format!("this file is not the recorded lesson, {}", stamp.name),
                 remedy: "The trajectory was not touched; restore lesson.toml and lesson.md from a copy to open the run"
                     .to_owned(),
             });
         }
         self.lesson = Some(Box::new(LessonProgress::from_lines(Arc::new(lesson), part - 1, lines)));
-        // The program may have ended between a week and its judgement.
+        // The program may have stopped after simulating a week and before judging it.
         let is_open = |line: &Line| {
             matches!(
                 line.record,
@@ -114,8 +115,8 @@ impl Session {
         Ok(())
     }
 
-    /// Starts the first step of a lesson, or a step that is tried again, if the program ended before. An interrupted
-    /// week is simulated before this.
+    /// Starts the first step of a lesson, or a step that the student repeats, if the program stopped before the step
+    /// started. The caller must first simulate an interrupted week.
     ///
     /// # Errors
     /// The start of the lesson is rejected.

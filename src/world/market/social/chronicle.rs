@@ -1,4 +1,4 @@
-//! A record of the company's recent days, which the judge of its posts uses
+//! A record of the company's recent days, on which the judge of the player's posts is based
 //! (docs/mechanics/market/social/chronicle.md).
 
 use crate::canonical::canonical;
@@ -8,35 +8,35 @@ use crate::product::Product;
 use crate::quota::Quota;
 use crate::settings::Settings;
 
-/// Number of days kept in addition to today.
+/// Number of past days in the record, in addition to today.
 pub const MEMORY_DAYS: usize = 28;
 
-/// The recent days, oldest first; the last one is today.
+/// Record of the company's recent days, oldest first. The last page is today.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chronicle {
     days: Vec<Page>,
 }
 
-/// The record of one day.
+/// The record of one day of the company.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
-    /// Day.
+    /// Day of the page.
     pub day: u32,
-    /// Quality gained so far, shared and group-specific.
+    /// Sum of general bonus and group bonus, by group.
     pub bonus: ByGroup<f64>,
-    /// Shared quality gained so far.
+    /// General bonus.
     pub shared_bonus: f64,
-    /// List prices, dollars a month.
+    /// List prices, dollars per month.
     pub prices: ByPlan<f64>,
-    /// Quotas, units a day.
+    /// Quotas, units per day.
     pub quotas: ByPlan<Quota>,
-    /// The largest discount that any customer could get, dollars a month.
+    /// The largest discount that a customer could get, dollars per month.
     pub discount: f64,
-    /// Whether there was an outage.
+    /// Whether the service had an outage.
     pub outage: bool,
     /// Usage above capacity as a share of capacity.
     pub overload: f64,
-    /// Latency, ms; `None` on day 0.
+    /// 95th percentile of the latency, in milliseconds; `None` on day 0.
     pub p95_ms: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ canonical! {
 }
 
 impl Chronicle {
-    /// Returns the record of day 0.
+    /// Creates a chronicle with the page of day 0.
     pub fn initial(settings: &Settings) -> Chronicle {
         let page = Page {
             day: 0,
@@ -62,7 +62,7 @@ impl Chronicle {
         Chronicle { days: vec![page] }
     }
 
-    /// Appends a page at the end of a day and removes the oldest if necessary.
+    /// Appends the page of a day at its end. Removes the oldest page if necessary.
     pub fn append_day(&mut self, day: u32, service: &ServiceDay, settings: &Settings, product: &Product) {
         let surplus = (self.days.len()).saturating_sub(MEMORY_DAYS);
         self.days.drain(..surplus);
@@ -89,17 +89,17 @@ impl Chronicle {
         self.days.first().expect("a chronicle is never empty")
     }
 
-    /// Returns the newest pages, newest first.
+    /// Returns the pages of the last `days` days, newest first.
     pub fn newest_first(&self, days: usize) -> impl Iterator<Item = &Page> {
         self.days.iter().rev().take(days)
     }
 
-    /// Returns all pages with their predecessors, newest first.
+    /// Returns all pairs of consecutive pages (older, newer), newest pair first.
     pub fn consecutive_pages(&self) -> impl Iterator<Item = (&Page, &Page)> {
         self.days.windows(2).rev().map(|pair| (&pair[0], &pair[1]))
     }
 
-    /// Returns the change of a group's quality over the recorded days.
+    /// Returns the change of a group's quality bonus over the recorded days.
     pub fn quality_change(&self, group: Group) -> f64 {
         self.today().bonus[group] - self.oldest().bonus[group]
     }

@@ -4,18 +4,18 @@ use crate::events::{Engagement, Sentiment};
 use crate::params::{Params, SocialParams};
 use crate::random::Stream;
 
-/// Draws for the engagement of a post: base likes and shares, then uniform numbers in order.
+/// Random draws for the engagement of a post: base likes, base shares and uniform draws, in draw order.
 #[derive(Debug, Clone, Copy)]
 pub struct EngagementDraws {
-    /// Base likes.
+    /// Base number of likes.
     pub likes: u32,
-    /// Base shares.
+    /// Base number of shares.
     pub shares: u32,
-    /// Uniform part of the factor.
+    /// Uniform draw of the engagement factor.
     pub factor: f64,
-    /// Decides whether the post goes viral.
+    /// Uniform draw that decides whether the post goes viral.
     pub spike: f64,
-    /// Uniform parts of a viral spike: score, likes, shares.
+    /// Uniform draws of a viral spike: score, likes and shares.
     pub explosion: [f64; 3],
 }
 
@@ -40,8 +40,8 @@ pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, params: &Social
     Engagement { likes: likes as u32, shares: shares as u32, virality }
 }
 
-/// Returns the ranges of base likes and shares, both ends included. As in the release, only groups whose name
-/// starts with E count as enterprises; discoverable enterprises do not.
+/// Returns the ranges of base likes and shares, both ends included. As in the released simulator, only groups whose
+/// name starts with E count as enterprises; discoverable groups do not.
 pub fn engagement_ranges(group_id: &str, params: &Params) -> [(u32, u32); 2] {
     let social_params = &params.social;
     if group_id.starts_with('E') {

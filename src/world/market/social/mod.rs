@@ -1,6 +1,6 @@
 //! Social media: posts of customers, the press, and the player's posts (docs/mechanics/market/social/README.md).
 //!
-//! Posts of others have no effect; they are information. The player's posts affect leads after the judge of
+//! Posts that the player did not write only inform and have no effect. The player's posts affect leads after the judge of
 //! the `voice` crate has determined the reaction of each group ([`reach::apply_reactions`]).
 
 pub mod chronicle;
@@ -22,9 +22,9 @@ use own_posts::OwnPost;
 /// The state of social media.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Social {
-    /// Number of the next post by others.
+    /// Number of the next post that the player does not write.
     pub next_post: u32,
-    /// The player's posts.
+    /// Posts of the player.
     pub own: Vec<OwnPost>,
     /// Day of the next round of posts about the economy; `None` before the first day.
     pub next_round: Option<u32>,
@@ -35,17 +35,17 @@ pub struct Social {
 canonical! { Social { next_post, own, next_round, chronicle } }
 
 impl Social {
-    /// Returns the state on day 0.
+    /// Returns the state of social media on day 0.
     pub fn initial(settings: &Settings) -> Social {
         Social { next_post: 1, own: Vec::new(), next_round: None, chronicle: Chronicle::initial(settings) }
     }
 
-    /// Returns whether a post by others has this number.
+    /// Returns whether a post with this number exists. Posts of the player have separate numbers.
     pub fn has_post(&self, post: u32) -> bool {
         (1..self.next_post).contains(&post)
     }
 
-    /// Records a post by others and returns its number.
+    /// Publishes a post that the player did not write and returns the number of the post.
     pub fn publish(
         &mut self,
         author: Option<PostAuthor>,

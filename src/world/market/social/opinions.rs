@@ -1,4 +1,4 @@
-//! A subscriber's opinion: the weight of their post, their problems, and the theme that matters most
+//! Opinions of subscribers: the weight of a subscriber's post, the subscriber's problems, and the most important theme
 //! (docs/mechanics/market/social/opinions.md).
 
 use super::chronicle::Chronicle;
@@ -10,12 +10,12 @@ use crate::identifiers::Group;
 use crate::params::SocialParams;
 use crate::quality::{quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty};
 
-/// Shared inputs of today's opinions.
+/// Inputs that all opinions of a day share.
 #[derive(Clone, Copy)]
 pub struct OpinionContext<'a> {
-    /// The day.
+    /// Context of the day.
     pub day: &'a DayContext<'a>,
-    /// Record of the last four weeks.
+    /// Record of the company's last four weeks.
     pub chronicle: &'a Chronicle,
 }
 
@@ -27,7 +27,7 @@ impl OpinionContext<'_> {
         quota_factor(self.day.morning.quotas[block.plan[at]], demand, &self.day.params.quality)
     }
 
-    /// Returns the problems of a row today.
+    /// Returns today's problems of the subscriber in a row.
     #[inline]
     pub fn troubles(&self, block: &Block, at: usize) -> Troubles {
         Troubles {
@@ -38,7 +38,7 @@ impl OpinionContext<'_> {
         }
     }
 
-    /// Returns the inputs of a row's post weight; `before` is its satisfaction before today's update.
+    /// Returns the inputs of a subscriber's post weight. `before` is the satisfaction before today's update.
     #[inline]
     pub fn weight_inputs(&self, group: Group, block: &Block, at: usize, before: f64) -> PostWeightInputs {
         let satisfaction = block.satisfaction[at];
@@ -48,13 +48,13 @@ impl OpinionContext<'_> {
             influencer: self.day.params.group(group).influencer,
             days_subscribed: self.day.day() - block.start_day[at],
             events: self.troubles(block, at).count(),
-            // Contracts last only a month, so no customer counts as locked in.
+            // Contracts last only a month, so no customer is locked in.
             contract_locked: false,
             seats: if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 },
         }
     }
 
-    /// Returns the opinion of a row; `u` is a uniform draw.
+    /// Returns the opinion of the subscriber in a row. `u` is a uniform draw.
     pub fn opinion(&self, group: Group, block: &Block, at: usize, before: f64, u: f64) -> Opinion {
         let troubles = self.troubles(block, at);
         let change = block.satisfaction[at] - before;
@@ -76,7 +76,7 @@ impl OpinionContext<'_> {
         }
     }
 
-    /// Returns a row's complaints with the quality that each costs.
+    /// Returns the themes that a subscriber can criticize, each with the quality that it costs.
     fn complaint_weights(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);
@@ -96,13 +96,13 @@ impl OpinionContext<'_> {
         ]
     }
 
-    /// Returns the aspects that a row values, with the quality that each adds.
+    /// Returns the themes that a subscriber can praise, each with the quality that it adds.
     fn praise_weights(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);
         let surplus = (delivered - block.q_min[at]).max(0.0);
         let (_, share) = self.required_quality_and_budget_share(block, at);
-        // The quality that bad service would have cost minus the quality it did cost in recent weeks.
+        // Quality loss at full overload less the mean quality loss from bad service in recent weeks.
         let calm = (quality.service_overload_weight - self.mean_penalty()).max(0.0);
         vec![
             (Theme::Price, surplus * (1.0 - share)),
@@ -114,7 +114,7 @@ impl OpinionContext<'_> {
         ]
     }
 
-    /// Returns the quality that the price of a row requires, and the share of its budget that the price takes, 0..=1.
+    /// Returns the required quality at a subscriber's price, and the price as a share of the budget, 0..=1.
     fn required_quality_and_budget_share(&self, block: &Block, at: usize) -> (f64, f64) {
         let needed = (block.required[at] - block.q_min[at]).max(0.0);
         let budget = block.effective_c_max[at];
@@ -127,7 +127,7 @@ impl OpinionContext<'_> {
         relationship_bonus(relationship_as_read(block.relationship[at], quality), quality)
     }
 
-    /// Returns the mean quality lost to bad service over the last two weeks.
+    /// Returns the mean quality loss from overload and outages over the last two weeks.
     fn mean_penalty(&self) -> f64 {
         const DAYS: usize = 14;
         let penalty = |overload, outage| service_penalty(overload, outage, &self.day.params.quality);
@@ -138,7 +138,7 @@ impl OpinionContext<'_> {
     }
 }
 
-/// Returns the cause of a post: the first problem, otherwise a change of satisfaction, otherwise general.
+/// Returns the cause of a post: the first problem, otherwise a change in satisfaction, otherwise `General`.
 pub fn post_cause(troubles: Troubles, change: f64, params: &SocialParams) -> PostCause {
     match troubles {
         Troubles { overload: true, .. } => PostCause::Overload,
@@ -151,7 +151,7 @@ pub fn post_cause(troubles: Troubles, change: f64, params: &SocialParams) -> Pos
     }
 }
 
-/// Picks a theme by weight; quality if all weights are zero.
+/// Picks a theme by weight with a uniform draw `u`. Returns `Quality` if all weights are zero.
 pub fn pick_theme(worths: &[(Theme, f64)], u: f64) -> Theme {
     let total: f64 = worths.iter().map(|(_, worth)| worth).sum();
     let mut left = u * total;

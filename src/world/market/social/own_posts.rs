@@ -9,15 +9,15 @@ use crate::params::CeoPosts;
 pub struct OwnPost {
     /// Day of the post.
     pub day: u32,
-    /// Its text: at most 280 code points, not blank.
+    /// Text of the post: at most 280 code points, not blank.
     pub content: String,
-    /// Number of the post it answers.
+    /// Number of the post to which the player replies.
     pub reply_to: Option<u32>,
-    /// Reactions in -1..=1 by group after it was judged; 0 for unknown groups.
+    /// Reaction of each group, -1..=1, or 0 for unknown groups. `None` before the post is judged.
     pub effects: Option<ByGroup<f64>>,
-    /// How often it was seen.
+    /// Number of views of the post.
     pub views: u64,
-    /// Numbers of its comments.
+    /// Numbers of the comments on the post.
     pub comments: Vec<u32>,
 }
 
@@ -30,7 +30,8 @@ impl OwnPost {
     }
 }
 
-/// Returns the change of the lead factor by one reaction at an age in days; reactions below 0.6 have no effect.
+/// Returns the change of the lead factor from one reaction to a post of the given age in days. Reactions below 0.6
+/// have no effect.
 pub fn post_effect(effect: f64, age_days: u32, posts: &CeoPosts) -> f64 {
     let (size, threshold) = (effect.abs(), posts.multiplier_viral_threshold);
     if size < threshold {
@@ -40,7 +41,7 @@ pub fn post_effect(effect: f64, age_days: u32, posts: &CeoPosts) -> f64 {
     effect.signum() * strength * libm::exp2(-f64::from(age_days) / posts.multiplier_half_life_days)
 }
 
-/// Returns the factor on the leads of a group: 1 plus the effects of all posts, 0.75..=1.25.
+/// Returns the lead factor of a group from the player's posts: 1 plus the effects of all posts, within 0.75..=1.25.
 pub fn social_multiplier(group: Group, day: u32, posts: &[OwnPost], ceo_posts: &CeoPosts) -> f64 {
     let judged = posts.iter().filter(|post| post.day <= day);
     let sum: f64 = judged

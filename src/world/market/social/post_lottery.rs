@@ -1,8 +1,8 @@
 //! Customers' posts: the selection of authors (docs/mechanics/market/social/crowd.md).
 //!
-//! Weighted drawing without replacement is equivalent to the order of exponential clocks whose rates are the
-//! weights. The first authors are therefore drawn while all subscribers are present, and customers who leave
-//! later in the day join with their own clocks.
+//! Weighted drawing without replacement is equivalent to the order of exponential clocks whose rates are the weights.
+//! The first authors are therefore drawn from all subscribers before the decisions of the day. Customers who leave
+//! later in the day are added with separate clocks.
 
 use super::Social;
 use super::engagement::draw_engagement;
@@ -27,11 +27,11 @@ pub fn is_posting_day(day: u32, params: &Params) -> bool {
     }
 }
 
-/// Post weights of the rows of a block.
+/// Sum of the post weights of a block.
 pub struct BlockWeights {
-    /// Satisfaction of its rows before today's update.
+    /// Satisfaction of each row of the block before today's update.
     before: Vec<f64>,
-    /// Sum of the weights.
+    /// Sum of the post weights.
     weight: f64,
 }
 
@@ -49,12 +49,12 @@ pub fn weigh_block(
 
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    /// Time of its exponential clock.
+    /// Time of the candidate's exponential clock.
     time: f64,
     customer: u32,
     group: Group,
     n: u32,
-    /// Satisfaction that determines the tone; `None` for a complaint.
+    /// Satisfaction that determines the tone of the post; `None` for a complaint.
     satisfaction: Option<f64>,
     opinion: Opinion,
 }
@@ -66,8 +66,8 @@ pub struct PostLottery {
     remaining_posts: usize,
 }
 
-/// Starts the selection among all subscribers, right after the satisfaction update. `voices` belong to the
-/// non-empty blocks, in their order.
+/// Starts the selection among all subscribers, directly after the satisfaction update. `voices` has one element per
+/// non-empty block, in block order.
 pub fn from_subscribers(
     mut voices: Vec<BlockWeights>,
     customers: &Customers,
@@ -110,8 +110,8 @@ fn row_weight(scene: &OpinionContext<'_>, group: Group, block: &Block, at: usize
     post_weight(&scene.weight_inputs(group, block, at, before), &scene.day.params.social)
 }
 
-/// Returns the row at which the running sum of the weights of remaining rows exceeds the target, or the last
-/// one if rounding prevents that.
+/// Returns the first row at which the running sum of the remaining rows' weights exceeds the target. If rounding keeps
+/// the sum below the target, returns the last row.
 fn find_row(
     blocks: &[(Group, &Block)],
     voices: &[BlockWeights],
@@ -142,7 +142,7 @@ fn find_row(
 }
 
 impl PostLottery {
-    /// Adds individuals who cancelled and enterprises that were lost.
+    /// Adds individuals who cancelled today and enterprises that were lost today as candidates.
     pub fn add_departed(
         &mut self,
         gave_up: &[CancelledIndividual],
@@ -205,13 +205,13 @@ impl PostLottery {
         self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
     }
 
-    /// Publishes the posts of the earliest candidates.
+    /// Publishes the posts of the candidates whose clocks ring first.
     pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
         self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
         self.candidates.truncate(self.remaining_posts);
         for candidate in self.candidates {
             let u = self.stream.uniform();
-            // Departed customers always complain.
+            // Customers who left always complain.
             let tone =
                 candidate.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
             let engagement = draw_engagement(tone, candidate.group.id(), params, &mut self.stream);
@@ -228,7 +228,7 @@ impl PostLottery {
     }
 }
 
-/// Returns a customer as an author, with the profile drawn at arrival.
+/// Returns a customer as an author, with the profile that was drawn at arrival.
 pub fn post_author(
     customer: u32,
     group: Group,
@@ -237,7 +237,7 @@ pub fn post_author(
     params: &Params,
     streams: &Streams,
 ) -> PostAuthor {
-    // The speed of deals does not affect the profile.
+    // The deal velocity (1.0) does not affect the profile.
     let persona = draw_traits(group, n, 1.0, params, streams).persona;
     PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
 }
@@ -259,7 +259,7 @@ mod tests {
         Group::parse("S1").expect("a group")
     }
 
-    /// The posts of a seventh day with these subscribers and departed customers.
+    /// Returns the posts of a posting day with the given subscribers and customers who left.
     fn posts(
         rows: &[Subscriber],
         gave_up: &[CancelledIndividual],
@@ -335,7 +335,7 @@ mod tests {
 
     #[test]
     fn first_author_is_drawn_by_weight() {
-        // Weights 1 + 10 |S|: 1, 2, 3, and 15 for an individual who cancelled at -0.2.
+        // The weights are 1 + 10 |S|, that is 1, 2 and 3, and 15 for an individual who cancelled at satisfaction -0.2.
         let rows = [content(1, 0.0), content(2, 0.1), content(3, 0.2)];
         let runs = 4000;
         let mut first = [0.0; 4];

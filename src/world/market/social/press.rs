@@ -7,17 +7,18 @@ use crate::market::economy::Economy;
 use crate::params::{Competitor, MacroEconomy, Params};
 use crate::random::{Part, Stream, Streams};
 
-/// Returns the event that the press covers: the oldest one still within its coverage period.
+/// Returns the event that the press covers: the oldest event within its coverage period.
 pub fn current_event<'a>(day: u32, events: &'a [Event], competitor: &Competitor) -> Option<&'a Event> {
     events.iter().find(|event| event.day + competitor.competitor_event_post_days >= day)
 }
 
-/// Returns the size of an event as the press estimates it; `u` is uniform within the error range.
+/// Returns the gain in quality that the press estimates for an event. `u` is a uniform draw within the error range.
 pub fn estimated_boost(boost: f64, u: f64) -> f64 {
     (boost + u * boost).max(0.0)
 }
 
-/// Returns views, likes and shares of a post about a competitor: int(base (1 + U)), int(views ratio (1 + U)).
+/// Returns the engagement of a post about a competitor. Views are int(base (1 + U)); likes and shares are int(views
+/// ratio (1 + U)).
 pub fn competitor_engagement(
     severity: Severity,
     [views, likes, shares]: [f64; 3],
@@ -84,8 +85,8 @@ pub fn economy_engagement([views, likes, shares]: [f64; 3], economy: &MacroEcono
     }
 }
 
-/// Writes today's posts about the economy: one for each published reading, and at intervals a round of
-/// opinions about its current state.
+/// Writes today's posts about the economy: one for each published PMI reading, and at intervals a round of opinions
+/// about the current state.
 pub fn write_economy_posts(
     day: u32,
     economy: &Economy,
@@ -136,7 +137,7 @@ mod tests {
         Event { day, boost, sampled: boost, u: 0.0, by_feedback: false }
     }
 
-    /// Estimate, likes and shares of two posts for given draws.
+    /// Returns the estimate, and likes and shares of two posts, for given draws.
     fn posts(events: &[Event], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
         let competitor = Params::bundled().competitor;
         let event = current_event(day, events, &competitor).expect("a topic");
@@ -189,7 +190,7 @@ mod tests {
         assert!((150..=310).contains(&(social.next_post - 1)), "{}", social.next_post - 1);
     }
 
-    /// Renewal theory: by day 60 there are 60/12.5 - 0.39 rounds of 5 posts, and one reading.
+    /// By renewal theory, 60 days have 60/12.5 - 0.39 rounds of 5 posts, plus one reading.
     #[test]
     fn first_sixty_days_average_23_economy_posts() {
         let params = Params::bundled();

@@ -9,7 +9,7 @@ use crate::identifiers::{ByGroup, Group};
 use crate::params::{CeoPosts, Params};
 use crate::random::{Part, Stream, Streams};
 
-/// The reactions of groups to a post of the player.
+/// Reactions of the known groups to a post of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PostReactions {
     /// Number of the post, from 1.
@@ -18,7 +18,8 @@ pub struct PostReactions {
     pub effects: Vec<(Group, f64)>,
 }
 
-/// Returns the views of a group before noise: base f, f = 1..3 up to the threshold, 3..100 above it.
+/// Returns the views by a group before noise. The base views are multiplied by a factor of 1 to 3 for reactions up to
+/// the threshold, and of 3 to 100 above the threshold.
 pub fn expected_views(effect: f64, subscribers: u32, posts: &CeoPosts) -> f64 {
     let base = posts.views_base_min.max(posts.views_base_per_subscriber * f64::from(subscribers));
     let (size, threshold) = (effect.abs(), posts.viral_threshold);
@@ -87,7 +88,7 @@ fn apply_post_reactions(
     (own_post.effects, own_post.views, own_post.comments) = (Some(effects), views, comments);
 }
 
-/// Returns a random active subscriber of a group, or `None` if it has none.
+/// Returns a random active subscriber of a group, or `None` if the group has no subscribers.
 fn pick_author(
     group: Group,
     customers: &Customers,

@@ -3,7 +3,7 @@
 use crate::events::Sentiment;
 use crate::params::{SentimentChances, SocialParams};
 
-/// Returns the probabilities of sentiments at a satisfaction.
+/// Returns the probability of each sentiment at a satisfaction.
 pub fn sentiment_chances(satisfaction: f64, params: &SocialParams) -> &SentimentChances {
     match satisfaction {
         s if s >= params.sentiment_band_very_positive_min => &params.sentiment.very_positive,
@@ -14,7 +14,7 @@ pub fn sentiment_chances(satisfaction: f64, params: &SocialParams) -> &Sentiment
     }
 }
 
-/// Returns the sentiment of a post from a uniform draw.
+/// Returns the sentiment of a post for a uniform draw `u`.
 pub fn sentiment(satisfaction: f64, u: f64, params: &SocialParams) -> Sentiment {
     let chances = sentiment_chances(satisfaction, params);
     if u < chances.positive {

@@ -1,4 +1,4 @@
-//! Weights of potential authors of a day (docs/mechanics/market/social/crowd.md#weights).
+//! Weights with which customers are selected as authors of posts (docs/mechanics/market/social/crowd.md#weights).
 
 use crate::params::SocialParams;
 
@@ -7,21 +7,21 @@ use crate::params::SocialParams;
 pub struct PostWeightInputs {
     /// Satisfaction after today's update.
     pub satisfaction: f64,
-    /// Its change today.
+    /// Today's change in satisfaction.
     pub change: f64,
     /// Whether the group is an influencer group.
     pub influencer: bool,
-    /// Days subscribed.
+    /// Days since the subscription started.
     pub days_subscribed: u32,
     /// Number of problems today: overload, outage, issue, quota.
     pub events: u32,
     /// Whether an unhappy enterprise is locked in by a contract.
     pub contract_locked: bool,
-    /// Whole seats.
+    /// Number of whole seats.
     pub seats: f64,
 }
 
-/// Returns the weight of a subscriber.
+/// Returns the post weight of a subscriber.
 #[inline]
 pub fn post_weight(voice: &PostWeightInputs, params: &SocialParams) -> f64 {
     let s = voice.satisfaction;
@@ -47,7 +47,7 @@ pub fn post_weight(voice: &PostWeightInputs, params: &SocialParams) -> f64 {
     replace_nonfinite(weight * voice.seats.max(1.0), params)
 }
 
-/// Returns the weight of an individual who cancelled today.
+/// Returns the post weight of an individual who cancelled today.
 pub fn cancelled_weight(satisfaction: f64, seats: f64, params: &SocialParams) -> f64 {
     let bad = satisfaction.min(0.0).abs();
     replace_nonfinite(
@@ -56,7 +56,7 @@ pub fn cancelled_weight(satisfaction: f64, seats: f64, params: &SocialParams) ->
     )
 }
 
-/// Returns the weight of an enterprise that was lost today.
+/// Returns the post weight of an enterprise that was lost today.
 pub fn lost_company_weight(seats: f64, params: &SocialParams) -> f64 {
     replace_nonfinite(params.enterprise_churn_weight_base * seats.max(1.0), params)
 }

@@ -1,4 +1,4 @@
-//! Panes of a class.
+//! Panes of the page that shows the results of a class.
 
 use ratatui::layout::Rect;
 
@@ -16,11 +16,11 @@ use novamind_tui::widgets::chart::{Curve, Plot, PointLabel, XAxis, YAxis, zero_i
 use novamind_tui::widgets::scale::AxisUnit;
 use novamind_tui::widgets::table::first_visible_row;
 
-/// Width of the ranking in small and in wide windows.
+/// Width of the ranking in narrow windows and in wide windows.
 const RANKING_WIDTH: (u16, u16) = (29, 52);
-/// Minimum width for tries, hints and pitfalls.
+/// Minimum window width for the ranking columns with tries, hints and pitfalls.
 const MIN_WIDE_RANKING_WIDTH: u16 = 110;
-/// Minimum height for separate guesses and pitfalls.
+/// Minimum window height for showing the guesses and the pitfalls in separate panes.
 const MIN_HEIGHT_FOR_ALL_PANES: u16 = 34;
 const HIGHLIGHT_SYMBOL: &str = "◆";
 
@@ -74,7 +74,7 @@ impl ClassPage {
         }
         let lit = self.highlighted_index(ranking);
         let measure = wrap(&format!("by {}", view.describe_measure()), inside.width as usize);
-        // The measure of the ranking is shown below if the list leaves enough rows.
+        // The figure that determines the ranking is named below the list if there are enough rows.
         let room = inside.height.saturating_sub(1);
         let for_measure = (measure.len() as u16 + 1).min(room.saturating_sub(ranking.len() as u16));
         let for_measure = if for_measure > measure.len() as u16 { for_measure } else { 0 };
@@ -115,7 +115,7 @@ impl ClassPage {
         }
     }
 
-    /// Returns the part title and selected student, for the note of a pane.
+    /// Returns the title of the part and the selected student, for the note of a pane.
     fn highlighted_student_text(
         &self,
         view: &ClassView<'_>,
@@ -171,7 +171,7 @@ impl ClassPage {
         .draw(canvas, inside);
     }
 
-    /// Draws the points of all students, with a mark for the selected one.
+    /// Draws one point per student. The selected student has a special mark.
     fn draw_points(
         &self,
         canvas: &mut Canvas<'_>,
@@ -278,7 +278,7 @@ impl ClassPage {
     }
 }
 
-/// Draws the cells of the ranking; tries and hints only in wide windows.
+/// Draws the cells of a ranking row. Tries and hints are drawn only in wide windows.
 fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: bool, role: Role) {
     let columns: [(u16, u16, Align); 6] = [
         (0, 3, Align::Right),
@@ -316,7 +316,7 @@ fn draw_choice_counts(canvas: &mut Canvas<'_>, area: Rect, class_question: &Clas
     }
 }
 
-/// Draws the most common pitfall, and the number of students by pitfall.
+/// Draws the most common pitfall and the number of students with each pitfall.
 fn draw_pitfalls(canvas: &mut Canvas<'_>, area: Rect, view: &ClassView<'_>) {
     let counts = pitfall_counts(view);
     let inside = canvas.draw_pane_frame(area, "Most common pitfall", "", false);

@@ -24,9 +24,9 @@ enum LowerPane {
 pub(super) struct ClassPage {
     class: CollectedClass,
     shown: ClassDisplayOptions,
-    /// The part, from 1.
+    /// Number of the displayed part, counted from 1.
     part: u32,
-    /// Index of the shown question among the answered ones of the part.
+    /// Index of the displayed question among the answered questions of the part.
     question: usize,
     lower_pane: LowerPane,
 }
@@ -45,7 +45,7 @@ impl ClassPage {
         ClassView::new(&self.class, self.shown.clone())
     }
 
-    /// Selects a student by rank, from 0; the last student if the rank is too high.
+    /// Selects a student by rank, counted from 0. If the rank is too high, selects the last student.
     pub(super) fn highlight(&mut self, place: usize) {
         let view = self.view();
         let ranking = rank_students(&view);
@@ -53,13 +53,13 @@ impl ClassPage {
         self.shown.highlighted_student = lit.or(self.shown.highlighted_student.take());
     }
 
-    /// Returns the rank of the selected student.
+    /// Returns the index of the selected student in the ranking.
     fn highlighted_index(&self, ranking: &[RankedStudent<'_>]) -> Option<usize> {
         ranking.iter().position(|student| Some(student.label) == self.shown.highlighted_student.as_deref())
     }
 
     pub(super) fn hints(&self) -> Vec<Action> {
-        // The key to close the page is visible in the narrowest window, too.
+        // The key that closes the page is early in the list, so that it is visible in the narrowest window.
         let mut hints = vec![Action::Down, Action::ClassDecision, Action::ClassFigure, Action::HideNames];
         hints.extend([Action::Close, Action::ClassView]);
         hints.extend((self.question_count() > 1).then_some(Action::ClassQuestion));
@@ -112,7 +112,7 @@ impl ClassPage {
         self.highlight(place);
     }
 
-    /// Plots the next decision, starting with the one in which students differ most.
+    /// Plots the next decision. The first decision is the one in which students differ most.
     fn next_decision(&mut self) {
         let all = differing_decisions(&rank_students(&self.view()), self.part);
         let now = self.shown.decision.as_ref().or(all.first());
@@ -126,7 +126,7 @@ impl ClassPage {
     }
 }
 
-/// Returns the next name, cyclically; `None` if there are no names.
+/// Returns the name after the current name, cyclically. Returns `None` if there are no names.
 fn next_name(all: &[String], now: Option<&String>) -> Option<String> {
     let at = all.iter().position(|text| Some(text) == now);
     all.get(at.map_or(0, |at| (at + 1) % all.len())).cloned()

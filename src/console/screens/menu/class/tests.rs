@@ -10,7 +10,7 @@ use novamind_course::{
     Class, ClassCollection, ClassRun, Evidence, HandoutSource, Lesson, RunVerdict, StepEvidence,
 };
 
-/// Returns a class of a lesson whose students have set prices of 10 and more; the last one has not finished.
+/// Returns a class whose students have set prices of 10 and more. The last student has not finished.
 fn collected_class(students: u32) -> CollectedClass {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/three-weeks.toml");
     let lesson = Arc::new(Lesson::from_file(&path).expect("a lesson"));

@@ -25,7 +25,7 @@ const AMPLE_LIMITS: QueryLimits = QueryLimits { steps: Some(1_000_000_000), ..LI
 /// Serializes the tests, because the memory that one test uses could stop the queries of another test.
 static MEMORY: Mutex<()> = Mutex::new(());
 
-fn memory_lock() -> MutexGuard<'static, ()> {
+fn lock_memory_limit() -> MutexGuard<'static, ()> {
     MEMORY.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
@@ -83,7 +83,7 @@ struct Attack {
     sql: String,
 }
 
-fn attacks() -> Vec<Attack> {
+fn read_attacks() -> Vec<Attack> {
     let mut head = String::new();
     let mut attacks = Vec::new();
     for line in include_str!("data/attacks.txt").lines() {
@@ -149,7 +149,7 @@ fn run_attacks(connection: &QueryConnection, attacks: &[Attack], secrets: &[Stri
 
 #[test]
 fn hostile_statements_are_rejected_or_bounded() {
-    let _alone = memory_lock();
+    let _alone = lock_memory_limit();
     let runs = tempfile::tempdir().expect("a folder");
     let session = played_session(runs.path());
     let folder = session.folder().expect("a folder").to_owned();
@@ -158,7 +158,7 @@ fn hostile_statements_are_rejected_or_bounded() {
         connection.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0))
     });
     // Internal names and values that no result and no message may reveal.
-    const INSIDE: [&str; 12] = [
+    const INTERNAL_WORDS: [&str; 12] = [
         "inner_",
         "customer_rows",
         "subscription_rows",
@@ -172,10 +172,10 @@ fn hostile_statements_are_rejected_or_bounded() {
         "autoindex",
         "CREATE TABLE",
     ];
-    let mut secrets: Vec<String> = INSIDE.map(str::to_owned).into();
+    let mut secrets: Vec<String> = INTERNAL_WORDS.map(str::to_owned).into();
     secrets.push(position.expect("a position"));
 
-    let attacks = attacks();
+    let attacks = read_attacks();
     assert!(attacks.len() >= 300, "{}", attacks.len());
     let connection = session.database().open_connection().expect("a connection");
     run_attacks(&connection, &attacks, &secrets);
@@ -192,7 +192,7 @@ fn hostile_statements_are_rejected_or_bounded() {
 
 #[test]
 fn hidden_columns_and_tables_are_not_reachable() {
-    let _alone = memory_lock();
+    let _alone = lock_memory_limit();
     let runs = tempfile::tempdir().expect("a folder");
     let session = played_session(runs.path());
     let mut attacks = Vec::new();
@@ -240,7 +240,7 @@ fn hidden_columns_and_tables_are_not_reachable() {
 /// A query with x-ray permission reads the hidden tables. All other data that ordinary queries cannot read stays hidden.
 #[test]
 fn xray_connection_rejects_hostile_statements() {
-    let _alone = memory_lock();
+    let _alone = lock_memory_limit();
     let runs = tempfile::tempdir().expect("a folder");
     let storage = Storage::Runs(runs.path().to_owned());
     let new = NewRun { days: Some(28), mode: Mode::Debug, storage, ..NewRun::default() };
@@ -251,7 +251,7 @@ fn xray_connection_rejects_hostile_statements() {
         let names = ["hidden.", "\"hidden\"", "[hidden]", "groups", "threads", "competitors", "factors"];
         names.iter().any(|name| sql.to_lowercase().contains(name))
     };
-    for attack in attacks() {
+    for attack in read_attacks() {
         // Endless statements are excluded, because the limit of steps does not apply to x-ray queries.
         let is_endless = attack.head.starts_with("stopped");
         let is_answered = attack.head.starts_with("answered");
@@ -272,8 +272,8 @@ fn xray_connection_rejects_hostile_statements() {
 }
 
 #[test]
-fn a_query_that_takes_too_much_memory_is_stopped() {
-    let _alone = memory_lock();
+fn query_above_the_memory_limit_is_stopped() {
+    let _alone = lock_memory_limit();
     let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::bundled())
         .expect("a run");
     let connection = session.database().open_connection().expect("a connection");

@@ -73,7 +73,7 @@ pub fn dollars(value: f64) -> String {
 }
 
 /// Formats dollars with cents: `$1,234.50`, `-$0.50`.
-pub fn cents(value: f64) -> String {
+pub fn dollars_and_cents(value: f64) -> String {
     dollars_with_decimals(value, 2)
 }
 
@@ -82,14 +82,14 @@ pub fn price(value: f64) -> String {
     let has_only_cents = (value * 100.0).round() / 100.0 == value;
     match value.fract() == 0.0 {
         true => dollars(value),
-        false if has_only_cents => cents(value),
+        false if has_only_cents => dollars_and_cents(value),
         false => format!("${value}"),
     }
 }
 
 /// Formats a price rounded to the cent: `$12`, `$22.50`.
 pub fn price_to_cents(value: f64) -> String {
-    if value.fract() == 0.0 { dollars(value) } else { cents(value) }
+    if value.fract() == 0.0 { dollars(value) } else { dollars_and_cents(value) }
 }
 
 /// Formats an amount with a minus sign before the dollar sign. Amounts that round to zero have no sign.
@@ -168,8 +168,8 @@ pub fn parse_number(text: &str) -> Option<f64> {
 
 /// Converts a number to JSON: whole numbers have no decimal point, other numbers their shortest exact form.
 pub fn json_number(value: f64) -> Value {
-    const EXACT: f64 = 9_007_199_254_740_992.0;
-    if value.fract() == 0.0 && value.abs() < EXACT {
+    const MAX_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() < MAX_EXACT_INTEGER {
         Value::from(value as i64)
     } else {
         Number::from_f64(value).map_or(Value::Null, Value::Number)
@@ -357,7 +357,7 @@ mod tests {
             assert_eq!(released_dollars(value), text);
         }
         assert_eq!(
-            [dollars(-2095.0), dollars(-0.4), cents(-0.5), cents(-0.001)],
+            [dollars(-2095.0), dollars(-0.4), dollars_and_cents(-0.5), dollars_and_cents(-0.001)],
             ["-$2,095", "$0", "-$0.50", "$0.00"]
         );
         assert_eq!([12.0, 22.5, 0.4, 0.125].map(price), ["$12", "$22.50", "$0.40", "$0.125"]);

@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn statistics_of_small_samples() {
+    fn statistics_match_known_values() {
         let sample = SampleStatistics::from_values(&[1.0, 2.0, 3.0, 4.0]);
         assert_eq!((sample.mean, sample.count), (2.5, 4));
         assert!((sample.std - (5.0f64 / 3.0).sqrt()).abs() < 1e-12);

@@ -14,7 +14,7 @@ use super::run::progress_bar;
 use super::{Context, Failure, print};
 use crate::formatting::grouped_number;
 use crate::lab::benchmark::{
-    BenchContext, BenchFigure, CASES, Case, Samples, Unit, Verdict, calibration_seconds,
+    BenchCase, BenchContext, BenchFigure, BenchUnit, CASES, Samples, TargetVerdict, calibration_seconds,
 };
 use crate::statistics::median;
 
@@ -40,11 +40,11 @@ pub struct Options {
     measure: bool,
 }
 
-fn all_cases() -> impl Iterator<Item = &'static Case> {
+fn all_cases() -> impl Iterator<Item = &'static BenchCase> {
     #[cfg(feature = "server")]
     let served = http::CASES;
     #[cfg(not(feature = "server"))]
-    let served: &[Case] = &[];
+    let served: &[BenchCase] = &[];
     CASES.iter().chain(console::CASES).chain(served)
 }
 
@@ -53,10 +53,11 @@ impl Options {
         if self.quick { 1 } else { self.runs as usize }
     }
 
-    fn cases(&self) -> Vec<&'static Case> {
-        let named = |case: &&Case| self.only.iter().any(|name| name == case.name);
-        let asked_for =
-            |case: &&Case| if self.only.is_empty() { !(self.quick && case.is_slow) } else { named(case) };
+    fn cases(&self) -> Vec<&'static BenchCase> {
+        let named = |case: &&BenchCase| self.only.iter().any(|name| name == case.name);
+        let asked_for = |case: &&BenchCase| {
+            if self.only.is_empty() { !(self.quick && case.is_slow) } else { named(case) }
+        };
         all_cases().filter(asked_for).collect()
     }
 }
@@ -121,7 +122,7 @@ impl Drop for ScratchFolder {
 }
 
 /// Runs the benchmarks in this process and prints their samples for the parent process.
-fn measure_in_process(cases: &[&Case], bench: &BenchContext) -> Result<(), Failure> {
+fn measure_in_process(cases: &[&BenchCase], bench: &BenchContext) -> Result<(), Failure> {
     for case in cases {
         let samples = (case.measure)(bench).map_err(|error| Failure::failed(error.to_string()))?;
         print(&format!("{}\n", json!(samples)))?;
@@ -130,7 +131,7 @@ fn measure_in_process(cases: &[&Case], bench: &BenchContext) -> Result<(), Failu
 }
 
 /// Runs a benchmark in child processes, because peak memory is measured for a whole process.
-fn measure(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+fn measure(case: &BenchCase, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
     let (processes, each) = if case.needs_new_process { (repetitions, 1) } else { (1, repetitions) };
     let mut all: Samples = vec![Vec::new(); case.figures.len()];
     for _ in 0..processes {
@@ -141,7 +142,7 @@ fn measure(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, F
     Ok(all)
 }
 
-fn measure_in_child(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+fn measure_in_child(case: &BenchCase, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
     let failed = |problem: String| Failure::failed(format!("{}: {problem}", case.name));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let output = Command::new(program)
@@ -182,8 +183,8 @@ fn format_row(row: &Row, calibration: f64) -> String {
     let value = median(&row.samples);
     let written =
         |value: Option<f64>| value.map_or_else(String::new, |value| format_value(value, figure.unit));
-    let ratio =
-        ratio(value, figure.unit, calibration).map_or_else(String::new, |ratio| format!("{ratio:.3e}"));
+    let ratio = calibration_ratio(value, figure.unit, calibration)
+        .map_or_else(String::new, |ratio| format!("{ratio:.3e}"));
     let text = format!(
         "{:<54} {:>10} {:>9} {:>9}  {:<14} {ratio:>9}",
         figure.name,
@@ -196,20 +197,20 @@ fn format_row(row: &Row, calibration: f64) -> String {
 }
 
 /// Formats a value with its unit, to about three digits.
-fn format_value(value: f64, unit: Unit) -> String {
+fn format_value(value: f64, unit: BenchUnit) -> String {
     let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
     format!("{} {}", grouped_number(value, decimals), unit.symbol())
 }
 
 /// Returns a time divided by the time of the calibration loop.
-fn ratio(value: Option<f64>, unit: Unit, calibration: f64) -> Option<f64> {
+fn calibration_ratio(value: Option<f64>, unit: BenchUnit, calibration: f64) -> Option<f64> {
     Some(value? * unit.seconds_per_unit()? / calibration)
 }
 
 fn to_json(rows: &[Row], calibration: f64) -> String {
     let row = |row: &Row| {
         let value = median(&row.samples);
-        let verdict: Verdict = row.figure.verdict(value);
+        let verdict: TargetVerdict = row.figure.verdict(value);
         json!({
             "case": row.case,
             "name": row.figure.name,
@@ -219,7 +220,7 @@ fn to_json(rows: &[Row], calibration: f64) -> String {
             "target": row.figure.target,
             "stretch": row.figure.stretch,
             "verdict": verdict,
-            "ratio": ratio(value, row.figure.unit, calibration),
+            "ratio": calibration_ratio(value, row.figure.unit, calibration),
         })
     };
     let all: Vec<Value> = rows.iter().map(row).collect();
@@ -237,16 +238,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn amounts_have_about_three_digits() {
-        assert_eq!(format_value(2.345, Unit::Seconds), "2.35 s");
-        assert_eq!(format_value(23.45, Unit::Milliseconds), "23.4 ms");
-        assert_eq!(format_value(1288.49, Unit::Megabytes), "1,288 MB");
+    fn format_value_prints_about_three_digits() {
+        assert_eq!(format_value(2.345, BenchUnit::Seconds), "2.35 s");
+        assert_eq!(format_value(23.45, BenchUnit::Milliseconds), "23.4 ms");
+        assert_eq!(format_value(1288.49, BenchUnit::Megabytes), "1,288 MB");
     }
 
     #[test]
-    fn only_times_have_a_calibration_ratio() {
-        assert_eq!(ratio(Some(500.0), Unit::Milliseconds, 0.25), Some(2.0));
-        assert_eq!(ratio(Some(500.0), Unit::Megabytes, 0.25), None);
-        assert_eq!(ratio(None, Unit::Seconds, 0.25), None);
+    fn calibration_ratio_is_defined_only_for_times() {
+        assert_eq!(calibration_ratio(Some(500.0), BenchUnit::Milliseconds, 0.25), Some(2.0));
+        assert_eq!(calibration_ratio(Some(500.0), BenchUnit::Megabytes, 0.25), None);
+        assert_eq!(calibration_ratio(None, BenchUnit::Seconds, 0.25), None);
     }
 }

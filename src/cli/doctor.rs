@@ -13,7 +13,7 @@ use super::machine_checks::{
 use super::{Context, Failure, print};
 use crate::console::keys::KeyBindings;
 use crate::console::themes;
-use crate::lab::{Collector, Policy, RunSpec, play};
+use crate::lab::{MetricsCollector, Policy, RunSpec, play_policy};
 use crate::record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 use crate::record::folder::manifest::FORMAT;
 use crate::worker::preferences::Preferences;
@@ -104,7 +104,7 @@ fn check_simulation((days, expected): KnownHash) -> Result<String, String> {
     let configuration = Configuration::bundled();
     let policy = Policy::find(policy, &configuration).map_err(|error| error.to_string())?;
     let spec = RunSpec { stop_after_day: Some(days), ..RunSpec::for_seed(seed) };
-    let outcome = play(&policy, &spec, &configuration, &mut Collector::disabled())
+    let outcome = play_policy(&policy, &spec, &configuration, &mut MetricsCollector::disabled())
         .map_err(|error| error.to_string())?;
     if outcome.state_hash == expected {
         return Ok(format!("{days} days of seed {seed} give the known state hash {}", &expected[..16]));

@@ -41,7 +41,7 @@ impl Failure {
     }
 
     /// Returns a failure with exit code 0 and no message: the reader of standard output closed the pipe.
-    pub fn silent() -> Failure {
+    pub fn broken_pipe() -> Failure {
         Failure { code: 0, message: String::new() }
     }
 

@@ -32,8 +32,8 @@ use rayon::prelude::*;
 use super::run::{SeedRange, parse_seeds, progress_bar, thread_pool};
 use super::{Context, Failure, print};
 use crate::lab::{
-    Collector, GoldenComparison, MetricValue, Policy, ReferenceFigures, RunSpec, compare_with_reference,
-    play, read_reference,
+    GoldenComparison, MetricValue, MetricsCollector, Policy, ReferenceFigures, RunSpec,
+    compare_with_reference, play_policy, read_reference,
 };
 
 #[derive(Debug, Args)]
@@ -160,8 +160,10 @@ fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> 
             }
         };
         let seeds = &golden.seeds;
-        let comparison =
-            compare_with_reference(&reference, &figures(&policy, &reference, seeds, context, &pool)?);
+        let comparison = compare_with_reference(
+            &reference,
+            &checkpoint_figures(&policy, &reference, seeds, context, &pool)?,
+        );
         let biased = confirm_bias(&comparison, &policy, &reference, seeds, context, &pool)?;
         let verdict = Verdict { comparison, biased };
         print(&describe(&verdict, golden.all))?;
@@ -204,7 +206,7 @@ fn find_policy(golden: &GoldenOptions, context: &Context, name: &str) -> Result<
 }
 
 /// Returns the figures of every seed at the checkpoint days of a reference.
-fn figures(
+fn checkpoint_figures(
     policy: &Policy,
     reference: &ReferenceFigures,
     seeds: &SeedRange,
@@ -220,8 +222,8 @@ fn figures(
             surges: Some(policy.start.surges == Some(true)),
             ..RunSpec::for_seed(seed)
         };
-        let mut collector = Collector::new(Some(reference.days()));
-        let played = play(policy, &spec, &context.configuration, &mut collector);
+        let mut collector = MetricsCollector::new(Some(reference.days()));
+        let played = play_policy(policy, &spec, &context.configuration, &mut collector);
         progress.inc(1);
         played.map(|_| collector.finish(until)).map_err(Failure::from)
     };
@@ -247,8 +249,9 @@ fn confirm_bias(
     }
     let count = seeds.last - seeds.first + 1;
     let following = SeedRange { first: seeds.last + 1, last: seeds.last + count };
-    let again = compare_with_reference(reference, &figures(policy, reference, &following, context, pool)?)
-        .suspect_figures();
+    let again =
+        compare_with_reference(reference, &checkpoint_figures(policy, reference, &following, context, pool)?)
+            .suspect_figures();
     let confirmed = suspects.into_iter().filter_map(|(figure, first)| {
         let (_, second) =
             again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;
@@ -276,7 +279,7 @@ fn describe(verdict: &Verdict, all: bool) -> String {
     };
     text += &format!("  {head}:\n");
     listed.into_iter().for_each(|cell| text += &format!("    {cell}\n"));
-    for cell in &comparison.unjudged {
+    for cell in &comparison.excluded {
         text += &format!("  shown only: {cell}\n");
     }
     for (figure, first) in comparison.suspect_figures() {

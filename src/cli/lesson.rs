@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 
 use super::output_file::write_text;
 use super::{Context, Failure, print};
-use crate::course::{Lesson, MEASURED_SEEDS, PlayedPart};
+use crate::course::{FinishedPart, Lesson, MEASURED_SEEDS};
 use crate::formatting::compact_number;
 use crate::lab::{LessonCheck, PlayResult, check_lesson};
 use crate::record::folder::configuration::Configuration;
@@ -150,7 +150,7 @@ fn write_debrief(
     let folder = find_run_to_read(&context.runs_folder()?, run)?;
     context.authorize_view(&folder, "lesson", "debrief")?;
     let session = Session::open_to_read(&folder, true)?;
-    let played = PlayedPart::from_session(&session).map_err(|refusal| Failure::failed(refusal.message))?;
+    let played = FinishedPart::from_session(&session).map_err(|refusal| Failure::failed(refusal.message))?;
     let debrief = played.debrief(calls_for_waiting_threads);
     let (path, text) = match (html, markdown) {
         (Some(path), _) => (path, debrief_to_html(&debrief)),

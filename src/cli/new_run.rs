@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::run::parse_override;
 use super::{Context, Failure};
-use crate::record::consent::ConsentGiven;
+use crate::record::consent::ConsentDetails;
 use crate::record::mode::Mode;
 #[cfg(feature = "server")]
 use crate::session::baseline_terms;
@@ -113,7 +113,7 @@ impl NewRunOptions {
             handout: None,
             mode: self.mode.unwrap_or(mode),
             participant: self.participant.clone(),
-            agreed: self.consent.then(|| ConsentGiven::on_paper().given_now()),
+            agreed: self.consent.then(|| ConsentDetails::on_paper().agree_now()),
             study: None,
             storage: Storage::Runs(context.runs_folder()?),
             projection: true,

@@ -85,7 +85,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         lists_all_participants: false,
         opponents: play_opponents,
     };
-    let places = picture_places(options, &settings.keys)?;
+    let places = picture_keys(options, &settings.keys)?;
     let mut console = Headless::new(settings, options.size);
     let taken = take_pictures(&mut console, &id, &places, options);
     console.finish();
@@ -93,7 +93,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Returns the names of the pictures and the keys to press for each.
-fn picture_places(options: &Options, keys: &KeyBindings) -> Result<Vec<(String, String)>, Failure> {
+fn picture_keys(options: &Options, keys: &KeyBindings) -> Result<Vec<(String, String)>, Failure> {
     if let Some(keys) = &options.keys {
         return Ok(vec![("keys".to_owned(), keys.clone())]);
     }

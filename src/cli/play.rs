@@ -14,13 +14,13 @@ use crate::console::keys::KeyBindings;
 use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::record::clock::monotonic_time;
-use crate::record::consent::{ConsentGiven, ConsentMeans};
+use crate::record::consent::{ConsentDetails, ConsentMeans};
 use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
 use crate::record::folder::query_library::QueryLibrary;
 use crate::record::folder::runs::find_run;
 use crate::record::mode::Mode;
-use crate::session::{Access, LessonEntry, NewRun, SeekTarget, Session};
+use crate::session::{Access, LessonOptions, NewRun, SeekTarget, Session};
 use crate::tui::glyphs::Glyphs;
 use crate::tui::theme::Theme;
 use crate::worker::preferences::Preferences;
@@ -91,10 +91,10 @@ impl Options {
         Options { lesson: Some(name), ..options }
     }
 
-    fn lesson_entry(&self, context: &Context) -> Result<Option<LessonEntry>, Failure> {
+    fn lesson_entry(&self, context: &Context) -> Result<Option<LessonOptions>, Failure> {
         let Some(name) = &self.lesson else { return Ok(None) };
         let lesson = super::lesson::find_lesson(name, &context.configuration)?;
-        Ok(Some(LessonEntry { lesson: Arc::new(lesson), part: 0, is_judged: true }))
+        Ok(Some(LessonOptions { lesson: Arc::new(lesson), part: 0, is_judged: true }))
     }
 }
 
@@ -134,7 +134,7 @@ pub fn lead_participant(folder: &Path, options: &Options, context: &Context) -> 
     if !uses_plain_mode(options) {
         return show_console_with_resume_command(
             options,
-            Some(Effect::Receive(Box::new(study))),
+            Some(Effect::StartStudy(Box::new(study))),
             context,
             again,
         );
@@ -174,13 +174,13 @@ fn create_run(new: NewRun, context: &Context) -> Result<Session, Failure> {
                     "you did not agree; no run was created and nothing was recorded".to_owned(),
                 ));
             }
-            let consent_given = ConsentGiven {
+            let consent_given = ConsentDetails {
                 means: ConsentMeans::Prompt,
                 scrolled_to_end: true,
                 read_ms: monotonic_time().saturating_sub(shown).as_millis() as u64,
             };
             Ok(Session::create(
-                NewRun { agreed: Some(consent_given.given_now()), ..new },
+                NewRun { agreed: Some(consent_given.agree_now()), ..new },
                 &context.configuration,
             )?)
         }
@@ -201,7 +201,7 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
         Some(id) if options.watch => {
             let recorded = RecordSource::Run(id.clone());
             Some(if options.big {
-                Effect::Project(recorded)
+                Effect::OpenProjector(recorded)
             } else {
                 Effect::Request(Request::Replay { recorded, goal: SeekTarget::Last, follow: true })
             })

@@ -80,7 +80,7 @@ fn show_replay(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     record_view(&recorded, &from, context)?;
     let effect = match options.xray {
-        true => Effect::ReplayInside(recorded, goal),
+        true => Effect::ReplayWithXray(recorded, goal),
         false => Effect::Request(Request::Replay { recorded, goal, follow: false }),
     };
     show_console(&play::Options::default(), Some(effect), context)

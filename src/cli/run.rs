@@ -12,7 +12,9 @@ use rayon::prelude::*;
 
 use super::output_file::check_signature;
 use super::{Context, Failure, print};
-use crate::lab::{Collector, MetricValue, Policy, PolicyRunOutcome, RunEnd, RunError, RunSpec, play};
+use crate::lab::{
+    MetricValue, MetricsCollector, Policy, PolicyRunOutcome, RunEnd, RunError, RunSpec, play_policy,
+};
 pub use crate::lab::{SeedRange, parse_seeds};
 
 #[derive(Debug, Args)]
@@ -114,7 +116,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Seed, outcome and collected figures of a run.
-type PlayedSeed = (u64, Result<PolicyRunOutcome, RunError>, Collector);
+type PlayedSeed = (u64, Result<PolicyRunOutcome, RunError>, MetricsCollector);
 
 /// Plays all seeds on a thread pool. Results arrive in any order.
 fn play_seeds(
@@ -132,8 +134,9 @@ fn play_seeds(
         pool.install(|| {
             seeds.into_par_iter().with_max_len(1).for_each_with(done, |done, seed| {
                 let run_spec = RunSpec { seed, ..spec.clone() };
-                let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::disabled() };
-                let outcome = play(&policy, &run_spec, &configuration, &mut collector);
+                let mut collector =
+                    if wanted { MetricsCollector::new(days.clone()) } else { MetricsCollector::disabled() };
+                let outcome = play_policy(&policy, &run_spec, &configuration, &mut collector);
                 // Sending fails only if the receiver was dropped because an earlier seed failed.
                 let _ = done.send((seed, outcome, collector));
             });
@@ -176,7 +179,7 @@ struct ResultWriter<'a> {
 }
 
 impl ResultWriter<'_> {
-    fn write(&mut self, outcome: &PolicyRunOutcome, collector: Collector) -> Result<(), Failure> {
+    fn write(&mut self, outcome: &PolicyRunOutcome, collector: MetricsCollector) -> Result<(), Failure> {
         self.bankrupt |= outcome.ended == RunEnd::Bankruptcy;
         if let Some(file) = &mut self.metrics {
             let until = self.options.until.unwrap_or(outcome.days).min(outcome.days);
@@ -258,12 +261,12 @@ mod tests {
     use crate::tools::Rejection;
 
     #[test]
-    fn a_seed_without_a_result_is_an_error() {
+    fn write_in_order_fails_if_a_seed_has_no_result() {
         let played = |seed| {
             let refusal = Rejection::new("no_play", "nothing was played");
             let error =
                 RunError::Refused { seed, day: 0, tool: "test".to_owned(), refusal: Box::new(refusal) };
-            (seed, Err(error), Collector::disabled())
+            (seed, Err(error), MetricsCollector::disabled())
         };
         let written = |seeds: &[u64]| {
             let mut written = Vec::new();
@@ -280,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_is_set_by_its_key_and_its_value() {
+    fn parse_override_splits_key_and_value() {
         assert_eq!(parse_override("a.b = 3"), Ok(("a.b".to_owned(), "3".to_owned())));
         assert!(parse_override("a.b").is_err());
     }

@@ -273,7 +273,7 @@ impl App {
 
     /// Opens or creates a run in place of the start menu.
     pub fn start(&mut self, effect: Effect) {
-        self.follow(vec![effect]);
+        self.execute_effects(vec![effect]);
     }
 
     /// Handles a message. Orders that result from the message are collected for [`App::take_orders`].
@@ -422,7 +422,7 @@ impl App {
             }
         }
         let asks = self.with_screen(|screen, context| screen.request_data(context)).unwrap_or_default();
-        self.follow(asks);
+        self.execute_effects(asks);
         self.request_hidden_values();
     }
 

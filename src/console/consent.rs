@@ -8,7 +8,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
 use novamind_record::clock::monotonic_time;
-use novamind_record::consent::{ConsentGiven, ConsentMeans};
+use novamind_record::consent::{ConsentDetails, ConsentMeans};
 use novamind_report::prose::{TextStyle, lay_out};
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::theme::Role;
@@ -44,9 +44,9 @@ impl ConsentText {
     }
 
     /// Returns the consent of the user, or `None` if the end of the text was not on the screen yet.
-    pub fn consent(&self) -> Option<ConsentGiven> {
+    pub fn consent(&self) -> Option<ConsentDetails> {
         let read_ms = monotonic_time().saturating_sub(self.shown_at).as_millis() as u64;
-        let consent_given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
+        let consent_given = ConsentDetails { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
         self.is_read.get().then_some(consent_given)
     }
 

@@ -20,8 +20,8 @@ impl Effect {
             Effect::Request(request) => request.changes_run(),
             Effect::ConfirmCall { .. }
             | Effect::ConfirmCalls { .. }
-            | Effect::ConfirmWords(_)
-            | Effect::SendWords(_) => true,
+            | Effect::ConfirmCommand(_)
+            | Effect::SendCommand(_) => true,
             _ => false,
         }
     }
@@ -38,17 +38,17 @@ pub enum Effect {
     /// Send a request to the session thread.
     Request(Request),
     /// Replay a recorded run from a position, with its hidden state.
-    ReplayInside(RecordSource, SeekTarget),
+    ReplayWithXray(RecordSource, SeekTarget),
     /// Follow a run that another program plays, drawn for a projector.
-    Project(RecordSource),
+    OpenProjector(RecordSource),
     /// Seek in the playback.
-    Go(SeekTarget),
+    Seek(SeekTarget),
     /// Send a question of a page to the worker. The page keeps the pending answer.
     Ask(OutgoingQuestion),
     /// Record that the draft at a place of the screen was sent.
     SentText(&'static str),
     /// Show the causes of the change of a weekly figure.
-    AskWhy(Figure),
+    ShowCauses(Figure),
     /// Show the source rows of a figure.
     ShowRows(Figure),
     /// Close all dialogs.
@@ -60,9 +60,9 @@ pub enum Effect {
     /// Open another run of the folder by its id, after a confirmation if there are drafts.
     OpenRun(String),
     /// Ask for confirmation of a command that sets a parameter of the run.
-    ConfirmWords(String),
+    ConfirmCommand(String),
     /// Send a confirmed command that sets a parameter, from the X-ray screen.
-    SendWords(String),
+    SendCommand(String),
     /// Stop the user's query.
     CancelQuery,
     /// Request a reading for a screen.
@@ -74,11 +74,11 @@ pub enum Effect {
     /// Write a file with a name and contents into the run folder. If the name exists, the next free number is used.
     Write(String, Vec<u8>),
     /// Show a status message.
-    Say(String),
+    ShowStatus(String),
     /// Show an error message.
-    Complain(String),
+    ShowError(String),
     /// Clear the breadcrumbs before the following effects are executed.
-    BeginPath,
+    ClearBreadcrumbs,
     /// Show a screen.
     Show(ScreenId),
     /// Show the form of a tool.
@@ -134,13 +134,13 @@ pub enum Effect {
     /// Open the practice run with the tour.
     StartTour,
     /// Start receiving participants of a study.
-    Receive(Box<Study>),
+    StartStudy(Box<Study>),
     /// Restore the offered drafts (`true`) or discard them.
-    SettleOffer(bool),
+    ResolveDraftOffer(bool),
     /// Stop the clock, with a reason if the study requires one.
     StopClock(Option<String>),
     /// Save and quit, discarding input in progress.
     LeaveNow,
     /// Execute an action.
-    Do(Action),
+    Execute(Action),
 }

@@ -13,7 +13,7 @@ use super::app::{App, Order, Settings};
 use super::effect::Effect;
 use super::files;
 use super::frame;
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Access, PlaybackPosition, SeekTarget};
 use novamind_study::Study;
 use novamind_tui::chord::Chord;
@@ -80,7 +80,7 @@ impl Headless {
     /// # Errors
     /// The page does not arrive.
     pub fn start_study(&mut self, study: Study) -> io::Result<()> {
-        self.app.start(Effect::Receive(Box::new(study)));
+        self.app.start(Effect::StartStudy(Box::new(study)));
         self.wait_until_idle()
     }
 
@@ -114,7 +114,7 @@ impl Headless {
     /// # Errors
     /// The position is not reached.
     pub fn seek(&mut self, goal: SeekTarget) -> io::Result<()> {
-        self.open_with(Effect::Go(goal))
+        self.open_with(Effect::Seek(goal))
     }
 
     /// Returns the position of the playback, or `None` if no playback is open.
@@ -127,7 +127,7 @@ impl Headless {
     /// # Errors
     /// The run does not open.
     pub fn replay_with_xray(&mut self, recorded: RecordSource, goal: SeekTarget) -> io::Result<()> {
-        self.open_with(Effect::ReplayInside(recorded, goal))
+        self.open_with(Effect::ReplayWithXray(recorded, goal))
     }
 
     /// Follows a run that another program plays, drawn for a projector.
@@ -135,7 +135,7 @@ impl Headless {
     /// # Errors
     /// The run does not open.
     pub fn open_projector(&mut self, recorded: RecordSource) -> io::Result<()> {
-        self.open_with(Effect::Project(recorded))
+        self.open_with(Effect::OpenProjector(recorded))
     }
 
     fn open_with(&mut self, effect: Effect) -> io::Result<()> {
@@ -314,7 +314,7 @@ impl Headless {
 
     /// Saves the run and ends the threads.
     pub fn finish(self) {
-        self.workers.send(Job::Close(LeavingCause::Quit));
+        self.workers.send(Job::Close(DetachCause::Quit));
         self.workers.shut_down();
     }
 }

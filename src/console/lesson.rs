@@ -47,7 +47,7 @@ pub fn draw_side_task(canvas: &mut Canvas<'_>, area: Rect, page: &LessonStatus, 
     let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
     let inside = canvas.draw_pane_frame(area, "Lesson", &note, false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let lines = lines_of(page, context, (inside.width as usize, TaskPlace::SidePane));
+    let lines = task_lines(page, context, (inside.width as usize, TaskPlace::SidePane));
     let cut = lines.len() > inside.height as usize;
     draw_lines(canvas, inside, &lines, 0);
     let keys = match cut {
@@ -92,7 +92,7 @@ pub enum TaskPlace {
 }
 
 /// Formats the task as lines that fit into a width.
-pub fn lines_of(
+pub fn task_lines(
     page: &LessonStatus,
     context: &ScreenContext<'_>,
     (width, place): (usize, TaskPlace),

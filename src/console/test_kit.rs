@@ -79,7 +79,7 @@ pub fn settings(runs: &Path) -> Settings {
 }
 
 /// Returns the only question in a list of effects.
-pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
+pub fn only_question<Q: Question>(effects: &[Effect]) -> &Q {
     let mut asks = effects.iter().filter_map(|effect| match effect {
         Effect::Ask(ask) => Some(ask),
         _ => None,

@@ -100,7 +100,7 @@ impl StepCondition {
         let weeks = company.weeks.len();
         let any = |tool: ToolId| company.settings.get(&tool).is_some_and(has_positive_number);
         let plans = ["A", "B", "C"];
-        let has_tier = plans.iter().any(|plan| company.setting(ToolId::SetModelTiers, plan) > 1.0);
+        let has_tier = plans.iter().any(|plan| company.current_setting(ToolId::SetModelTiers, plan) > 1.0);
         match self {
             StepCondition::CustomersShown => facts.screen == ScreenId::Customers || any(ToolId::SetPrices),
             StepCondition::GroupOpen => facts.is_group_open || any(ToolId::SetPrices),
@@ -108,7 +108,7 @@ impl StepCondition {
             StepCondition::TierSet => weeks > 0 || has_tier,
             StepCondition::QuotaSet => any(ToolId::SetUsageQuotas),
             StepCondition::OperationsSet => {
-                weeks > 0 || company.setting(ToolId::SetDailySpend, "operations") > 0.0
+                weeks > 0 || company.current_setting(ToolId::SetDailySpend, "operations") > 0.0
             }
             StepCondition::AdsSet => any(ToolId::SetTargetedAdSpend),
             StepCondition::Filing => weeks > 0 || facts.next_week_step.is_some(),

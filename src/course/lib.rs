@@ -15,7 +15,7 @@ pub use class::handout::Handout;
 pub use class::reference::{ClassReference, ranked_goal, share_of_reference};
 pub use lesson::answers::{measure_over_part, submit_guess, take_hint};
 pub use lesson::debrief::{
-    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PlayedPart,
+    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FinishedPart, FirstDifference, JudgedFigure,
     ReferenceCurve, ReferenceEffect,
 };
 pub use lesson::decisions::{DecisionDifference, DifferentDecision, SettingDifference};

@@ -248,7 +248,7 @@ impl Guard {
     }
 
     /// Returns the shared record of the columns that statements read.
-    pub fn reads(&self) -> ColumnReads {
+    pub fn column_reads(&self) -> ColumnReads {
         self.reads.clone()
     }
 

@@ -95,7 +95,7 @@ impl NoticeDay {
     }
 
     /// Returns the notice at a position of the day, counted from 0.
-    pub fn slot_at(&self, place: u64) -> NoticeSlot {
+    pub fn notice_at(&self, place: u64) -> NoticeSlot {
         let (before, repeats) = (u64::from(self.before_repeats), u64::from(self.repeats));
         match place {
             place if place < before => NoticeSlot::Stored(place as usize),
@@ -160,7 +160,7 @@ impl PackedRows for NoticeDay {
 
     fn next_of_kinds(&self, kinds: KindSet, mut place: u64) -> Option<u64> {
         while place < self.len() {
-            match self.slot_at(place) {
+            match self.notice_at(place) {
                 NoticeSlot::Repeated(_) if kinds & (1 << LEAD_LOST) != 0 => return Some(place),
                 NoticeSlot::Repeated(_) => place = u64::from(self.before_repeats) + u64::from(self.repeats),
                 NoticeSlot::Stored(at) if kinds & (1 << self.types[at]) != 0 => return Some(place),
@@ -321,13 +321,13 @@ mod tests {
     }
 
     #[test]
-    fn repeated_losses_come_after_the_day_and_before_its_calls() {
+    fn repeated_losses_follow_day_notices_and_precede_call_notices() {
         let mut day = NoticeDay::new(9, 1);
         day.push(2, "a");
         day.push(LEAD_LOST, "b");
         day.set_repeats(2);
         day.push(5, "c");
-        let places: Vec<NoticeSlot> = (0..day.len()).map(|place| day.slot_at(place)).collect();
+        let places: Vec<NoticeSlot> = (0..day.len()).map(|place| day.notice_at(place)).collect();
         assert_eq!(
             places,
             [

@@ -110,7 +110,7 @@ impl DayTableDefinition for Notifications {
     fn unpack(_: &NoticeDay, _: KindSet) {}
 
     fn kind(day: &NoticeDay, place: u64) -> usize {
-        match day.slot_at(place) {
+        match day.notice_at(place) {
             NoticeSlot::Stored(at) => usize::from(day.type_at(at)),
             NoticeSlot::Repeated(_) => usize::from(LEAD_LOST),
         }
@@ -119,7 +119,7 @@ impl DayTableDefinition for Notifications {
     const TEXT: c_int = 3;
 
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str> {
-        match row.day.slot_at(row.place) {
+        match row.day.notice_at(row.place) {
             NoticeSlot::Stored(at) => row.day.text_at(at).into(),
             NoticeSlot::Repeated(at) => row.store.inbox.losses[at].text().into(),
         }

@@ -57,7 +57,7 @@ impl std::error::Error for ProjectionError {}
 /// A task that the writer thread runs after all earlier jobs.
 type WriterTask = Box<dyn FnOnce(&Connection) + Send>;
 
-enum Job {
+enum WriterJob {
     Write(Box<ProjectionEntry>),
     Commit(ProjectionPosition),
     Run(WriterTask),
@@ -66,7 +66,7 @@ enum Job {
 
 /// Handle of the background thread that keeps a database up to date.
 pub struct Projector {
-    jobs: Option<SyncSender<Job>>,
+    jobs: Option<SyncSender<WriterJob>>,
     thread: Option<JoinHandle<()>>,
     pub(super) location: DatabaseLocation,
     pub(super) store: SharedStore,
@@ -121,7 +121,7 @@ impl Projector {
                 let connection = &mut connection;
                 let readers_go_on = uses_write_ahead_log(connection);
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
-                Worker {
+                ProjectionWriter {
                     connection,
                     rows,
                     gate,
@@ -140,7 +140,7 @@ impl Projector {
 
     /// Sends an entry to the writer thread. Blocks only if the queue is full.
     pub fn enqueue(&self, entry: ProjectionEntry) {
-        self.send(Job::Write(Box::new(entry)));
+        self.send(WriterJob::Write(Box::new(entry)));
     }
 
     /// Returns empty facts whose memory can be reused, if any are available.
@@ -150,14 +150,14 @@ impl Projector {
 
     /// Commits all entries that were sent before, together with the trajectory position.
     pub fn commit(&self, position: ProjectionPosition) {
-        self.send(Job::Commit(position));
+        self.send(WriterJob::Commit(position));
     }
 
     /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the
     /// database file to `work`. Passes `None` for a database in memory or an unreadable file.
     pub fn run_after_commit(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         let path = self.location.path().filter(|_| digest).map(Path::to_owned);
-        self.send(Job::Run(Box::new(move |connection| {
+        self.send(WriterJob::Run(Box::new(move |connection| {
             work(path.and_then(|path| checkpointed_digest(connection, &path)));
         })));
     }
@@ -168,7 +168,7 @@ impl Projector {
     /// The database could not be written.
     pub fn flush(&self) -> Result<(), ProjectionError> {
         let (done, answer) = channel();
-        self.send(Job::Flush(done));
+        self.send(WriterJob::Flush(done));
         answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
     }
 
@@ -189,7 +189,7 @@ impl Projector {
     /// Limits the growth of the database to `more` pages, which simulates a full disk.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn limit_pages(&self, more: Option<u32>) {
-        self.send(Job::Run(Box::new(move |connection| {
+        self.send(WriterJob::Run(Box::new(move |connection| {
             let pages: u32 = connection.query_row("PRAGMA page_count", [], |row| row.get(0)).expect("pages");
             let most = more.map_or(u32::MAX - 1, |more| pages + more);
             connection
@@ -198,7 +198,7 @@ impl Projector {
         })));
     }
 
-    fn send(&self, job: Job) {
+    fn send(&self, job: WriterJob) {
         if let Some(jobs) = &self.jobs {
             // The next `flush` reports a stopped writer.
             let _ = jobs.send(job);
@@ -231,7 +231,7 @@ fn to_memory_error(error: rusqlite::Error) -> ProjectionError {
     }
 }
 
-struct Worker<'a> {
+struct ProjectionWriter<'a> {
     connection: &'a mut Connection,
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
@@ -267,24 +267,24 @@ impl FactsPool {
     }
 }
 
-impl Worker<'_> {
+impl ProjectionWriter<'_> {
     /// Processes jobs until the queue is closed. Entries are written only when a week or tool call is complete. The
     /// simulation can then use all processors, and readers of a database in memory wait for at most one short transaction.
-    fn run(mut self, queue: &Receiver<Job>) {
+    fn run(mut self, queue: &Receiver<WriterJob>) {
         let mut pending: Vec<ProjectionEntry> = Vec::new();
         loop {
             let Ok(job) = queue.recv() else { return };
             match job {
-                Job::Flush(done) => {
+                WriterJob::Flush(done) => {
                     let _ = done.send(self.failed.get().map_or(Ok(()), Err));
                 }
-                Job::Run(errand) => errand(self.connection),
-                Job::Commit(position) => {
+                WriterJob::Run(errand) => errand(self.connection),
+                WriterJob::Commit(position) => {
                     self.run_unless_failed(|worker| worker.commit_pending(&mut pending, &position))
                 }
                 // After a failure, nothing is written, and all pending entries are dropped.
-                Job::Write(entry) if self.failed.get().is_none() => pending.push(*entry),
-                Job::Write(_) => pending.clear(),
+                WriterJob::Write(entry) if self.failed.get().is_none() => pending.push(*entry),
+                WriterJob::Write(_) => pending.clear(),
             }
         }
     }

@@ -140,7 +140,7 @@ impl QueryConnection {
     /// # Errors
     /// The statement fails with one of the `sql_` codes of [`QueryError::code`].
     pub fn query(&self, sql: &str, limits: QueryLimits) -> Result<QueryResult, QueryError> {
-        self.query_with_ticket(self.interrupt.ticket(), sql, limits)
+        self.query_with_ticket(self.interrupt.issue_ticket(), sql, limits)
     }
 
     /// Runs one statement under a ticket that was issued earlier.
@@ -182,7 +182,7 @@ impl QueryConnection {
     ) -> Result<(), ScriptError> {
         let end = Instant::now() + time;
         let at = |statement: usize| move |error: QueryError| ScriptError { statement, error };
-        self.begin_read(self.interrupt.ticket(), sql, limits).map_err(at(1))?;
+        self.begin_read(self.interrupt.issue_ticket(), sql, limits).map_err(at(1))?;
         let mut statements = self.released.statements(sql);
         let mut done = Ok(());
         for number in 1.. {
@@ -396,14 +396,14 @@ impl QueryConnection {
         use rusqlite::ErrorCode::{OperationInterrupted, OutOfMemory};
         if error.sqlite_error_code() == Some(OutOfMemory) {
             // The machine ran out of memory before the query reached its limit.
-            return query_error("sql_timeout", TOO_MUCH_MEMORY);
+            return query_error("sql_timeout", TOO_MUCH_MEMORY_MESSAGE);
         }
         if error.sqlite_error_code() == Some(OperationInterrupted) {
             let seconds = limits.time.as_secs();
             let too_long = format!("the query ran longer than {seconds} s; ask for less at a time");
-            return match self.interrupt.cause() {
+            return match self.interrupt.stop_cause() {
                 StopCause::Request => query_error(SQL_CANCELLED, CANCELLED_MESSAGE),
-                StopCause::Memory => query_error("sql_timeout", TOO_MUCH_MEMORY),
+                StopCause::Memory => query_error("sql_timeout", TOO_MUCH_MEMORY_MESSAGE),
                 StopCause::Time => query_error("sql_timeout", &too_long),
             };
         }
@@ -469,7 +469,7 @@ impl From<rusqlite::Error> for QueryFault {
     }
 }
 
-const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at a time";
+const TOO_MUCH_MEMORY_MESSAGE: &str = "the query needs too much memory; ask for less at a time";
 
 /// Error code of a query that the user cancelled.
 pub const SQL_CANCELLED: &str = "sql_cancelled";

@@ -66,7 +66,7 @@ impl Interrupt {
     }
 
     /// Issues a ticket for a later query.
-    pub fn ticket(&self) -> QueryTicket {
+    pub fn issue_ticket(&self) -> QueryTicket {
         QueryTicket(self.0.issued.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
@@ -99,7 +99,7 @@ impl Interrupt {
     }
 
     /// Returns the reason why the query was stopped.
-    pub(super) fn cause(&self) -> StopCause {
+    pub(super) fn stop_cause(&self) -> StopCause {
         match self.0.cause.load(Ordering::Relaxed) {
             _ if self.is_stop_requested() => StopCause::Request,
             1 => StopCause::Memory,

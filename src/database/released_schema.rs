@@ -24,7 +24,7 @@ const MAX_SPELLINGS: usize = 200;
 const ROWID_NAMES: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
 /// The table that statements look up by customer although it has no index.
-const ISSUES: &str = "issues";
+const ISSUES_TABLE: &str = "issues";
 
 /// A connection to empty tables with the schema of the released simulator.
 pub(super) struct ReleasedSchema {
@@ -66,7 +66,7 @@ impl ReleasedSchema {
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
         let guard = Guard::for_ordinary_tables(&connection, scope)?;
-        let (objections, reads) = (guard.last_rejection(), guard.reads());
+        let (objections, reads) = (guard.last_rejection(), guard.column_reads());
         connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
             guard.authorize(&context)
         }))?;
@@ -98,8 +98,9 @@ impl ReleasedSchema {
         let mut copied = self.reads.take();
         let tables = copied.keys().cloned().collect();
         if !has_right_join(&sql) {
-            let looked_up =
-                |table: &str, columns: &BTreeSet<String>| table == ISSUES && columns.contains(CUSTOMER_ID);
+            let looked_up = |table: &str, columns: &BTreeSet<String>| {
+                table == ISSUES_TABLE && columns.contains(CUSTOMER_ID)
+            };
             copied.retain(|table, columns| looked_up(table, columns));
             if !copied.is_empty() && !self.has_correlated_subquery(&sql) {
                 copied.clear();
@@ -124,19 +125,19 @@ impl ReleasedSchema {
         let tokens = tokenize(&sql);
         let places: Vec<ReplaceableName> =
             (0..tokens.len()).filter_map(|at| ReplaceableName::at_token(&tokens, at)).collect();
-        let Some(program) = self.program(&sql).filter(|_| !places.is_empty()) else { return sql };
-        let qualifiers = qualifiers(&tokens);
+        let Some(program) = self.compile_program(&sql).filter(|_| !places.is_empty()) else { return sql };
+        let qualifiers = possible_qualifiers(&tokens);
         let mut spelled = sql.clone();
         let mut attempts = 0;
         // Replace from the end, so that earlier offsets stay valid.
         for place in places.iter().rev() {
-            for other in place.spellings(&qualifiers) {
+            for other in place.replacements(&qualifiers) {
                 attempts += 1;
                 if attempts > MAX_SPELLINGS {
                     return spelled;
                 }
                 let attempt = format!("{}{other}{}", &spelled[..place.start], &spelled[place.end..]);
-                if self.program(&attempt).as_ref() == Some(&program) {
+                if self.compile_program(&attempt).as_ref() == Some(&program) {
                     spelled = attempt;
                     break;
                 }
@@ -146,7 +147,7 @@ impl ReleasedSchema {
     }
 
     /// Compiles a statement and returns its program. Returns `None` if the statement does not compile.
-    fn program(&self, sql: &str) -> Option<Program> {
+    fn compile_program(&self, sql: &str) -> Option<Program> {
         self.explain_rows(&format!("EXPLAIN {}", strip_explain_query_plan(sql)))
     }
 
@@ -212,7 +213,7 @@ impl ReplaceableName {
     }
 
     /// Returns possible replacements of the name, most likely first.
-    fn spellings(&self, qualifiers: &[&str]) -> Vec<String> {
+    fn replacements(&self, qualifiers: &[&str]) -> Vec<String> {
         let keys = || tables().iter().filter_map(Table::row_number_column);
         match self.kind {
             ReplaceableKind::Main => vec![String::new()],
@@ -227,7 +228,7 @@ impl ReplaceableName {
 }
 
 /// Returns possible qualifiers of columns: table names and the words after table names, which may be aliases.
-fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
+fn possible_qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for (at, token) in tokens.iter().enumerate() {
         if !token.can_be_name() || table(&token.unquoted()).is_none() {

@@ -135,7 +135,7 @@ fn copy_inbox(transaction: &Transaction<'_>, inbox: &Inbox) -> rusqlite::Result<
     for day in inbox.days.iter() {
         let number = |place: u64| (day.first + place) as i64;
         for place in 0..day.len() {
-            if let NoticeSlot::Stored(at) = day.slot_at(place) {
+            if let NoticeSlot::Stored(at) = day.notice_at(place) {
                 let notice_type = NOTICE_TYPES[usize::from(day.type_at(at))];
                 statement.execute(params![number(place), day.day, notice_type, day.text_at(at)])?;
             }

@@ -17,7 +17,7 @@ use novamind_world::identifiers::{Group, Plan};
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
-use novamind_world::test_kit::policy_p;
+use novamind_world::test_kit::apply_policy_p;
 
 const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(20), steps: None };
 
@@ -59,7 +59,7 @@ impl Company {
         assert_eq!(found, None);
         projector.enqueue(entry(facts));
         projector.commit(position(0));
-        policy_p(&mut world);
+        apply_policy_p(&mut world);
         Company { world, params, streams: Streams::new(42), projector }
     }
 
@@ -469,7 +469,7 @@ fn query_limits_are_enforced() {
         .expect_err("too slow");
     assert_eq!(error.code, "sql_timeout");
     let interrupt = connection.interrupt();
-    let ticket = interrupt.ticket();
+    let ticket = interrupt.issue_ticket();
     let stopper = std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(50));
         interrupt.stop();
@@ -486,7 +486,7 @@ fn stop_cancels_pending_queries_and_no_later_ones() {
     let connection = company.simulate_weeks(1);
     let interrupt = connection.interrupt();
     let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
-    let ticket = interrupt.ticket();
+    let ticket = interrupt.issue_ticket();
     interrupt.stop();
     for sql in [endless, "SELECT 1"] {
         let error = connection.query_with_ticket(ticket, sql, LIMITS).expect_err("stopped before it began");

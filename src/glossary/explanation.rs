@@ -159,7 +159,7 @@ fn to_sentence(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn explained(name: &str) -> Explanation {
+    fn explanation_by_name(name: &str) -> Explanation {
         Explanation::new(
             subject_by_name(name).unwrap_or_else(|| panic!("{name} is unknown")),
             &ParameterNumbers::bundled(),
@@ -168,20 +168,20 @@ mod tests {
 
     #[test]
     fn term_explanation_has_definition_and_related_subjects() {
-        let runway = explained("runway");
+        let runway = explanation_by_name("runway");
         assert_eq!((runway.title.as_str(), runway.note.as_str()), ("Runway", "money"));
         assert!(
             runway.sections[0].name.is_empty() && runway.sections[0].text.starts_with("The number of weeks")
         );
         assert!(runway.related.iter().any(|other| other.name() == "burn"));
         assert_eq!(runway.places, ["overview", "cash"]);
-        let ledger = explained("ledger");
+        let ledger = explanation_by_name("ledger");
         assert!(ledger.related.iter().any(|other| other.kind() == "table"), "the table of the same name");
     }
 
     #[test]
     fn argument_explanation_has_unit_range_default_and_rejections() {
-        let text = explained("set_prices.A").to_text();
+        let text = explanation_by_name("set_prices.A").to_text();
         for part in [
             "set_prices.A (argument of set_prices)",
             "List price of plan A.",
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_can_be_explained_in_words() {
+    fn every_subject_has_an_explanation() {
         let specs = || novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
         let tables = || novamind_database::tables().iter();
         let subjects = super::super::terms()

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ids_are_unique_words_with_dashes() {
+    fn term_ids_are_unique_and_kebab_case() {
         let mut ids = BTreeSet::new();
         let mut words = BTreeSet::new();
         for term in terms() {
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn references_of_terms_exist() {
+    fn term_references_exist() {
         for Term { id, see, tools, tables, places, .. } in terms() {
             see.iter().for_each(|other| assert!(term(other).is_some() && other != id, "{id} sees {other}"));
             tools.iter().for_each(|tool| assert!(novamind_tools::find(tool).is_some(), "{id} names {tool}"));
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn terms_name_no_hidden_state() {
+    fn terms_do_not_mention_hidden_state() {
         let sealed = include_str!("../../tests/data/sealed.csv");
         let text = include_str!("../../assets/glossary.toml");
         let visible = |name: &str| {

@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_every_kind_are_found() {
+    fn subject_by_name_finds_every_kind() {
         for (name, kind) in [
             ("churn", "term"),
             ("set_prices", "tool"),
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn every_subject_is_found_by_its_name() {
+    fn subject_by_name_finds_every_subject() {
         let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
         for spec in tools {
             for argument in spec.arguments {
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_found_as_people_type_them() {
+    fn find_subject_ignores_case_and_dashes() {
         for (words, name) in [
             ("Delivered Quality", "delivered-quality"),
             ("monthly recurring revenue", "mrr"),

@@ -27,7 +27,9 @@ pub use curve::explorer::{
     CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, LEAD_SAMPLE_SIZE, PlanPoint,
     true_curve,
 };
-pub use inspection::breakpoint::condition::{Condition, ConditionState, Direction, Relation, WorldEvent};
+pub use inspection::breakpoint::condition::{
+    ComparisonOperator, Condition, ConditionState, Direction, WorldEvent,
+};
 pub use inspection::breakpoint::condition_history::ConditionHistory;
 pub use inspection::breakpoint::grammar::ConditionParseError;
 pub use inspection::breakpoint::list::Breakpoint;
@@ -48,7 +50,7 @@ pub use inspection::lead_equation::{LeadEquation, LeadFactor};
 pub use inspection::next_draws::{Draw, DrawEffect, KeyedDraws, MAX_DRAWS, NextDraws, RandomPart};
 pub use inspection::quality_equation::{DeliveredPlanQuality, QualityEquation, SharedQualityGains};
 pub use inspection::reputation_equation::{
-    ChangeThresholds, DepartureEffect, ReputationEquation, Spillover, SubscriberContribution,
+    CancellationEffect, ChangeThresholds, ReputationEquation, Spillover, SubscriberContribution,
 };
 pub use inspection::satisfaction_equation::{SatisfactionEquation, SatisfactionTerm};
 pub use inspection::weighed_decision::{DecisionTerm, DecisiveTerm, RenewalPlanTerms, WeighedDecision};

@@ -7,7 +7,7 @@ use serde_json::json;
 use crate::counterfactual::branch::simulate_branch_with_hashes;
 use crate::counterfactual::edits::Edits;
 use crate::counterfactual::memory_snapshot::MemorySnapshot;
-use crate::counterfactual::recorded_steps::{RecordedStep, steps_of};
+use crate::counterfactual::recorded_steps::{RecordedStep, steps_from_lines};
 use crate::create_branch_with_decisions;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
@@ -56,7 +56,7 @@ fn resimulation_without_edits_reproduces_every_state() {
     drop(stub);
     let folder = session.folder().expect("a folder");
     let (Origin { manifest, params, .. }, trajectory) = read_origin(folder).expect("a run");
-    let script = steps_of(&trajectory.lines);
+    let script = steps_from_lines(&trajectory.lines);
     let start = MemorySnapshot::at_day_0(&manifest, params);
     let outcome = simulate_branch_with_hashes(&start, &script, &Edits::default(), 21).expect("not stopped");
     let reached: Vec<String> = outcome.states.into_iter().map(|(_, (hash, _))| hash).collect();

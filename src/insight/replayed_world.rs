@@ -10,7 +10,7 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::Lesson;
 use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
-use novamind_session::{Session, new_run_id, unreadable_record};
+use novamind_session::{Session, new_run_id, unreadable_record_rejection};
 use novamind_tools::Rejection;
 
 /// The world of a finished run.
@@ -28,7 +28,7 @@ impl ReplayedWorld {
     /// `not_in_this_mode` if the run is unfinished and not a debug run, or if its study shows no results; `not_possible` if
     /// parameters were changed during the run, or if its lesson starts with preset decisions; `not_readable`.
     pub fn from_run(folder: &Path) -> Result<ReplayedWorld, Rejection> {
-        let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
+        let past = RecordedRun::open(folder).map_err(|error| unreadable_record_rejection(&error))?;
         if input_visibility(&past.manifest, past.is_ended)? != InputVisibility::EveryInput {
             let message = "opponents can play only the world of a finished run. End this run first";
             return Err(Rejection::new("not_in_this_mode", message));
@@ -39,7 +39,9 @@ impl ReplayedWorld {
                 "parameters were changed during this run, so its world cannot be reproduced",
             );
         }
-        if has_preset_decisions(folder, &past.manifest).map_err(|error| unreadable_record(&error))? {
+        if has_preset_decisions(folder, &past.manifest)
+            .map_err(|error| unreadable_record_rejection(&error))?
+        {
             return not_possible(
                 "this part of the lesson starts with an existing company, but opponents start with a new company",
             );

@@ -14,7 +14,7 @@ use novamind_world::identifiers::Plan;
 #[serde(deny_unknown_fields)]
 pub struct EnterpriseRule {
     /// One to three offers, in order.
-    pub offerings: Vec<OfferingRule>,
+    pub offerings: Vec<OfferRule>,
     /// Price factor, which depends on the number of the policy's turns in the thread.
     #[serde(default)]
     pub factor: PriceFactor,
@@ -28,7 +28,7 @@ pub struct EnterpriseRule {
 /// An offered plan and its price before the factor.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct OfferingRule {
+pub struct OfferRule {
     /// Offered plan.
     pub plan: Plan,
     /// Price before the factor, $ per month and seat.
@@ -111,7 +111,7 @@ impl EnterpriseRule {
 
     /// Returns the calls that answer the waiting threads: one call with all offers and one call with all rejections.
     /// Empty calls are omitted.
-    pub fn calls(&self, waiting: &[WaitingThread]) -> Vec<(ToolId, Value)> {
+    pub fn answer_calls(&self, waiting: &[WaitingThread]) -> Vec<(ToolId, Value)> {
         let mut threads: Vec<&WaitingThread> =
             waiting.iter().filter(|thread| self.types.contains(thread.kind)).collect();
         threads.sort_by_key(|thread| thread.thread);
@@ -148,13 +148,13 @@ impl EnterpriseRule {
 mod tests {
     use super::*;
 
-    fn rule(text: &str) -> Result<EnterpriseRule, String> {
+    fn parse_rule(text: &str) -> Result<EnterpriseRule, String> {
         toml::from_str::<EnterpriseRule>(text)
             .map_err(|error| error.message().to_owned())
             .and_then(EnterpriseRule::validated)
     }
 
-    fn thread(number: u32, kind: &'static str, own_turns: u32) -> WaitingThread {
+    fn waiting_thread(number: u32, kind: &'static str, own_turns: u32) -> WaitingThread {
         WaitingThread {
             thread: number,
             customer: 100 + number,
@@ -174,14 +174,14 @@ mod tests {
 
     #[test]
     fn offer_prices_fall_by_turn_in_thread_order() {
-        let rule = rule(P10_TOML).expect("a rule");
+        let rule = parse_rule(P10_TOML).expect("a rule");
         let waiting = [
-            thread(9, "churn_prevention", 1),
-            thread(3, "new_lead", 0),
-            thread(5, "new_lead", 4),
-            thread(7, "plan_change", 3),
+            waiting_thread(9, "churn_prevention", 1),
+            waiting_thread(3, "new_lead", 0),
+            waiting_thread(5, "new_lead", 4),
+            waiting_thread(7, "plan_change", 3),
         ];
-        let calls = rule.calls(&waiting);
+        let calls = rule.answer_calls(&waiting);
         let expected = json!({"deals": [
             [103, [["C", 48.0], ["A", 12.0]]],
             [107, [["C", 36.48], ["A", 9.12]]],
@@ -189,22 +189,22 @@ mod tests {
         ]});
         assert_eq!(calls[0], (ToolId::SendEnterpriseDeal, expected));
         assert_eq!(calls[1], (ToolId::RejectEnterpriseDeal, json!({"deals": [{"customer_id": 105}]})));
-        assert!(rule.calls(&[]).is_empty());
+        assert!(rule.answer_calls(&[]).is_empty());
         assert!((rule.factor.factor_after(9) - 0.6).abs() < 1e-12);
     }
 
     #[test]
     fn thread_types_can_be_selected() {
-        let enterprise_rule = rule(&format!("{P10_TOML}types = [\"new_lead\"]\n")).expect("a rule");
-        assert!(enterprise_rule.calls(&[thread(1, "plan_change", 0)]).is_empty());
-        assert_eq!(enterprise_rule.calls(&[thread(1, "new_lead", 0)]).len(), 1);
-        assert!(rule(&format!("{P10_TOML}types = \"all\"\n")).is_ok());
+        let enterprise_rule = parse_rule(&format!("{P10_TOML}types = [\"new_lead\"]\n")).expect("a rule");
+        assert!(enterprise_rule.answer_calls(&[waiting_thread(1, "plan_change", 0)]).is_empty());
+        assert_eq!(enterprise_rule.answer_calls(&[waiting_thread(1, "new_lead", 0)]).len(), 1);
+        assert!(parse_rule(&format!("{P10_TOML}types = \"all\"\n")).is_ok());
         for wrong in ["types = \"some\"\n", "types = [\"renewed\"]\n", "types = 3\n"] {
-            let problem = rule(&format!("{P10_TOML}{wrong}")).expect_err(wrong);
+            let problem = parse_rule(&format!("{P10_TOML}{wrong}")).expect_err(wrong);
             assert!(problem.contains("types"), "{problem}");
         }
-        let plain = rule("offerings = [{ plan = \"B\", price = 30 }]\n").expect("a rule");
+        let plain = parse_rule("offerings = [{ plan = \"B\", price = 30 }]\n").expect("a rule");
         assert_eq!((plain.factor.factor_after(7), plain.give_up_after), (1.0, None));
-        assert!(rule("offerings = [{ plan = \"B\", price = -1 }]\n").is_err());
+        assert!(parse_rule("offerings = [{ plan = \"B\", price = -1 }]\n").is_err());
     }
 }

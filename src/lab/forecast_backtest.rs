@@ -4,7 +4,7 @@ use super::policy::Policy;
 use super::runner::{RunError, RunSpec, play_all_weeks};
 use novamind_record::figures::WeekFigures;
 use novamind_record::folder::configuration::Configuration;
-use novamind_session::{Coverage, ErrorBands, GrowthStage, Hindcast, hindcasts};
+use novamind_session::{Coverage, ErrorIntervals, GrowthStage, Hindcast, hindcasts};
 use novamind_world::params::Params;
 
 /// Returns the forecast horizons in days.
@@ -35,27 +35,27 @@ pub fn play_weeks(
 }
 
 /// Returns forecast intervals that are fitted to the given runs, with their coverage in these runs.
-pub fn measure_naive_bands(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> ErrorBands {
+pub fn measure_naive_intervals(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> ErrorIntervals {
     // The forecast errors do not depend on the intervals.
     let all = horizons.iter().flat_map(|horizon| runs.iter().map(move |run| (*horizon, run)));
     let errors: Vec<(GrowthStage, u32, f64)> = all
         .flat_map(|(horizon, run)| {
-            let made = hindcasts(&run.weeks, horizon, ErrorBands::bundled());
+            let made = hindcasts(&run.weeks, horizon, ErrorIntervals::bundled());
             made.into_iter().map(move |hindcast| (hindcast.stage, horizon, hindcast.error))
         })
         .collect();
     let policies = policy_names(runs).len();
-    let bands = ErrorBands::from_errors(&errors, policies, seeds);
-    let coverage = horizons.iter().map(|horizon| band_coverage(runs, None, *horizon, &bands)).collect();
-    ErrorBands { coverage, ..bands }
+    let bands = ErrorIntervals::from_errors(&errors, policies, seeds);
+    let coverage = horizons.iter().map(|horizon| interval_coverage(runs, None, *horizon, &bands)).collect();
+    ErrorIntervals { coverage, ..bands }
 }
 
 /// Returns the coverage of the intervals at a horizon, over all runs or the runs of one policy.
-pub fn band_coverage(
+pub fn interval_coverage(
     runs: &[PlayedWeeks],
     policy: Option<&str>,
     horizon: u32,
-    bands: &ErrorBands,
+    bands: &ErrorIntervals,
 ) -> Coverage {
     let policy_runs = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
     let made: Vec<Hindcast> = policy_runs.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
@@ -87,7 +87,7 @@ mod tests {
             &policy,
             &spec,
             &configuration,
-            &mut super::super::Collector::disabled(),
+            &mut super::super::MetricsCollector::disabled(),
         )
         .expect("it plays");
         let filed: Vec<_> = session
@@ -100,7 +100,7 @@ mod tests {
             .collect();
         let mut compared = 0;
         for horizon in [7, 28] {
-            let made = hindcasts(session.weeks(), horizon, ErrorBands::bundled());
+            let made = hindcasts(session.weeks(), horizon, ErrorIntervals::bundled());
             for (hindcast, (day, forecasts)) in made.iter().zip(&filed) {
                 let forecast = forecasts.iter().find(|one| one.horizon_days == horizon).expect("filed");
                 let outcome = session.cash_by_day()[(day + horizon) as usize];

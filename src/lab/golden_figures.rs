@@ -59,7 +59,7 @@ const LOG_COMPARED_FIGURES: [&str; 17] = [
 ];
 
 /// Figures that are shown but excluded from the verdict. The satisfaction of churned authors differs by design.
-const UNJUDGED_FIGURES: [&str; 1] = ["posts_customer_cum"];
+const EXCLUDED_FIGURES: [&str; 1] = ["posts_customer_cum"];
 
 /// Minimum number of seeds of a compared cell.
 const MIN_SEEDS: usize = 5;
@@ -152,7 +152,7 @@ pub struct GoldenComparison {
     /// Cells that are included in the verdict.
     pub cells: Vec<ComparedCell>,
     /// Cells that are shown but excluded from the verdict.
-    pub unjudged: Vec<ComparedCell>,
+    pub excluded: Vec<ComparedCell>,
     /// Reference figures that are missing in the new runs.
     pub missing: Vec<String>,
 }
@@ -166,7 +166,7 @@ pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricVa
     let mut comparison = GoldenComparison {
         policy: reference.policy.clone(),
         cells: vec![],
-        unjudged: vec![],
+        excluded: vec![],
         missing: vec![],
     };
     let mut missing = BTreeSet::new();
@@ -196,8 +196,8 @@ pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricVa
             measured: SampleStatistics::from_values(values),
             z: z_score(&sample_statistics, &statistics),
         };
-        if UNJUDGED_FIGURES.contains(&figure.as_str()) {
-            comparison.unjudged.push(compared);
+        if EXCLUDED_FIGURES.contains(&figure.as_str()) {
+            comparison.excluded.push(compared);
         } else {
             comparison.cells.push(compared);
         }

@@ -145,7 +145,7 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
                 }
             }));
         }
-        result.pitfalls.extend(standing.met_pitfalls().into_iter().map(str::to_owned));
+        result.pitfalls.extend(standing.triggered_pitfall_names().into_iter().map(str::to_owned));
     }
     Ok(result)
 }
@@ -197,7 +197,7 @@ fn figure_values(
 ) -> Result<Vec<Option<f64>>, RunError> {
     let Some(first) = figures.first() else { return Ok(Vec::new()) };
     let last = lesson.plan.parts[first.part].weeks();
-    let world = lesson.with_world_of(first);
+    let world = lesson.with_figure_parameters(first);
     let play = PartPlay {
         lesson: &world,
         part: first.part,

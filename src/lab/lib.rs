@@ -33,9 +33,9 @@ pub mod study;
 mod symbols;
 mod weekly_routine;
 
-pub use enterprise_answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
+pub use enterprise_answers::{EnterpriseRule, OfferRule, PriceFactor, ThreadTypes};
 pub use forecast_backtest::{
-    PlayedWeeks, band_coverage, forecast_horizons, measure_naive_bands, play_weeks, policy_names,
+    PlayedWeeks, forecast_horizons, interval_coverage, measure_naive_intervals, play_weeks, policy_names,
 };
 pub use golden_figures::{
     GoldenComparison, GoldenError, ReferenceFigures, compare_with_reference, read_reference,
@@ -43,11 +43,11 @@ pub use golden_figures::{
 pub use lesson_check::{
     FigureResult, GoalResult, LessonCheck, PlayResult, TOLERANCE, check_lesson, check_plays,
 };
-pub use metrics::{Collector, MetricValue};
+pub use metrics::{MetricValue, MetricsCollector};
 pub use novamind_rules::calls_for_waiting_threads;
 pub use novamind_world::params::Params;
 pub use opponents::play_opponents;
 pub use policy::{Policy, PolicyError};
-pub use runner::{PolicyRunOutcome, RunEnd, RunError, RunSpec, play};
+pub use runner::{PolicyRunOutcome, RunEnd, RunError, RunSpec, play_policy};
 pub use seeds::{SeedRange, parse_seeds};
 pub use strong_policies::STRONG_POLICIES;

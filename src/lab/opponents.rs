@@ -5,7 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::policy::Policy;
-use super::runner::{advance_week, decide};
+use super::runner::{advance_week, make_decisions};
 use super::strong_policies::STRONG_POLICIES;
 use super::{RunError, RunSpec};
 use novamind_insight::ReplayedWorld;
@@ -68,14 +68,14 @@ fn play_opponent(
 }
 
 fn play_week(policy: &Policy, spec: &RunSpec, session: &mut Session) -> Result<(), RunError> {
-    decide(policy, spec.seed, session)?;
+    make_decisions(policy, spec.seed, session)?;
     advance_week(policy, spec.seed, spec.stop_after_day.unwrap_or(u32::MAX), session, &mut |_| {})
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Collector, play};
+    use crate::{MetricsCollector, play_policy};
     use novamind_session::Storage;
 
     #[test]
@@ -85,15 +85,20 @@ mod tests {
         let spec = RunSpec { days: Some(56), surges: Some(true), ..RunSpec::for_seed(9) };
         let kept = RunSpec { save_folder: Some(runs.path().to_owned()), ..spec.clone() };
         let found = |name: &str| Policy::find(name, &configuration).expect(name);
-        let run = play(&found("P1a"), &kept, &configuration, &mut Collector::disabled()).expect("a run");
+        let run = play_policy(&found("P1a"), &kept, &configuration, &mut MetricsCollector::disabled())
+            .expect("a run");
         let folder = runs.path().join(run.run.expect("it is kept"));
         let opponents = play_opponents(&folder, &configuration, &|| true);
         let opponents = opponents.expect("they play").expect("they are not stopped");
         assert_eq!((opponents.day, opponents.policies.len()), (56, 5));
         assert!(opponents.policies.is_sorted_by(|one, next| one.score() >= next.score()));
         for opponent_result in &opponents.policies {
-            let alone =
-                play(&found(&opponent_result.policy), &spec, &configuration, &mut Collector::disabled());
+            let alone = play_policy(
+                &found(&opponent_result.policy),
+                &spec,
+                &configuration,
+                &mut MetricsCollector::disabled(),
+            );
             let alone = alone.expect("it plays");
             assert_eq!(
                 (opponent_result.cash, opponent_result.day, &opponent_result.stopped),

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranks_start_at_the_largest_and_ties_share() {
+    fn ranks_start_at_the_largest_value_and_ties_share_a_mean_rank() {
         assert_eq!(mean_ranks(&[5.0, 9.0, 5.0, -1.0]), [2.5, 1.0, 2.5, 4.0]);
     }
 

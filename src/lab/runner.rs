@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::metrics::Collector;
+use super::metrics::MetricsCollector;
 use super::policy::Policy;
 use super::symbols::SymbolTable;
 use super::weekly_routine;
@@ -167,15 +167,15 @@ impl From<SessionError> for RunError {
 ///
 /// # Errors
 /// Fails if the run cannot start or a tool rejects a call that must succeed.
-pub fn play(
+pub fn play_policy(
     policy: &Policy,
     spec: &RunSpec,
     configuration: &Configuration,
-    collector: &mut Collector,
+    collector: &mut MetricsCollector,
 ) -> Result<PolicyRunOutcome, RunError> {
     let started = Instant::now();
     let session = play_session(policy, spec, configuration, collector)?;
-    Ok(outcome(policy, spec.seed, &session, started.elapsed()))
+    Ok(policy_outcome(policy, spec.seed, &session, started.elapsed()))
 }
 
 /// Plays a policy to the end of its run and returns the figures of the weeks.
@@ -184,7 +184,7 @@ pub(super) fn play_all_weeks(
     spec: &RunSpec,
     configuration: &Configuration,
 ) -> Result<Vec<WeekFigures>, RunError> {
-    let session = play_session(policy, spec, configuration, &mut Collector::disabled())?;
+    let session = play_session(policy, spec, configuration, &mut MetricsCollector::disabled())?;
     Ok(session.weeks().to_vec())
 }
 
@@ -193,7 +193,7 @@ pub(super) fn play_session(
     policy: &Policy,
     spec: &RunSpec,
     configuration: &Configuration,
-    collector: &mut Collector,
+    collector: &mut MetricsCollector,
 ) -> Result<Session, RunError> {
     let mut watch = |report: &DayReport<'_>| collector.add_day(report);
     let mut session = play_while(&|| true, policy, spec, configuration, &mut watch)?;
@@ -212,7 +212,7 @@ pub(super) fn play_while(
 ) -> Result<Session, RunError> {
     let mut session = Session::create(new_run(policy, spec), configuration)?;
     while !is_over(&session, spec) && goes_on() {
-        decide(policy, spec.seed, &mut session)?;
+        make_decisions(policy, spec.seed, &mut session)?;
         advance_week(policy, spec.seed, spec.stop_after_day.unwrap_or(u32::MAX), &mut session, watch)?;
     }
     Ok(session)
@@ -253,7 +253,7 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
 }
 
 /// Executes the calls of a policy on the current decision day.
-pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
+pub(super) fn make_decisions(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
     decide_with_answers(policy, seed, session, &mut |_| ())
 }
 
@@ -295,7 +295,7 @@ pub(super) fn decide_with_answers(
         }
     }
     if let Some(rule) = &policy.enterprise {
-        for (tool, arguments) in rule.calls(&session.company().observe().waiting) {
+        for (tool, arguments) in rule.answer_calls(&session.company().observe().waiting) {
             call(session, tool.as_ref(), &arguments, false)?;
         }
     }
@@ -326,7 +326,12 @@ pub(super) fn advance_week(
 }
 
 /// Returns the outcome of a policy's session.
-pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> PolicyRunOutcome {
+pub(super) fn policy_outcome(
+    policy: &Policy,
+    seed: u64,
+    session: &Session,
+    took: Duration,
+) -> PolicyRunOutcome {
     let seen = session.company().observe();
     PolicyRunOutcome {
         seed,

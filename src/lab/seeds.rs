@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn seeds_are_one_or_a_range_with_both_ends() {
+    fn seed_range_includes_both_ends() {
         assert_eq!(parse_seeds("7"), Ok(SeedRange { first: 7, last: 7 }));
         assert_eq!(parse_seeds("1..24"), Ok(SeedRange { first: 1, last: 24 }));
         assert!(parse_seeds("1..1000000").is_ok());

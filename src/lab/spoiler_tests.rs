@@ -63,7 +63,7 @@ struct NumberInText {
 }
 
 /// Returns the numbers in a text, in any of these formats: `12`, `$12.00`, `60k`, `250_000`, `1.2M`.
-fn numbers_in(text: &str) -> Vec<NumberInText> {
+fn parse_numbers(text: &str) -> Vec<NumberInText> {
     let bytes = text.as_bytes();
     let mut found = Vec::new();
     let mut at = 0;
@@ -101,8 +101,8 @@ fn numbers_in(text: &str) -> Vec<NumberInText> {
 }
 
 /// Returns the policy settings that a text reveals.
-fn leaked_numbers(text: &str, answers: &PolicyNumbers) -> Vec<String> {
-    let numbers = numbers_in(text);
+fn find_leaked_numbers(text: &str, answers: &PolicyNumbers) -> Vec<String> {
+    let numbers = parse_numbers(text);
     let near = |pair: &[NumberInText]| pair[1].start.saturating_sub(pair[0].end) <= MAX_DISTANCE;
     let mut found = Vec::new();
     for three in numbers.windows(3).filter(|three| near(three) && near(&three[1..])) {
@@ -125,7 +125,7 @@ fn leaked_numbers(text: &str, answers: &PolicyNumbers) -> Vec<String> {
         let lower = line.to_lowercase();
         let names = |word: &str| line.contains(word) || line.contains(&word.replace('_', " "));
         let holds = |group: &str, amounts: &[(&str, f64)]| {
-            let values = self::numbers_in(line);
+            let values = self::parse_numbers(line);
             let matches_value =
                 |amount: &(&str, f64)| amount.0 == group && values.iter().any(|one| one.value == amount.1);
             line.contains(group) && amounts.iter().any(matches_value)
@@ -197,11 +197,11 @@ fn introductory_texts_contain_no_policy_numbers() {
     let read_before = paths.iter().filter(|path| !path.ends_with(POLICY_PAGE));
     for (path, text) in read_before.filter_map(|path| Some((path, readable_text(path)?))) {
         let name = path.strip_prefix(root).unwrap_or(path).display();
-        found.extend(leaked_numbers(&text, &answers).into_iter().map(|what| format!("{name}: {what}")));
+        found.extend(find_leaked_numbers(&text, &answers).into_iter().map(|what| format!("{name}: {what}")));
     }
     for tool in CATALOGUE {
         let spec = tool.spec();
-        let what = leaked_numbers(spec.example, &answers);
+        let what = find_leaked_numbers(spec.example, &answers);
         found.extend(what.into_iter().map(|what| format!("example of {}: {what}", spec.name())));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
@@ -221,7 +221,7 @@ fn leaked_numbers_are_found_in_every_notation() {
         r#"{"content_marketing": {"S1": 80}}"#,
         "set_targeted_dev_spend S1 6000",
     ] {
-        assert!(!leaked_numbers(text, &answers).is_empty(), "{text}");
+        assert!(!find_leaked_numbers(text, &answers).is_empty(), "{text}");
     }
     for text in [
         "1, 4, 12 and 26 weeks",
@@ -230,6 +230,10 @@ fn leaked_numbers_are_found_in_every_notation() {
         "content_marketing, social_media",
         "within 12 of 25 rows, and 1200",
     ] {
-        assert!(leaked_numbers(text, &answers).is_empty(), "{text}: {:?}", leaked_numbers(text, &answers));
+        assert!(
+            find_leaked_numbers(text, &answers).is_empty(),
+            "{text}: {:?}",
+            find_leaked_numbers(text, &answers)
+        );
     }
 }

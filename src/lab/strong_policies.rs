@@ -8,7 +8,7 @@ mod tests {
     use rayon::prelude::*;
 
     use super::STRONG_POLICIES;
-    use crate::{Collector, Policy, RunEnd, RunSpec, play};
+    use crate::{MetricsCollector, Policy, RunEnd, RunSpec, play_policy};
     use novamind_record::folder::configuration::Configuration;
 
     /// Seeds on which no strong policy was tuned. The second seed has a demand surge while enterprises sign deals.
@@ -19,7 +19,8 @@ mod tests {
         let configuration = Configuration::bundled();
         let policy = Policy::find(name, &configuration).expect(name);
         let spec = RunSpec { stop_after_day: Some(70), ..RunSpec::for_seed(seed) };
-        let outcome = play(&policy, &spec, &configuration, &mut Collector::disabled()).expect(name);
+        let outcome =
+            play_policy(&policy, &spec, &configuration, &mut MetricsCollector::disabled()).expect(name);
         assert_eq!(outcome.ended, RunEnd::Until, "{name} on seed {seed}");
         outcome.cash
     }

@@ -90,7 +90,7 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn symbols(discovered: &[&str]) -> SymbolTable {
+    fn test_symbols(discovered: &[&str]) -> SymbolTable {
         let group = |id: &&str| Group::parse(id).expect("a group");
         SymbolTable::new(
             Group::all().filter(|group| group.is_initially_known()).chain(discovered.iter().map(group)),
@@ -98,10 +98,10 @@ mod tests {
     }
 
     #[test]
-    fn symbol_keys_expand_and_explicit_entries_win() {
+    fn symbol_keys_expand_and_explicit_keys_take_precedence() {
         let given =
             json!({"targeted_spend": {"@channels": {"S1": 50, "@discovered_individuals": 9, "D_S02": 1}}});
-        let calls = symbols(&["D_S02", "D_S07", "D_E01"]).resolve(&given);
+        let calls = test_symbols(&["D_S02", "D_S07", "D_E01"]).resolve(&given);
         assert_eq!(calls.len(), 1);
         let linkedin = &calls[0]["targeted_spend"]["linkedin"];
         assert_eq!(linkedin, &json!({"D_S02": 1, "D_S07": 9, "S1": 50}));
@@ -111,16 +111,16 @@ mod tests {
     #[test]
     fn symbol_values_expand_to_one_call_per_member() {
         let given = json!({"group_id": "@first_discovered", "target_level": 2});
-        assert_eq!(symbols(&[]).resolve(&given), Vec::<Value>::new());
-        let calls = symbols(&["D_S02", "D_E09"]).resolve(&given);
+        assert_eq!(test_symbols(&[]).resolve(&given), Vec::<Value>::new());
+        let calls = test_symbols(&["D_S02", "D_E09"]).resolve(&given);
         assert_eq!(calls, [json!({"group_id": "D_E09", "target_level": 2})]);
-        let all = symbols(&["D_S02", "D_E09"]).resolve(&json!({"group_id": "@discovered_enterprises"}));
+        let all = test_symbols(&["D_S02", "D_E09"]).resolve(&json!({"group_id": "@discovered_enterprises"}));
         assert_eq!(all, [json!({"group_id": "D_E09"})]);
         assert_eq!(
-            symbols(&[]).resolve(&json!({"by_group": {"@discovered_individuals": 1}})),
+            test_symbols(&[]).resolve(&json!({"by_group": {"@discovered_individuals": 1}})),
             Vec::<Value>::new()
         );
-        assert_eq!(symbols(&[]).resolve(&json!({"group_id": "@known"})).len(), 6);
-        assert_eq!(symbols(&[]).resolve(&json!({"tier": 2})), [json!({"tier": 2})]);
+        assert_eq!(test_symbols(&[]).resolve(&json!({"group_id": "@known"})).len(), 6);
+        assert_eq!(test_symbols(&[]).resolve(&json!({"tier": 2})), [json!({"tier": 2})]);
     }
 }

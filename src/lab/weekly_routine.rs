@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::policy::{CapacityRule, OperationsRule, RuleBased, Target};
+use super::policy::{CapacityRule, OperationsRule, RuleBased, TargetGroups};
 use novamind_session::{Observation, Session, best_starting_channel};
 use novamind_tools::ToolId;
 use novamind_world::identifiers::{Group, Plan};
@@ -23,7 +23,7 @@ pub fn routine_calls(rules: &RuleBased, session: &Session) -> Vec<(ToolId, Value
         (ToolId::SetUsageQuotas, per_plan(|plan| json!(quotas.get(plan)))),
         (ToolId::SetDailySpend, daily_spend_arguments(rules, &seen, on)),
     ];
-    if rules.target != Target::None {
+    if rules.target != TargetGroups::None {
         calls.extend(targeted_calls(rules, &seen, on, session.params()));
     }
     if rules.capacity == CapacityRule::Utilisation {
@@ -50,7 +50,7 @@ fn daily_spend_arguments(rules: &RuleBased, seen: &Observation, on: bool) -> Val
 fn targeted_calls(rules: &RuleBased, seen: &Observation, on: bool, params: &Params) -> [(ToolId, Value); 2] {
     let (s1, s3) = rules.spend.budgets();
     let mut targets = vec![("S1", s1)];
-    if rules.target == Target::S1ThenS3 && seen.day >= SECOND_GROUP_START_DAY {
+    if rules.target == TargetGroups::S1ThenS3 && seen.day >= SECOND_GROUP_START_DAY {
         targets.push(("S3", s3));
     }
     let (mut development, mut ads) = (Map::new(), Map::new());

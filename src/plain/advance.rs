@@ -20,7 +20,7 @@ use novamind_tools::{FORECAST_KEYS, Forecast, Rejection};
 
 /// Rationale and forecasts that are submitted before a week.
 #[derive(Debug, Clone, PartialEq)]
-pub enum WeekFiling {
+pub enum NextWeekInput {
     /// The command line contained the rationale and the predictions, or the lesson fills them in.
     Given {
         /// Rationale as an argument of the tool `next_week`.
@@ -34,23 +34,23 @@ pub enum WeekFiling {
     Ask,
 }
 
-impl WeekFiling {
+impl NextWeekInput {
     /// Returns the submission that is used when a time limit is reached.
-    pub fn for_time_limit(session: &Session) -> WeekFiling {
+    pub fn for_time_limit(session: &Session) -> NextWeekInput {
         let predictions = session.company().naive_forecasts().to_predictions();
-        WeekFiling::Given { rationale: json!(TIME_LIMIT_RATIONALE), predictions, naive: [true; 4] }
+        NextWeekInput::Given { rationale: json!(TIME_LIMIT_RATIONALE), predictions, naive: [true; 4] }
     }
 }
 
 /// Parses the arguments of the command `next`.
-pub fn parse_filing(
+pub fn parse_next_week_input(
     arguments: &[Argument],
     session: &Session,
     prompts: bool,
-) -> Result<WeekFiling, ParseError> {
+) -> Result<NextWeekInput, ParseError> {
     let naive = session.company().naive_forecasts();
     let given =
-        |rationale: Value, predictions: Value, naive| WeekFiling::Given { rationale, predictions, naive };
+        |rationale: Value, predictions: Value, naive| NextWeekInput::Given { rationale, predictions, naive };
     let is_naive = |argument: &Argument| argument.key.is_none() && argument.value == "naive";
     // The lesson can fill in naive forecasts, so that the player need not type them.
     let access = session.lesson().map(LessonProgress::access);
@@ -58,7 +58,7 @@ pub fn parse_filing(
     let left_out = || if fills { (naive.to_predictions(), [true; 4]) } else { (Value::Null, [false; 4]) };
     let asks_nothing = fills && access.is_some_and(LessonAccess::is_rationale_off);
     match arguments {
-        [] if prompts && !asks_nothing => Ok(WeekFiling::Ask),
+        [] if prompts && !asks_nothing => Ok(NextWeekInput::Ask),
         [] => {
             let (predictions, filled) = left_out();
             Ok(given(Value::Null, predictions, filled))
@@ -93,9 +93,13 @@ pub fn parse_filing(
 }
 
 /// Returns a submission. `left_out` supplies the predictions if `given` is null.
-fn fill_predictions(rationale: Value, given: Value, left_out: impl Fn() -> (Value, [bool; 4])) -> WeekFiling {
+fn fill_predictions(
+    rationale: Value,
+    given: Value,
+    left_out: impl Fn() -> (Value, [bool; 4]),
+) -> NextWeekInput {
     let (predictions, naive) = if given.is_null() { left_out() } else { (given, [false; 4]) };
-    WeekFiling::Given { rationale, predictions, naive }
+    NextWeekInput::Given { rationale, predictions, naive }
 }
 
 /// Checks that the tool has an argument of this name.
@@ -135,8 +139,8 @@ fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Pars
 }
 
 /// Submits rationale and forecasts, and simulates a week.
-pub fn advance_week(session: &mut Session, filing: WeekFiling) -> CommandResponse {
-    let WeekFiling::Given { rationale, predictions, naive } = filing else {
+pub fn advance_week(session: &mut Session, filing: NextWeekInput) -> CommandResponse {
+    let NextWeekInput::Given { rationale, predictions, naive } = filing else {
         return CommandResponse::success("next", String::new(), Value::Null);
     };
     match session.advance_with_json(&rationale, &predictions, naive, Via::Plain, &mut |_| {}) {
@@ -199,7 +203,7 @@ fn end_response(command: &str, session: &Session, week: &WeekResult) -> CommandR
 ///
 /// # Errors
 /// The input or the prompt fails.
-pub fn ask_filing(session: &Session, input: &mut LineSource) -> io::Result<Option<WeekFiling>> {
+pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Result<Option<NextWeekInput>> {
     let seen = session.company().observe();
     let changes = seen.changes.iter().map(super::commands::describe_setting_change);
     let mut lines: Vec<String> = changes.chain(seen.purchases.iter().cloned()).collect();
@@ -220,7 +224,7 @@ pub fn ask_filing(session: &Session, input: &mut LineSource) -> io::Result<Optio
     let mut forecasts = session.company().naive_forecasts();
     if access.is_some_and(LessonAccess::uses_naive_forecasts) {
         let predictions = forecasts.to_predictions();
-        return Ok(Some(WeekFiling::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));
+        return Ok(Some(NextWeekInput::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));
     }
     let fields = forecasts.all.iter_mut().zip(&mut forecasts.filled_naively);
     for ((forecast, filled), weeks) in fields.zip([1, 4, 12, 26]) {
@@ -232,7 +236,7 @@ pub fn ask_filing(session: &Session, input: &mut LineSource) -> io::Result<Optio
         }
     }
     let (predictions, naive) = (forecasts.to_predictions(), forecasts.filled_naively);
-    Ok(Some(WeekFiling::Given { rationale: rationale.into(), predictions, naive }))
+    Ok(Some(NextWeekInput::Given { rationale: rationale.into(), predictions, naive }))
 }
 
 /// Asks for the rationale. Returns `None` if the player cancels.
@@ -310,7 +314,7 @@ mod tests {
     use super::*;
     use novamind_course::{Lesson, submit_guess};
     use novamind_record::folder::configuration::Configuration;
-    use novamind_session::{LessonEntry, NewRun};
+    use novamind_session::{LessonOptions, NewRun};
 
     /// Creates a lesson of two weeks in memory with these `access` settings.
     fn lesson_session(access: &str) -> Session {
@@ -321,7 +325,7 @@ mod tests {
         std::fs::write(&file, plan.replace("forecasts = \"naive\"\nrationale = \"off\"", access))
             .expect("a file");
         let lesson = Arc::new(Lesson::from_file(&file).expect("a lesson"));
-        let entry = LessonEntry { lesson, part: 0, is_judged: true };
+        let entry = LessonOptions { lesson, part: 0, is_judged: true };
         let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         submit_guess(&mut session, 0.5).expect("a guess");
@@ -333,19 +337,19 @@ mod tests {
     }
 
     #[test]
-    fn lesson_without_filing_needs_no_argument() {
+    fn lesson_without_rationale_and_forecasts_needs_no_argument() {
         let mut session = lesson_session("forecasts = \"naive\"\nrationale = \"off\"");
         for prompts in [false, true] {
-            let filing = parse_filing(&[], &session, prompts).expect("it is filed");
+            let filing = parse_next_week_input(&[], &session, prompts).expect("it is filed");
             assert!(
-                matches!(&filing, WeekFiling::Given { naive: [true, true, true, true], .. }),
+                matches!(&filing, NextWeekInput::Given { naive: [true, true, true, true], .. }),
                 "{filing:?}"
             );
         }
-        let filing = parse_filing(&[], &session, false).expect("it is filed");
+        let filing = parse_next_week_input(&[], &session, false).expect("it is filed");
         assert!(advance_week(&mut session, filing).is_success());
         submit_guess(&mut session, 1.0).expect("a guess");
-        let filing = parse_filing(&[], &session, true).expect("it is filed");
+        let filing = parse_next_week_input(&[], &session, true).expect("it is filed");
         let text = advance_week(&mut session, filing).to_text();
         assert!(text.contains("run ended: lesson \u{b7} day 14\n") && !text.contains("score"), "{text}");
     }
@@ -353,19 +357,19 @@ mod tests {
     #[test]
     fn lesson_with_rationale_needs_no_forecasts() {
         let mut session = lesson_session("forecasts = \"naive\"\nrationale = \"required\"");
-        assert_eq!(parse_filing(&[], &session, true), Ok(WeekFiling::Ask));
-        let nothing = parse_filing(&[], &session, false).expect("it is read");
+        assert_eq!(parse_next_week_input(&[], &session, true), Ok(NextWeekInput::Ask));
+        let nothing = parse_next_week_input(&[], &session, false).expect("it is read");
         let refused = advance_week(&mut session, nothing).to_text();
         assert!(refused.contains("write next \"WHY\"; help"), "{refused}");
-        let filing = parse_filing(&[argument("because")], &session, false).expect("it is filed");
+        let filing = parse_next_week_input(&[argument("because")], &session, false).expect("it is filed");
         assert!(advance_week(&mut session, filing).is_success());
     }
 
     #[test]
-    fn other_runs_require_forecasts() {
+    fn runs_without_lesson_require_forecasts() {
         let session = lesson_session("forecasts = \"required\"\nrationale = \"off\"");
-        assert_eq!(parse_filing(&[], &session, true), Ok(WeekFiling::Ask));
-        assert!(parse_filing(&[argument("because")], &session, false).is_err());
+        assert_eq!(parse_next_week_input(&[], &session, true), Ok(NextWeekInput::Ask));
+        assert!(parse_next_week_input(&[argument("because")], &session, false).is_err());
     }
 
     #[test]

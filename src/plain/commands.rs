@@ -255,13 +255,13 @@ impl Interpreter {
             "rules" => self.rules_command(rest, column),
             "xray" => self.query_hidden_tables(rest, column),
             "why" => self.run_why(rest, column).unwrap_or_else(syntax_error),
-            "whatif" => self.what_if(rest, column).unwrap_or_else(syntax_error),
+            "whatif" => self.execute_what_if(rest, column).unwrap_or_else(syntax_error),
             "pause" => self.pause(rest),
             "break" => self.breakpoint_command(rest, column).unwrap_or_else(syntax_error),
             "run" => self.run_days(rest, column).unwrap_or_else(syntax_error),
-            "since" => self.run_back(word, rest, column).unwrap_or_else(syntax_error),
-            "find" => self.find_days(rest, column).unwrap_or_else(syntax_error),
-            "who" => self.find_writers(rest, column).unwrap_or_else(syntax_error),
+            "since" => self.run_since(word, rest, column).unwrap_or_else(syntax_error),
+            "find" => self.run_find(rest, column).unwrap_or_else(syntax_error),
+            "who" => self.run_who(rest, column).unwrap_or_else(syntax_error),
             "resume" => self.resume(rest),
             _ => self.execute_query(&grammar::sql_statement(rest), QuerySource::Typed),
         }
@@ -271,7 +271,7 @@ impl Interpreter {
         let answer = self.session.up_to_date_database().and_then(RunDatabase::interrupt_handle).and_then(
             |interrupt| {
                 // After the ticket is issued, a signal stops the query even if the query has not started.
-                let ticket = interrupt.ticket();
+                let ticket = interrupt.issue_ticket();
                 self.watch.enter_query(interrupt);
                 self.session.query_as(Some(ticket), sql, via)
             },
@@ -306,8 +306,8 @@ impl Interpreter {
     }
 
     fn next_week(&mut self, arguments: &[Argument], input: &mut LineSource) -> io::Result<CommandResponse> {
-        let filing = match advance::parse_filing(arguments, &self.session, self.is_interactive) {
-            Ok(advance::WeekFiling::Ask) => match advance::ask_filing(&self.session, input)? {
+        let filing = match advance::parse_next_week_input(arguments, &self.session, self.is_interactive) {
+            Ok(advance::NextWeekInput::Ask) => match advance::ask_next_week_input(&self.session, input)? {
                 Some(filing) => filing,
                 None => {
                     let text = "cancelled; no day has passed".to_owned();
@@ -386,7 +386,7 @@ impl Interpreter {
         match self.call_cancellable(tool, arguments) {
             Ok(data) if tool.executes_code() => queries::script_response(tool, &data),
             Ok(data) => {
-                let shown = groups::with_ranges(&self.session, &data);
+                let shown = groups::answer_with_ranges(&self.session, &data);
                 let answer = CommandResponse::tool_result(tool.name(), data.to_json(), shown);
                 answer.with_notes(&self.late_project_warnings(&data))
             }

@@ -1,6 +1,6 @@
 //! Reasons why a plain-mode session ended, with their names in responses, causes in the record, and exit codes.
 
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 
 /// Number of the signal SIGHUP, which a closed terminal sends.
 const HANGUP: i32 = 1;
@@ -39,16 +39,16 @@ impl EndReason {
     }
 
     /// Returns the cause that the record stores for this reason.
-    pub fn leaving_cause(self) -> LeavingCause {
+    pub fn leaving_cause(self) -> DetachCause {
         match self {
-            EndReason::Quit | EndReason::RunOver => LeavingCause::Quit,
-            EndReason::EndOfInput => LeavingCause::EndOfInput,
-            EndReason::StrictRejection => LeavingCause::Strict,
+            EndReason::Quit | EndReason::RunOver => DetachCause::Quit,
+            EndReason::EndOfInput => DetachCause::EndOfInput,
+            EndReason::StrictRejection => DetachCause::Strict,
             // The cause does not matter, because the record no longer has a file.
-            EndReason::RecordLost => LeavingCause::Quit,
-            EndReason::Signal(HANGUP) => LeavingCause::Hangup,
-            EndReason::Signal(_) => LeavingCause::Signal,
-            EndReason::Withdrawn => LeavingCause::Withdrawn,
+            EndReason::RecordLost => DetachCause::Quit,
+            EndReason::Signal(HANGUP) => DetachCause::Hangup,
+            EndReason::Signal(_) => DetachCause::Signal,
+            EndReason::Withdrawn => DetachCause::Withdrawn,
         }
     }
 

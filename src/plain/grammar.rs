@@ -55,7 +55,7 @@ pub fn parse_line(line: &str) -> Result<ParsedLine, ParseError> {
         return Err(reader.error_here("a line begins with the name of a command or tool"));
     }
     let is_text = match word.as_str() {
-        "inbox" => has_condition(reader.remaining()),
+        "inbox" => is_inbox_condition(reader.remaining()),
         "xray" => xray_statement(reader.remaining()).is_some(),
         word => TEXT_COMMANDS.contains(&current_name(word)),
     };
@@ -66,7 +66,7 @@ pub fn parse_line(line: &str) -> Result<ParsedLine, ParseError> {
 }
 
 /// Returns whether the text after `inbox` is a condition: `where …` or `all where …`.
-fn has_condition(rest: &str) -> bool {
+fn is_inbox_condition(rest: &str) -> bool {
     rest.split_whitespace().find(|word| *word != "all") == Some("where")
 }
 
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn calls_may_be_written_in_many_ways() {
+    fn parse_line_accepts_all_argument_notations() {
         let prices = json!({"A": 12, "B": 25, "C": 55.5});
         for line in [
             "pricing.set_prices(A=12, B=25, C=55.5)",
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn problems_name_their_column() {
+    fn parse_errors_name_their_column() {
         for (line, column, part) in [
             ("set_prices A=12 A=13", 17, "twice"),
             ("set_prices(A=12", 16, "not closed"),
@@ -209,7 +209,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_line_panics(line in "\\PC{0,60}") {
+        fn parse_line_never_panics(line in "\\PC{0,60}") {
             let _ = parse_line(&line);
         }
 

@@ -108,7 +108,7 @@ impl<R: BufRead> Input<R> {
 mod tests {
     use super::*;
 
-    fn all(bytes: &[u8]) -> Vec<(u32, InputLine)> {
+    fn read_all_lines(bytes: &[u8]) -> Vec<(u32, InputLine)> {
         let mut input = Input::new(bytes);
         let mut found = Vec::new();
         loop {
@@ -126,17 +126,17 @@ mod tests {
 
     #[test]
     fn lines_are_numbered_joined_and_cleaned() {
-        let found = all("\u{feff}one\r\ntwo \\\nthree\n\nlast".as_bytes());
+        let found = read_all_lines("\u{feff}one\r\ntwo \\\nthree\n\nlast".as_bytes());
         assert_eq!(found, [line(1, "one"), line(2, "two \nthree"), line(4, ""), line(5, "last")]);
-        assert_eq!(all(b"end\\"), [line(1, "end")]);
-        assert_eq!(all(b""), []);
+        assert_eq!(read_all_lines(b"end\\"), [line(1, "end")]);
+        assert_eq!(read_all_lines(b""), []);
     }
 
     #[test]
-    fn unreadable_lines_do_not_hide_the_next() {
+    fn read_line_continues_after_unreadable_lines() {
         let mut bytes = vec![b'x'; MAX_LINE_BYTES + 5];
         bytes.extend(b"\nok\n\xff\xfe\nok\n");
-        let found = all(&bytes);
+        let found = read_all_lines(&bytes);
         assert!(matches!(&found[0].1, InputLine::Unreadable(problem) if problem.contains("1 MiB")));
         assert_eq!(found[1], line(2, "ok"));
         assert!(matches!(&found[2].1, InputLine::Unreadable(problem) if problem.contains("UTF-8")));

@@ -29,7 +29,7 @@ use input::InputLine;
 use line_source::LineSource;
 use novamind_base::formatting::escape_control_characters;
 use novamind_record::folder::query_library::QueryLibrary;
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Interface, Session};
 use novamind_study::Study;
 use response::CommandResponse;
@@ -72,7 +72,7 @@ fn run_dialogue(
     interpreter
         .session
         .activity()
-        .detach(end.as_ref().map_or(LeavingCause::Hangup, |end| end.leaving_cause()));
+        .detach(end.as_ref().map_or(DetachCause::Hangup, |end| end.leaving_cause()));
     // Every confirmed change is already on disk. Only derived rows can be missing, which the program can rebuild.
     let _ = interpreter.session.save();
     let end = end?;

@@ -10,7 +10,7 @@ use super::line_source::LineSource;
 use super::{EndReason, OutputStyle, confirm_withdrawal, run_dialogue, show_prompt};
 use novamind_base::formatting::escape_control_characters;
 use novamind_record::clock::monotonic_time;
-use novamind_record::consent::{ConsentAgreement, ConsentGiven, ConsentMeans};
+use novamind_record::consent::{ConsentAgreement, ConsentDetails, ConsentMeans};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::query_library::QueryLibrary;
@@ -148,7 +148,7 @@ impl SessionHost<'_> {
             Some("yes") => {
                 let read_ms = monotonic_time().saturating_sub(shown).as_millis() as u64;
                 let means = ConsentMeans::Prompt;
-                self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms }.given_now());
+                self.consent = Some(ConsentDetails { means, scrolled_to_end: true, read_ms }.agree_now());
                 Ok(())
             }
             Some(_) => {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::advance::{self, WeekFiling};
+use super::advance::{self, NextWeekInput};
 use super::commands::Interpreter;
 use super::grammar::ParsedLine;
 use super::response::CommandResponse;
@@ -76,7 +76,7 @@ impl Interpreter {
             LimitEvent::Warned => vec![tell(&format!("; {follows}"))],
             LimitEvent::Reminded => vec![tell("; please finish soon")],
             LimitEvent::FiledNaively => {
-                let filing = WeekFiling::for_time_limit(&self.session);
+                let filing = NextWeekInput::for_time_limit(&self.session);
                 let filed = advance::advance_week(&mut self.session, filing);
                 vec![tell("; the week is submitted with the naive projection"), filed]
             }

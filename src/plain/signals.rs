@@ -113,7 +113,7 @@ impl SignalWatch {
     }
 
     /// Sets the activity to a simulation. The returned flag becomes true when the simulation must stop.
-    pub fn enter_stoppable(&self) -> Arc<AtomicBool> {
+    pub fn enter_simulation(&self) -> Arc<AtomicBool> {
         let mut state = self.state();
         (state.phase, state.stop) = (Phase::Simulation, Arc::default());
         state.stop.clone()

@@ -16,7 +16,7 @@ pub struct Consent {
     pub at: String,
     /// Circumstances of the agreement; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub given: Option<ConsentGiven>,
+    pub given: Option<ConsentDetails>,
     /// The complete consent text; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
@@ -25,7 +25,7 @@ pub struct Consent {
 /// How and in what circumstances a participant agreed to the consent text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ConsentGiven {
+pub struct ConsentDetails {
     /// How the participant agreed: on a screen, at a prompt or on paper.
     pub means: ConsentMeans,
     /// Whether the participant scrolled the text to its end on the screen.
@@ -34,10 +34,10 @@ pub struct ConsentGiven {
     pub read_ms: u64,
 }
 
-impl ConsentGiven {
+impl ConsentDetails {
     /// Returns the details of a consent that was given on paper, according to the experimenter.
-    pub fn on_paper() -> ConsentGiven {
-        ConsentGiven { means: ConsentMeans::Paper, scrolled_to_end: false, read_ms: 0 }
+    pub fn on_paper() -> ConsentDetails {
+        ConsentDetails { means: ConsentMeans::Paper, scrolled_to_end: false, read_ms: 0 }
     }
 }
 
@@ -82,14 +82,14 @@ impl ConsentText {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConsentAgreement {
     /// Circumstances of the agreement.
-    pub given: ConsentGiven,
+    pub given: ConsentDetails,
     /// Moment of the agreement, RFC 3339.
     pub at: String,
 }
 
-impl ConsentGiven {
+impl ConsentDetails {
     /// Returns an agreement with these circumstances and the current moment.
-    pub fn given_now(self) -> ConsentAgreement {
+    pub fn agree_now(self) -> ConsentAgreement {
         ConsentAgreement { given: self, at: now() }
     }
 }

@@ -14,11 +14,11 @@ pub struct SessionRules {
     /// Whether forecast forms show the accuracy of earlier forecasts.
     pub calibration: bool,
     /// Results that the final page shows.
-    pub results: ResultsShown,
+    pub results: ResultsDisclosure,
     /// How free text is recorded.
-    pub free_text: FreeText,
+    pub free_text: FreeTextRecording,
     /// How abandoned texts are recorded.
-    pub drafts: DraftsKept,
+    pub drafts: DraftRecording,
     /// Kinds of activity that are not recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unrecorded: Vec<String>,
@@ -36,7 +36,7 @@ pub struct SessionRules {
 /// Results that the final page of a run shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ResultsShown {
+pub enum ResultsDisclosure {
     /// No results, only the statement that the run is over.
     None,
     /// The participant's result.
@@ -48,7 +48,7 @@ pub enum ResultsShown {
 /// How notes and free-text answers are recorded. Rationales are always recorded in full.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum FreeText {
+pub enum FreeTextRecording {
     /// The full text is recorded.
     Kept,
     /// Only the length and the digest of a text are recorded.
@@ -58,7 +58,7 @@ pub enum FreeText {
 /// How texts that were edited and abandoned are recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum DraftsKept {
+pub enum DraftRecording {
     /// Edits are not recorded.
     None,
     /// Only lengths, pauses and deletions are recorded.
@@ -85,7 +85,7 @@ pub struct TimeLimits {
     pub warning_minutes: Option<u32>,
     /// Action when a limit is reached.
     #[serde(default)]
-    pub at_limit: AtLimit,
+    pub at_limit: LimitAction,
 }
 
 impl TimeLimits {
@@ -114,7 +114,7 @@ impl TimeLimits {
 /// Action when a time limit is reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum AtLimit {
+pub enum LimitAction {
     /// Remind the participant of the limit.
     #[default]
     Remind,
@@ -132,7 +132,7 @@ impl SessionRules {
 
     /// Returns whether the study withholds results from participants.
     pub fn withholds_results(&self) -> bool {
-        self.results == ResultsShown::None
+        self.results == ResultsDisclosure::None
     }
 
     /// Returns the default rules of a mode, for runs outside of a study.
@@ -140,9 +140,9 @@ impl SessionRules {
         let open = SessionRules {
             advice: true,
             calibration: true,
-            results: ResultsShown::Published,
-            free_text: FreeText::Kept,
-            drafts: DraftsKept::Lengths,
+            results: ResultsDisclosure::Published,
+            free_text: FreeTextRecording::Kept,
+            drafts: DraftRecording::Lengths,
             unrecorded: Vec::new(),
             pause_reason: false,
             code_words: None,
@@ -151,7 +151,7 @@ impl SessionRules {
         match mode {
             // Agents get neither advice nor calibration, so baseline participants get neither.
             Mode::Baseline => {
-                SessionRules { advice: false, calibration: false, results: ResultsShown::Own, ..open }
+                SessionRules { advice: false, calibration: false, results: ResultsDisclosure::Own, ..open }
             }
             // Advice would give away the solutions of lessons.
             Mode::Lesson => SessionRules { advice: false, ..open },

@@ -79,21 +79,21 @@ pub struct HandoutStamp {
 
 /// Values that a handout sets for a new run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct HandoutEntry {
+pub struct HandoutOptions {
     /// Stamp of the handout for the first line of the run.
     pub stamp: HandoutStamp,
     /// Id that the new run must have; `None` to generate a new id.
     pub run: Option<String>,
 }
 
-impl HandoutEntry {
+impl HandoutOptions {
     /// Returns the values for the first run of a handout, which has the run id in the handout.
-    pub fn for_first_run(stamp: HandoutStamp) -> HandoutEntry {
-        HandoutEntry { run: Some(stamp.run.clone()), stamp }
+    pub fn for_first_run(stamp: HandoutStamp) -> HandoutOptions {
+        HandoutOptions { run: Some(stamp.run.clone()), stamp }
     }
 
     /// Returns the values for a later run of the same handout, which gets a new id.
-    pub fn for_later_run(stamp: HandoutStamp) -> HandoutEntry {
-        HandoutEntry { stamp, run: None }
+    pub fn for_later_run(stamp: HandoutStamp) -> HandoutOptions {
+        HandoutOptions { stamp, run: None }
     }
 }

@@ -89,7 +89,14 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn week(day: u32, subscribers: u32, joined: u32, left: u32, payments: f64, costs: f64) -> WeekFigures {
+    fn sample_week(
+        day: u32,
+        subscribers: u32,
+        joined: u32,
+        left: u32,
+        payments: f64,
+        costs: f64,
+    ) -> WeekFigures {
         WeekFigures {
             day,
             individual_subscribers: subscribers,
@@ -121,9 +128,9 @@ mod tests {
     #[test]
     fn turning_points_are_described() {
         let weeks = [
-            week(7, 100, 100, 0, 50.0, 40.0),
-            week(14, 150, 60, 10, 90.0, 120.0),
-            week(21, 90, 20, 80, 60.0, 160.0),
+            sample_week(7, 100, 100, 0, 50.0, 40.0),
+            sample_week(14, 150, 60, 10, 90.0, 120.0),
+            sample_week(21, 90, 20, 80, 60.0, 160.0),
         ];
         assert_eq!(
             describe_turning_points(&weeks),
@@ -134,7 +141,9 @@ mod tests {
                 "In the week to day 21, cancellations (80) exceeded new subscribers (20) for the first time.",
             ]
         );
-        assert!(describe_turning_points(&[week(7, 0, 0, 0, 0.0, 9.0)])[0].starts_with("No one subscribed"));
+        assert!(
+            describe_turning_points(&[sample_week(7, 0, 0, 0, 0.0, 9.0)])[0].starts_with("No one subscribed")
+        );
         assert!(describe_turning_points(&[]).is_empty());
     }
 }

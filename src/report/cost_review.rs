@@ -85,7 +85,7 @@ mod tests {
     use novamind_session::Session;
 
     #[test]
-    fn changes_are_totaled_and_purchases_listed_separately() {
+    fn money_lines_total_changes_and_list_purchases_separately() {
         let mut session = test_kit::play_weeks(0);
         for (tool, arguments) in [
             ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn identical_plans_name_the_subscribers_who_pay_more() {
+    fn identical_plan_lines_count_the_subscribers_who_pay_more() {
         let mut session = test_kit::play_weeks(4);
         assert_eq!(identical_plan_lines(&session.company().observe()), [""; 0]);
         let call = |session: &mut Session, tool: &str, arguments: Value| {

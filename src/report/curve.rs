@@ -1,6 +1,6 @@
 //! Text of the participation curve explorer: the source of the curve, its values at several prices, and the expected outcome.
 
-use novamind_base::formatting::{cents, percent, price_to_cents};
+use novamind_base::formatting::{dollars_and_cents, percent, price_to_cents};
 use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Plan};
 
@@ -19,7 +19,7 @@ pub fn describe_basis(basis: &CurveBasis) -> String {
     }
 }
 
-/// Returns the column names of [`rows`].
+/// Returns the column names of [`individual_rows`].
 pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
     let names = ["price", "1 in 10", "half", "9 in 10", "half, at least", "half, at most"];
     let shown = if curve_explorer.shows_true_values() { 4 } else { 6 };
@@ -40,7 +40,7 @@ pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
-/// Explains the dash in [`rows`] and the assumptions of the curve.
+/// Explains the dash in [`individual_rows`] and the assumptions of the curve.
 pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {
@@ -63,7 +63,7 @@ pub fn describe_outcome(outcome: &CurveOutcome) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 1));
     match &outcome.revenue_per_lead {
         Some(revenue) => {
-            format!("conversion {conversion}, revenue per lead {}", format_range(revenue, cents))
+            format!("conversion {conversion}, revenue per lead {}", format_range(revenue, dollars_and_cents))
         }
         None => format!("{conversion} ask for an offer; enterprises negotiate the price"),
     }
@@ -73,7 +73,7 @@ pub fn describe_outcome(outcome: &CurveOutcome) -> String {
 pub fn describe_outcome_briefly(outcome: &CurveOutcome) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 0));
     match &outcome.revenue_per_lead {
-        Some(revenue) => format!("{conversion} · {} a lead", format_range(revenue, cents)),
+        Some(revenue) => format!("{conversion} · {} a lead", format_range(revenue, dollars_and_cents)),
         None => format!("{conversion} ask for an offer"),
     }
 }
@@ -105,7 +105,7 @@ mod tests {
     use novamind_session::identifiers::Group;
 
     #[test]
-    fn unfinished_run_shows_ranges_and_assumptions() {
+    fn curve_text_of_unfinished_run_has_ranges_and_assumptions() {
         let mut session = play_weeks(0);
         let curve_explorer =
             CurveExplorer::open(&mut session, Group::parse("S1").expect("a group")).expect("an explorer");
@@ -118,12 +118,12 @@ mod tests {
         assert!(text.contains(" to ") && text.contains("revenue per lead $"), "{text}");
         let companies =
             CurveExplorer::open(&mut session, Group::parse("E1").expect("a group")).expect("an explorer");
-        let text = describe_outcome(&companies.outcome(&companies.plans));
+        let text = describe_outcome(&companies.outcome_for_plans(&companies.plans));
         assert!(text.contains("ask for an offer"), "{text}");
     }
 
     #[test]
-    fn exact_figures_have_no_range() {
+    fn format_range_omits_the_range_of_exact_values() {
         let sure = ExpectedRange { likely: 0.5, least: 0.5, most: 0.5 };
         assert_eq!(format_range(&sure, |value| percent(value, 1)), "50.0%");
         let open = ExpectedRange { likely: 0.5, least: 0.1, most: 0.75 };

@@ -101,7 +101,7 @@ impl DatabaseFigures {
         let weeks = session.company().observe().week;
         let flows = ask("groups", GROUP_FLOW_SQL);
         let (leads, revenue) = (ask("leads", GROUP_LEADS_SQL), ask("revenue", GROUP_REVENUE_SQL));
-        let groups = group_histories(&flows, &by_group(&leads), &by_group(&revenue), weeks);
+        let groups = group_histories(&flows, &number_by_group(&leads), &number_by_group(&revenue), weeks);
         let channels = ask("channels", CHANNEL_SQL).rows.iter().map(|row| channel_row(row)).collect();
         let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
         let outages = ask("outages", OUTAGE_SQL).rows.iter().map(outage).collect();
@@ -150,7 +150,7 @@ fn group_histories(
     known.map(book).collect()
 }
 
-fn by_group(rows: &QueryResult) -> BTreeMap<String, f64> {
+fn number_by_group(rows: &QueryResult) -> BTreeMap<String, f64> {
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), number_at(row, 1))).collect()
 }
 
@@ -168,7 +168,7 @@ fn ledger_by_week(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64
     let since = session.company().observe().booked_since;
     let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);
     let entries = |booked: CategoryTotals| {
-        booked.entries().map(|(category, dollars)| (category.id(), dollars)).collect()
+        booked.nonzero_totals().map(|(category, dollars)| (category.id(), dollars)).collect()
     };
     (1..).zip(weeks.map(entries)).filter(|(_, entries): &(u32, BTreeMap<_, _>)| !entries.is_empty()).collect()
 }
@@ -177,7 +177,7 @@ fn ledger_by_week(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64
 mod tests {
     use super::*;
     use crate::test_kit;
-    use novamind_session::WEEK_OF_ENTRY_SQL;
+    use novamind_session::LEDGER_WEEK_SQL;
 
     #[test]
     fn database_figures_match_week_figures() {
@@ -198,7 +198,7 @@ mod tests {
         assert!((total - seen.cash).abs() < 0.01, "{total} is not {}", seen.cash);
         let connection = session.database().open_connection().expect("a connection");
         let sql = format!(
-            "SELECT {WEEK_OF_ENTRY_SQL}, category, sum(amount) FROM ledger WHERE day > 0 GROUP BY 1, 2"
+            "SELECT {LEDGER_WEEK_SQL}, category, sum(amount) FROM ledger WHERE day > 0 GROUP BY 1, 2"
         );
         for row in connection.query(&sql, session.company().query_limits()).expect("the ledger").rows {
             let (week, category) = (number_at(&row, 0) as u32, text_at(&row, 1));

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::formatting::pluralize;
-use novamind_base::formatting::cents;
+use novamind_base::formatting::dollars_and_cents;
 use novamind_session::EnterpriseNames;
 use novamind_tools::ToolId;
 
@@ -32,7 +32,7 @@ fn describe_deal(deal: &Value, names: &EnterpriseNames) -> Option<String> {
     let offering = |offering: &Value| {
         let part = |name: &str, at: usize| offering.get(name).or_else(|| offering.get(at));
         let price = part("price_per_seat", 1).or_else(|| offering.get("price"))?.as_f64()?;
-        Some(format!("{} {}", part("plan", 0)?.as_str()?, cents(price)))
+        Some(format!("{} {}", part("plan", 0)?.as_str()?, dollars_and_cents(price)))
     };
     let offerings: Option<Vec<String>> = offerings.iter().map(offering).collect();
     Some(format!("{company}: {}", offerings?.join(" or ")))
@@ -46,7 +46,7 @@ mod tests {
     use novamind_world::params::Params;
 
     #[test]
-    fn deals_name_their_enterprises_in_every_call_form() {
+    fn describe_deals_names_enterprises_in_every_argument_form() {
         let names = EnterpriseNames::new(3, &Params::bundled().personas.email);
         let describe = |tool: ToolId, deals: Value| describe_deals(tool, &json!({ "deals": deals }), &names);
         let (one, send) = (names.name_with_number(7), ToolId::SendEnterpriseDeal);

@@ -97,7 +97,7 @@ pub fn debrief_paragraphs(debrief: &Debrief) -> Vec<String> {
         lines.extend(split_paragraphs(text).into_iter().flat_map(|paragraph| [String::new(), paragraph]));
         lines.extend([String::new(), describe_figure_source(debrief)]);
         lines.push(String::new());
-        lines.extend(named_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
+        lines.extend(emphasized_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
     }
     lines
 }
@@ -284,7 +284,7 @@ fn split_paragraphs(text: &str) -> Vec<String> {
 }
 
 /// Returns the glossary terms that a Markdown text emphasizes, without duplicates.
-pub fn named_terms(text: &str) -> Vec<&'static Term> {
+pub fn emphasized_terms(text: &str) -> Vec<&'static Term> {
     let mut found: Vec<&'static Term> = Vec::new();
     let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
     for word in flat.split('*').skip(1).step_by(2) {
@@ -326,7 +326,7 @@ pub(super) fn debrief_page(debrief: &Debrief) -> Page {
         blocks.extend(split_paragraphs(text).into_iter().map(Block::Text));
         blocks.push(Block::Text(describe_figure_source(debrief)));
         let row = |term: &&Term| vec![term.title.clone(), term.text.clone()];
-        let rows: Vec<Vec<String>> = named_terms(text).iter().map(row).collect();
+        let rows: Vec<Vec<String>> = emphasized_terms(text).iter().map(row).collect();
         if !rows.is_empty() {
             blocks.push(Block::Table(Table { columns: vec![("term", false), ("meaning", false)], rows }));
         }
@@ -465,7 +465,7 @@ mod tests {
     #[test]
     fn emphasized_terms_are_found_and_marks_removed() {
         let text = "People *churn* if `a < b`.\n\nGlossary: *churn*, *model\ntier*, *no such thing*.";
-        let names: Vec<&str> = named_terms(text).iter().map(|term| term.id.as_str()).collect();
+        let names: Vec<&str> = emphasized_terms(text).iter().map(|term| term.id.as_str()).collect();
         assert_eq!(names, ["churn", "model-tier"]);
         assert_eq!(split_paragraphs(text)[0], "People churn if a < b.");
     }

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::formatting::format_number;
 use novamind_record::figures::WeekFigures;
-use novamind_session::{Decisions, JournalEntry, SettingChange, week_of};
+use novamind_session::{Decisions, JournalEntry, SettingChange, week_of_day};
 use novamind_tools::ToolId;
 
 /// Consecutive weeks with the same decisions: the player decided before the first week and changed nothing before the others.
@@ -73,14 +73,14 @@ pub fn decision_periods(
     let mut cash = start_cash;
     for decided in decisions {
         let entries = parts.next().unwrap_or_default();
-        let figures = entries.iter().rev().find_map(entry_figures);
+        let figures = entries.iter().rev().find_map(week_figures);
         let after = figures.map_or(cash, |figures| figures.cash);
         let chapter = DecisionPeriod {
-            week: week_of(decided.day + 1),
-            last_week: week_of(decided.until),
+            week: week_of_day(decided.day + 1),
+            last_week: week_of_day(decided.until),
             day: decided.day,
             end_day: decided.until,
-            rationale: entries.iter().find_map(entry_rationale).unwrap_or_default(),
+            rationale: entries.iter().find_map(rationale_first_line).unwrap_or_default(),
             changes: describe_changes(&decided.changes),
             actions: describe_actions(decided, entries),
             cash: after,
@@ -108,14 +108,14 @@ impl DecisionPeriod {
     }
 }
 
-fn entry_figures(entry: &JournalEntry) -> Option<&WeekFigures> {
+fn week_figures(entry: &JournalEntry) -> Option<&WeekFigures> {
     match entry {
         JournalEntry::Week { figures } => Some(figures),
         _ => None,
     }
 }
 
-fn entry_rationale(entry: &JournalEntry) -> Option<String> {
+fn rationale_first_line(entry: &JournalEntry) -> Option<String> {
     match entry {
         JournalEntry::Advance { rationale, .. } => {
             rationale.lines().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)

@@ -18,7 +18,7 @@ pub struct FigureChange {
 }
 
 /// Minimum number of earlier changes with which a change can be compared.
-const MIN_KNOWN_CHANGES: usize = 4;
+const MIN_EARLIER_CHANGES: usize = 4;
 /// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
 const MAD_TO_STD: f64 = 1.4826;
 
@@ -32,13 +32,13 @@ impl FigureChange {
     pub fn describe_rarity(&self) -> String {
         let what = if self.new > self.old { "rise" } else { "fall" };
         match self.weeks_since_larger {
-            _ if self.earlier_changes < MIN_KNOWN_CHANGES
+            _ if self.earlier_changes < MIN_EARLIER_CHANGES
                 || (self.new - self.old).abs() <= 2.0 * self.noise =>
             {
                 String::new()
             }
             None => format!("largest {what} yet"),
-            Some(weeks) if weeks >= MIN_KNOWN_CHANGES => format!("largest {what} in {weeks} weeks"),
+            Some(weeks) if weeks >= MIN_EARLIER_CHANGES => format!("largest {what} in {weeks} weeks"),
             Some(_) => String::new(),
         }
     }
@@ -58,7 +58,7 @@ pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let as_large = |earlier: &f64| if change > 0.0 { *earlier >= change } else { *earlier <= change };
     let since = before.iter().rev().position(as_large).map(|at| at + 1);
     let size = change.abs() / old.abs().max(new.abs());
-    let unusual = if before.len() < MIN_KNOWN_CHANGES {
+    let unusual = if before.len() < MIN_EARLIER_CHANGES {
         // With this factor, a change of one half is rated unusual and a change of one tenth is not.
         size * 6.0
     } else {
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn change_beyond_usual_spread_is_unusual() {
+    fn last_change_beyond_usual_spread_is_unusual() {
         let steady = [100.0, 110.0, 121.0, 130.0, 141.0, 150.0];
         let ordinary = last_change(&[&steady[..], &[160.0]].concat(), 0.0).expect("it moved");
         assert!(ordinary.unusualness < 1.0, "{ordinary:?}");
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn short_series_are_ranked_by_size() {
+    fn last_change_of_short_series_is_rated_by_size() {
         let half = last_change(&[100.0, 50.0], 0.0).expect("it moved");
         assert_eq!(
             (half.unusualness, half.weeks_since_larger, half.describe_rarity().as_str()),
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn small_counts_are_within_noise() {
+    fn last_change_of_small_counts_is_within_noise() {
         let series = [0.0, 1.0, 0.0, 2.0, 1.0, 1.0, 0.0];
         let one = last_change(&series, 1.0).expect("it moved");
         assert!(one.unusualness <= 1.0, "{one:?}");

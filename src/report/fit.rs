@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::formatting::{format_range, format_whole};
-use novamind_base::formatting::{cents, dollars, percent, price_to_cents};
+use novamind_base::formatting::{dollars, dollars_and_cents, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
 
@@ -364,7 +364,7 @@ fn describe_gap((concern, amount): (FitCriterion, f64)) -> String {
     match concern {
         FitCriterion::Price => format!(
             "price too high (by at least {})",
-            if amount < 1.0 { cents(amount) } else { dollars(amount) }
+            if amount < 1.0 { dollars_and_cents(amount) } else { dollars(amount) }
         ),
         FitCriterion::Quality => format!("quality (at least {amount:.4})"),
         FitCriterion::Quota => format!("quota (at least {} units a day)", format_whole(amount.ceil())),
@@ -437,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn certain_gap_holds_for_every_true_value_in_range() {
+    fn certain_gap_exists_for_every_true_value_in_range() {
         let mut session = play_weeks(0);
         let quotas = json!({"A": 1, "B": 250_000, "C": 1_200_000});
         for (tool, arguments) in [
@@ -486,7 +486,7 @@ mod tests {
     }
 
     #[test]
-    fn quality_and_floor_are_kept_week_by_week() {
+    fn quality_and_required_quality_are_recorded_each_week() {
         let session = play_weeks(5);
         let now = session.company().delivered_quality();
         let (weeks, estimates) = (session.company().group_weeks(), session.company().estimates());

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn partial_bankruptcy_week_is_never_the_best() {
+    fn partial_week_before_bankruptcy_is_never_the_best_week() {
         let cut_short = WeekFigures { days_run: 2, ..week(23, 0, 0, -10.0) };
         let weeks = [week(7, 0, 0, -50.0), week(14, 0, 0, -40.0), week(21, 0, 0, -60.0), cut_short];
         let found = highlights(&weeks, &[100.0; 24], &[], Some(RunEndReason::Bankruptcy));

@@ -12,7 +12,7 @@ pub fn to_html(page: &Page) -> String {
     let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escape_html(tag))).collect();
     let mut body = String::new();
     let folded = page.blocks.iter().filter(|block| matches!(block, Block::Folded { .. })).count();
-    let mut shape = BlockContext { chart_count: 0, is_unfolded: folded <= MAX_UNFOLDED };
+    let mut shape = BlockContext { chart_count: 0, is_unfolded: folded <= MAX_EXPANDED_SECTIONS };
     let mut open = false;
     for block in &page.blocks {
         if let Block::Heading(text) = block {
@@ -41,7 +41,7 @@ pub fn to_html(page: &Page) -> String {
 }
 
 /// Maximum number of sections that are expanded at first. If a page has more sections, all of them are collapsed.
-const MAX_UNFOLDED: usize = 12;
+const MAX_EXPANDED_SECTIONS: usize = 12;
 
 struct BlockContext {
     chart_count: usize,
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_run_gives_the_same_report_but_for_its_name() {
+    fn reports_of_equal_runs_differ_only_in_the_run_name() {
         let reports = |session: novamind_session::Session| {
             let id = session.manifest().id.clone();
             let report = RunReport::from_session(&session);

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn recent_window_is_compared_with_the_cheapest_earlier_one() {
+    fn cost_rise_compares_recent_window_with_cheapest_earlier_window() {
         let dear = [(10, 150.0, 5); 2].into_iter().chain([(20, 150.0, 10); 4]).chain([(5, 600.0, 1); 4]);
         let costs = lead_costs_by_pair(&weeks(&dear.collect::<Vec<_>>()));
         let [pair] = costs.as_slice() else { panic!("{costs:?}") };
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn small_samples_are_not_a_rise() {
+    fn cost_rise_ignores_small_samples() {
         let few = [(4, 40.0, 1); 4].into_iter().chain([(1, 400.0, 0); 4]).collect::<Vec<_>>();
         assert_eq!(lead_costs_by_pair(&weeks(&few))[0].cheapest, None, "16 leads are too few to compare");
         let tried = [(20, 200.0, 1); 4].into_iter().chain([(0, 40.0, 0); 4]).collect::<Vec<_>>();

@@ -1,7 +1,7 @@
 //! Text for the events and pages of a lesson.
 
 use super::formatting::format_money;
-use novamind_base::formatting::{cents, compact_number, parse_number, percent, short_dollars};
+use novamind_base::formatting::{compact_number, dollars_and_cents, parse_number, percent, short_dollars};
 use novamind_course::{GoalStatus, LessonQuestion, LessonStatus};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 
@@ -173,7 +173,7 @@ pub fn describe_goal_progress(goal: &GoalStatus) -> Option<String> {
 /// Formats an amount in the unit of a goal.
 pub fn format_goal_amount(goal: &GoalStatus, value: f64) -> String {
     match goal.in_dollars {
-        true if value.abs() < 1000.0 => cents(value),
+        true if value.abs() < 1000.0 => dollars_and_cents(value),
         true => format_money(value),
         false => compact_number(value),
     }

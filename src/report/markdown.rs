@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn escaped_text_has_no_markup() {
+    fn escape_removes_markup() {
         assert_eq!(escape("a|b <i> *x*\n_y_ set_prices"), "a\\|b \\<i\\> \\*x\\* \\_y\\_ set_prices");
         assert_eq!(escape("# no"), "\\# no");
         assert_eq!(escape("-$1,200"), "-$1,200");

@@ -8,7 +8,7 @@ use super::database_figures::ChannelRow;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::identifiers::{Channel, Group};
 use novamind_session::{
-    Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
+    Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, submitted_forecasts,
 };
 
 /// Words that indicate planning.
@@ -39,7 +39,7 @@ pub struct BehaviorMeasures {
     /// Final or current cash, dollars.
     pub cash: f64,
     /// Share of advertising spending on each group's best channel; `None` without advertising.
-    pub channels: Option<ChannelSkill>,
+    pub channels: Option<BestTriedChannelSpend>,
     /// Targeted share of development spending; `None` without development spending.
     pub targeted_development: Option<f64>,
     /// Forecast scores by horizon.
@@ -53,7 +53,7 @@ pub struct BehaviorMeasures {
     /// Number and distribution of tool calls.
     pub tools: ToolUse,
     /// Length and planning words of rationales.
-    pub planning: Planning,
+    pub planning: PlanningMeasures,
 }
 
 impl BehaviorMeasures {
@@ -113,16 +113,16 @@ pub struct GroupAds {
 
 /// Shares of advertising spending on the best channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ChannelSkill {
+pub struct BestTriedChannelSpend {
     /// Share of spending on the best channel, over all groups with a best channel. `None` if no group has a best channel.
     pub share: Option<f64>,
     /// Advertising results by group, highest spending first.
     pub groups: Vec<GroupAds>,
 }
 
-impl ChannelSkill {
+impl BestTriedChannelSpend {
     /// Returns the mean number of channels with spending over the advertised groups.
-    pub fn channels_tried(&self) -> f64 {
+    pub fn mean_channels_tried(&self) -> f64 {
         let tried: usize = self.groups.iter().map(|group| group.tried).sum();
         tried as f64 / self.groups.len().max(1) as f64
     }
@@ -130,7 +130,7 @@ impl ChannelSkill {
 
 /// Returns the share of advertising spending on the channel of each group with the most leads per dollar. A group
 /// counts if at least two channels have spending and the best channel has enough leads.
-pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
+pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<BestTriedChannelSpend> {
     let names: BTreeSet<&str> =
         rows.iter().filter(|row| row.spend > 0.0).map(|row| row.group.as_str()).collect();
     let mut groups: Vec<GroupAds> = names
@@ -147,7 +147,7 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
     let spend: f64 = spend_and_best().map(|(spend, _)| spend).sum();
     let on_best: f64 = spend_and_best().map(|(spend, best)| best.share * spend).sum();
     let share = (spend > 0.0).then(|| on_best / spend);
-    (!groups.is_empty()).then_some(ChannelSkill { share, groups })
+    (!groups.is_empty()).then_some(BestTriedChannelSpend { share, groups })
 }
 
 fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
@@ -197,7 +197,7 @@ pub const FIRST_WEEK_COUNT: usize = 4;
 
 /// Returns the scores of forecasts that were filed before the first four weeks, by horizon.
 pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ForecastScore> {
-    let filed = filed_forecasts(journal, cash_by_day);
+    let filed = submitted_forecasts(journal, cash_by_day);
     let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
     let last = days.iter().nth(FIRST_WEEK_COUNT - 1).or(days.last()).copied().unwrap_or(0);
     let first: Vec<ScoredForecast> = filed.into_iter().filter(|one| one.day <= last).collect();
@@ -273,7 +273,7 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
 
 /// Length and planning words of rationales.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Planning {
+pub struct PlanningMeasures {
     /// Number of rationales.
     pub rationales: u32,
     /// Mean number of words per rationale.
@@ -341,7 +341,7 @@ impl std::ops::AddAssign for WordCounts {
 }
 
 /// Returns the mean length of rationales and their mean number of planning words.
-pub fn planning_measures(journal: &[JournalEntry]) -> Planning {
+pub fn planning_measures(journal: &[JournalEntry]) -> PlanningMeasures {
     let (mut rationales, mut all) = (0u32, WordCounts::default());
     for entry in journal {
         let JournalEntry::Advance { rationale, .. } = entry else { continue };
@@ -349,7 +349,7 @@ pub fn planning_measures(journal: &[JournalEntry]) -> Planning {
         all += WordCounts::from_text(rationale);
     }
     let each = |count: usize| count as f64 / f64::from(rationales.max(1));
-    Planning { rationales, words_each: each(all.words), planning_each: each(all.planning) }
+    PlanningMeasures { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
 /// Returns the number of weeks with naive forecasts, and the number of all weeks.
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_channel_is_the_one_with_most_leads_per_dollar() {
+    fn best_channel_has_most_leads_per_dollar() {
         let rows = [
             ads("S1", "content_marketing", 30.0, 300.0),
             ads("S1", "search_ads", 5.0, 100.0),
@@ -419,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_counts_have_entropy_one() {
+    fn normalized_entropy_of_equal_counts_is_one() {
         assert_eq!(normalized_entropy(&[3, 3]), Some(1.0));
         assert_eq!((normalized_entropy(&[3]), normalized_entropy(&[])), (None, None));
         let uneven = normalized_entropy(&[9, 1]).expect("two tools");
@@ -460,7 +460,7 @@ mod tests {
     }
 
     #[test]
-    fn tools_and_rationales_are_counted() {
+    fn tool_use_and_planning_measures_count_calls_and_words() {
         let session = test_kit::play_weeks(4);
         let tools = tool_use(session.journal());
         assert_eq!((tools.calls, tools.per_week), (8, 2.0));
@@ -469,11 +469,11 @@ mod tests {
         assert_eq!(planning.rationales, 4);
         assert_eq!(planning.planning_each, 0.5, "if, otherwise");
         assert_eq!(naive_forecast_weeks(session.journal()), (4, 4));
-        assert_eq!(super::planning_measures(&[]), Planning::default());
+        assert_eq!(super::planning_measures(&[]), PlanningMeasures::default());
     }
 
     #[test]
-    fn sentences_that_plan_are_found() {
+    fn planning_sentences_are_found() {
         let text = "Ads of 0.5 work. If rivals move, cut them;\nwait\nWe should ask! Why? Price 12.50 is likely fine";
         assert_eq!(
             planning_sentences(text),
@@ -483,7 +483,7 @@ mod tests {
     }
 
     #[test]
-    fn survival_ends_with_the_company() {
+    fn survival_days_end_with_bankruptcy() {
         assert_eq!(survival_days(Some(RunEndReason::Horizon), 500, 500), 500);
         assert_eq!(survival_days(Some(RunEndReason::Bankruptcy), 131, 500), 131);
         assert_eq!(survival_days(None, 84, 500), 84);

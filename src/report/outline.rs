@@ -5,11 +5,11 @@ mod charts;
 use super::formatting::{describe_cash_change, describe_origin, format_money, format_whole, pluralize};
 use super::measures::{BehaviorMeasures, MIN_CHANNEL_LEADS, PLANNING_WORDS};
 use super::page::{Bar, Block, NamedValue, Page, Table};
-use super::ranking::{ResultOwner, published_targeted_shares};
+use super::ranking::{ResultOrigin, published_targeted_shares};
 use super::run_report::{Bankruptcy, RunReport};
 use novamind_base::formatting::{capitalize, grouped_number, percent, signed_dollars};
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_session::ModelStamp;
+use novamind_session::RecordedModelSettings;
 
 pub fn report_page(report: &RunReport) -> Page {
     let seen = &report.observation;
@@ -22,13 +22,13 @@ pub fn report_page(report: &RunReport) -> Page {
     blocks.push(Block::Heading("Cash"));
     blocks.extend(charts::cash_chart(report));
     blocks.extend(charts::income_and_cost_chart(report));
-    if report.shows_published() {
+    if report.shows_published_results() {
         blocks.extend(ranking_blocks(report));
     }
     blocks.extend(highlight_blocks(report));
     blocks.extend(customer_blocks(report));
     blocks.extend(forecast_blocks(report));
-    blocks.extend(behavior_blocks(&report.measures, report.shows_published()));
+    blocks.extend(behavior_blocks(&report.measures, report.shows_published_results()));
     blocks.extend(decision_blocks(report));
     let mut tags = vec![
         format!("run {}", seen.run),
@@ -37,7 +37,7 @@ pub fn report_page(report: &RunReport) -> Page {
         format!("{} mode", seen.mode),
     ];
     tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
-    tags.extend(seen.voice.iter().map(ModelStamp::describe));
+    tags.extend(seen.voice.iter().map(RecordedModelSettings::describe));
     tags.extend(report.origin.iter().map(describe_origin));
     tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
     Page {
@@ -127,11 +127,11 @@ fn bankruptcy_blocks(ruin: &Bankruptcy) -> Vec<Block> {
 fn ranking_blocks(report: &RunReport) -> Vec<Block> {
     let standing = &report.ranking;
     let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
-    let bar = |place: &super::ranking::RankedRun| Bar {
+    let bar = |place: &super::ranking::RankedResult| Bar {
         name: place.name.clone(),
         value_text: format_money(place.cash),
         share: (place.cash / most).clamp(0.0, 1.0),
-        is_highlighted: place.owner == ResultOwner::ThisRun,
+        is_highlighted: place.owner == ResultOrigin::ThisRun,
     };
     let text = match standing.rank {
         Some(_) => {
@@ -213,7 +213,7 @@ fn forecast_blocks(report: &RunReport) -> Vec<Block> {
         blocks.push(Block::Text("No forecast has come due yet.".to_owned()));
         return blocks;
     }
-    if !report.shows_calibration() {
+    if !report.shows_forecast_scores() {
         let due: u32 = scored.iter().map(|score| score.scored).sum();
         let text =
             format!("{} came due. Scores are shown when the run has ended.", pluralize(due, "forecast"));

@@ -15,7 +15,11 @@ pub fn describe_changed_parameter(set: &ChangedParameter, today: u32) -> String 
 }
 
 /// Describes a recorded change of a parameter: `set leads.saturation_base: 1 → 0.9 from day 30`.
-pub fn describe_parameter_entry(key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> String {
+pub fn describe_recorded_parameter_change(
+    key: &str,
+    [old, new]: [&Value; 2],
+    from_day: Option<u32>,
+) -> String {
     format!("set {key}: {old} → {new}{}", describe_start_day(from_day))
 }
 
@@ -61,29 +65,29 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn changed(key: &str, old: Value, new: Value, from_day: Option<u32>) -> ChangedParameter {
+    fn changed_parameter(key: &str, old: Value, new: Value, from_day: Option<u32>) -> ChangedParameter {
         ChangedParameter { key: key.to_owned(), old, new, from_day }
     }
 
     #[test]
-    fn change_names_old_value_new_value_and_day() {
-        let now = changed("a.b", json!(50), json!(300), None);
+    fn parameter_change_names_old_value_new_value_and_day() {
+        let now = changed_parameter("a.b", json!(50), json!(300), None);
         assert_eq!(describe_changed_parameter(&now, 7), "a.b: 50 → 300, effective from day 8");
-        let later = changed("a.b", json!(0.5), json!([1, 2]), Some(30));
+        let later = changed_parameter("a.b", json!(0.5), json!([1, 2]), Some(30));
         assert_eq!(describe_changed_parameter(&later, 7), "a.b: 0.5 → [1,2], from day 30");
         assert_eq!(
-            describe_changed_parameter(&changed("a.b", json!(1), json!(1), Some(9)), 7),
+            describe_changed_parameter(&changed_parameter("a.b", json!(1), json!(1), Some(9)), 7),
             "a.b: 1, unchanged, from day 9"
         );
     }
 
     #[test]
-    fn list_names_scenario_and_pending_changes() {
+    fn parameter_list_names_scenario_and_pending_changes() {
         let mut all =
             ChangedParameters { scenario: Some("default".to_owned()), in_force: vec![], waiting: vec![] };
         assert_eq!(describe_changed_parameters(&all), ["no parameter differs from scenario default"]);
-        all.in_force = vec![changed("a.b", json!(50), json!(300), None)];
-        all.waiting = vec![changed("c.d", json!(1), json!(2), Some(30))];
+        all.in_force = vec![changed_parameter("a.b", json!(50), json!(300), None)];
+        all.waiting = vec![changed_parameter("c.d", json!(1), json!(2), Some(30))];
         all.scenario = None;
         assert_eq!(
             describe_changed_parameters(&all),

@@ -70,7 +70,7 @@ mod tests {
     use novamind_database::number_at;
 
     #[test]
-    fn projection_matches_the_tables() {
+    fn peak_projection_matches_the_tables() {
         let mut session = play_weeks(6);
         let projection = PeakProjection::from_weeks(session.weeks()).expect("two weeks with usage");
         let mut busiest = |from: u32| {
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn tier_is_compared_with_the_busiest_day() {
+    fn describe_peak_and_tier_compares_with_the_busiest_day() {
         let week = WeekFigures { days_run: 7, busiest_day: 61_000, ..WeekFigures::default() };
         assert_eq!(
             describe_peak_and_tier(&[week], 1, 80_000.0),
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_projected_from_less_than_two_whole_weeks() {
+    fn peak_projection_requires_two_whole_weeks() {
         let week = |days_run, busiest_day| WeekFigures { days_run, busiest_day, ..WeekFigures::default() };
         assert_eq!(PeakProjection::from_weeks(&[week(7, 50)]), None);
         assert_eq!(PeakProjection::from_weeks(&[week(7, 0), week(7, 50)]), None);

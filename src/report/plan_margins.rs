@@ -10,7 +10,7 @@ use serde_json::Value;
 pub use sentences::margin_sentences;
 
 use super::formatting::format_money;
-use novamind_base::formatting::{cents, compact_number, percent};
+use novamind_base::formatting::{compact_number, dollars_and_cents, percent};
 use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_session::identifiers::{ByPlan, Group, Plan};
 use novamind_session::{Session, query_rejection};
@@ -245,10 +245,12 @@ pub fn margin_lines(
             lines.push(format!("{plan} no usage on day {day}"));
             continue;
         };
-        lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| plan_usage.margin(unit_cost)));
+        lines.push(row(format!("{plan} paid {}", dollars_and_cents(paid)), &|unit_cost| {
+            plan_usage.margin(unit_cost)
+        }));
         match lever {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
-                let label = format!("{plan} list {}", cents(set.price));
+                let label = format!("{plan} list {}", dollars_and_cents(set.price));
                 lines.push(row(label, &|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?)));
             }
             MarginSetting::Quota => {
@@ -283,7 +285,7 @@ pub fn margin_summary(
         let also = match lever {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
                 let margin = margin_text(&|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?));
-                format!(", list {} {margin}", cents(set.price))
+                format!(", list {} {margin}", dollars_and_cents(set.price))
             }
             MarginSetting::Quota => {
                 let margin = margin_text(&|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost));
@@ -294,7 +296,7 @@ pub fn margin_summary(
         format!(
             "{plan} T{}: paid {} {}{also}",
             set.tier,
-            cents(paid),
+            dollars_and_cents(paid),
             margin_text(&|unit_cost| plan_usage.margin(unit_cost))
         )
     };
@@ -380,7 +382,7 @@ mod tests {
         assert!(lines[0].contains("at day-42 usage"), "{lines:?}");
         let line = lines.iter().find(|line| line.starts_with("B paid ")).expect("plan B");
         let on_3 = format!("[{}]", percent(plan_usage.margin(models[2].1).expect("a margin"), 0));
-        assert!(line.contains(&cents(paid)) && line.contains(&on_3), "{line} without {on_3}");
+        assert!(line.contains(&dollars_and_cents(paid)) && line.contains(&on_3), "{line} without {on_3}");
         let dear = MarginSetting::Price.apply(now, &json!({"B": 250}));
         let lines = margin_lines(&sales, &dear, MarginSetting::Price, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("B list $250.00")).expect("the list price");
@@ -429,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_usage_is_reported() {
+    fn margin_lines_report_missing_usage() {
         let session = play_weeks(0);
         let sales = PlanSales::load(&session).expect("a database");
         let lines =

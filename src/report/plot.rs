@@ -124,7 +124,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
 }
 
 /// Draws horizontal bars, each with its label on the left and its value on the right.
-pub fn bars(points: &[(f64, f64)], width: usize) -> String {
+pub fn horizontal_bars(points: &[(f64, f64)], width: usize) -> String {
     let most = points.iter().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
         points.iter().map(|(x, y)| (format_tick(*x), compact_number(*y))).unzip();
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn line_spans_the_corners_and_later_series_are_on_top() {
+    fn plotted_line_spans_the_corners_and_later_series_are_on_top() {
         let (pale, lit) = ([(0.0, 0.0), (10.0, 100.0)], [(0.0, 100.0), (10.0, 0.0)]);
         let line = |sign, points| PlotSeries { mark: sign, points, is_line: true };
         let text = plot_report(&[line('.', &pale), line('#', &lit)]);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn power_law_is_straight_on_log_axes() {
+    fn plotted_power_law_is_straight_on_log_axes() {
         let points: Vec<(f64, f64)> =
             (0..=4).map(|at| libm::pow(10.0, f64::from(at))).map(|x| (x, x * x)).collect();
         let scale = AxisScale::Logarithmic;
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn bar_length_is_proportional() {
-        let text = bars(&[(1.0, 10.0), (2.0, 5.0), (3.0, 0.0)], 30);
+        let text = horizontal_bars(&[(1.0, 10.0), (2.0, 5.0), (3.0, 0.0)], 30);
         let lengths: Vec<usize> = text.lines().map(|line| line.matches('█').count()).collect();
         assert_eq!(lengths, [24, 12, 0], "{text}");
         assert!(text.lines().all(|line| line.width() <= 30), "{text}");

@@ -32,7 +32,7 @@ mod tests {
     use novamind_database::number_at;
 
     #[test]
-    fn leads_are_counted_on_both_sides_of_the_day() {
+    fn lead_lines_count_leads_before_and_after_the_day() {
         let mut session = play_weeks(4);
         let known = session.company().observe().known_groups;
         let texts = lead_lines_around(14, session.company().group_weeks(), &known);

@@ -79,7 +79,7 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
         }
         let broken = line.ends_with("  ") || bare.ends_with('\\');
         let content = bare.strip_suffix('\\').unwrap_or(bare).trim_end();
-        let fresh = match line_start(bare, indent) {
+        let fresh = match block_at_line_start(bare, indent) {
             _ if fenced => Some(MarkdownBlock::Verbatim(line.trim_end().to_owned())),
             Some(block) => Some(block),
             None => match blocks.last_mut().filter(|_| !ends) {
@@ -130,7 +130,7 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
 }
 
 /// Returns the block element that starts with this line, determined by the first characters. Returns `None` for ordinary text.
-fn line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
+fn block_at_line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     if bare.is_empty() {
         return Some(MarkdownBlock::Blank);
     }

@@ -5,7 +5,7 @@ use crate::tables::table_headings;
 use novamind_base::formatting::{dollars, grouped_number};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, TimeLimits};
+use novamind_record::rules::{DraftRecording, FreeTextRecording, LimitAction, ResultsDisclosure, TimeLimits};
 use novamind_session::{FAST_WEEK_SECONDS, IDLE_TIMEOUT, MIN_BREAK_SECONDS};
 use novamind_study::{
     ASSIGNMENT_FILE, AnswerFormat, Assignment, FindingKind, Occasion, PracticeOffer, Questionnaire, SeedPlan,
@@ -19,7 +19,7 @@ use novamind_study::{
 pub fn protocol_markdown(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
     let chapters = [
         heading_section(study),
-        world_section(study, configuration)?,
+        scenario_section(study, configuration)?,
         participants_section(study),
         procedure_section(study),
         rules_section(study),
@@ -47,7 +47,7 @@ fn heading_section(study: &Study) -> String {
     )
 }
 
-fn world_section(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
+fn scenario_section(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
     let of = |name: &str, days: Option<u32>, cash: Option<f64>| -> Result<String, RunError> {
         let scenario = configuration.load_scenario(name)?;
         let params = configuration.load_parameters(&scenario, &[], false)?;
@@ -75,7 +75,7 @@ fn world_section(study: &Study, configuration: &Configuration) -> Result<String,
     if let Some(model) = &protocol.voice {
         text += &format!(
             "- Language model: {}; a week waits at most {} seconds for it, then uses the built-in voice.\n",
-            model.stamp().describe(),
+            model.recorded_settings().describe(),
             model.seconds_a_week
         );
     }
@@ -150,18 +150,18 @@ fn rules_section(study: &Study) -> String {
     let rules = study.session_rules();
     let yes = |on: bool| if on { "yes" } else { "no" };
     let results = match rules.results {
-        ResultsShown::None => "that the run has ended",
-        ResultsShown::Own => "the participant's own result",
-        ResultsShown::Published => "the participant's own result and published ones",
+        ResultsDisclosure::None => "that the run has ended",
+        ResultsDisclosure::Own => "the participant's own result",
+        ResultsDisclosure::Published => "the participant's own result and published ones",
     };
     let texts = match rules.free_text {
-        FreeText::Kept => "kept",
-        FreeText::Masked => "only their lengths and digests are kept",
+        FreeTextRecording::Kept => "kept",
+        FreeTextRecording::Masked => "only their lengths and digests are kept",
     };
     let drafts = match rules.drafts {
-        DraftsKept::None => "not recorded",
-        DraftsKept::Lengths => "lengths, pauses, deletions and pasted characters",
-        DraftsKept::Text => "as lengths, and the text that was not submitted",
+        DraftRecording::None => "not recorded",
+        DraftRecording::Lengths => "lengths, pauses, deletions and pasted characters",
+        DraftRecording::Text => "as lengths, and the text that was not submitted",
     };
     let mut text = format!(
         "## Rules of the session\n\nThe practice uses the same rules and time limits.\n\n\
@@ -204,12 +204,12 @@ fn limit_rows(limits: &TimeLimits) -> String {
         return text;
     }
     let at_limit = match limits.at_limit {
-        AtLimit::Remind => "the participant is reminded, once",
-        AtLimit::Naive => {
+        LimitAction::Remind => "the participant is reminded, once",
+        LimitAction::Naive => {
             "of a week: it is filed with naive forecasts; of a session or run: the clock is stopped until the experimenter \
              starts it"
         }
-        AtLimit::Pause => "the clock is stopped until the experimenter starts it",
+        LimitAction::Pause => "the clock is stopped until the experimenter starts it",
     };
     let warning = minutes(limits.warning_minutes, "none");
     text + &format!(

@@ -54,8 +54,8 @@ pub struct PublishedAgent {
 
 /// Returns the published results.
 pub fn published_results() -> &'static PublishedResults {
-    static READ: OnceLock<PublishedResults> = OnceLock::new();
-    READ.get_or_init(|| {
+    static PUBLISHED_RESULTS: OnceLock<PublishedResults> = OnceLock::new();
+    PUBLISHED_RESULTS.get_or_init(|| {
         toml::from_str(include_str!("../../assets/paper-results.toml"))
             .expect("the bundled results are valid")
     })
@@ -63,7 +63,7 @@ pub fn published_results() -> &'static PublishedResults {
 
 /// Origin of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ResultOwner {
+pub enum ResultOrigin {
     /// Best of three runs of a published agent.
     Agent,
     /// The published rule-based baseline.
@@ -74,20 +74,20 @@ pub enum ResultOwner {
 
 /// A ranked result with its origin.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RankedRun {
+pub struct RankedResult {
     /// Name of the player or agent.
     pub name: String,
     /// Cash at the end, dollars.
     pub cash: f64,
     /// Origin of the result.
-    pub owner: ResultOwner,
+    pub owner: ResultOrigin,
 }
 
 /// Ranking of a run among the published results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranking {
     /// Results, best first. Includes the run's result if its score is comparable.
-    pub entries: Vec<RankedRun>,
+    pub entries: Vec<RankedResult>,
     /// Rank of the run, counted from 1; `None` if the run is not ranked.
     pub rank: Option<usize>,
     /// Reasons why the run is not ranked. Empty if the run is ranked or will be ranked as soon as it has a score.
@@ -100,8 +100,8 @@ pub struct Ranking {
 
 impl Ranking {
     /// Returns the best results, and the results directly above and below the run.
-    pub fn top_and_neighbors(&self, best: usize, neighbors: usize) -> Vec<&RankedRun> {
-        let number = self.entries.iter().position(|place| place.owner == ResultOwner::ThisRun);
+    pub fn top_and_neighbors(&self, best: usize, neighbors: usize) -> Vec<&RankedResult> {
+        let number = self.entries.iter().position(|place| place.owner == ResultOrigin::ThisRun);
         let wanted =
             |at: usize| at < best || number.is_some_and(|position| position.abs_diff(at) <= neighbors);
         self.entries.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
@@ -121,17 +121,24 @@ impl Ranking {
 
 /// Ranks a score among the published results. A published result is ranked above an equal score.
 pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
-    let place =
-        |name: &str, cash: f64, whose: ResultOwner| RankedRun { name: name.to_owned(), cash, owner: whose };
-    let mut places: Vec<RankedRun> = published_results()
+    let place = |name: &str, cash: f64, whose: ResultOrigin| RankedResult {
+        name: name.to_owned(),
+        cash,
+        owner: whose,
+    };
+    let mut places: Vec<RankedResult> = published_results()
         .agent
         .iter()
-        .map(|agent| place(&agent.name, agent.best_cash, ResultOwner::Agent))
+        .map(|agent| place(&agent.name, agent.best_cash, ResultOrigin::Agent))
         .collect();
-    places.push(place("Rule-based baseline", published_results().rule_based_baseline, ResultOwner::Baseline));
+    places.push(place(
+        "Rule-based baseline",
+        published_results().rule_based_baseline,
+        ResultOrigin::Baseline,
+    ));
     let obstacles = RankingCriteria::from_observation(seen).obstacles();
     let ranked = score.filter(|_| obstacles.is_empty());
-    places.extend(ranked.map(|score| place("You", score, ResultOwner::ThisRun)));
+    places.extend(ranked.map(|score| place("You", score, ResultOrigin::ThisRun)));
     places.sort_by(|left, right| right.cash.total_cmp(&left.cash));
     let rank = ranked.map(|score| 1 + places.iter().filter(|place| place.cash > score).count());
     Ranking {
@@ -150,7 +157,7 @@ pub fn compare_results(one: (f64, u32), other: (f64, u32)) -> Ordering {
 }
 
 /// Returns the number of published best runs that ended with less cash, and the number of all published best runs.
-pub fn count_beaten(cash: f64) -> (usize, usize) {
+pub fn count_published_below(cash: f64) -> (usize, usize) {
     let agents = &published_results().agent;
     (agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len())
 }
@@ -196,7 +203,7 @@ mod tests {
         assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
         let ruined = rank_score(Some(0.0), &seen);
         assert_eq!(ruined.rank, Some(14), "four published agents also have no cash");
-        assert_eq!(ruined.entries.last().map(|place| place.owner), Some(ResultOwner::ThisRun));
+        assert_eq!(ruined.entries.last().map(|place| place.owner), Some(ResultOrigin::ThisRun));
         assert_eq!(rank_score(None, &seen).rank, None);
         seen.seed = Some(7);
         assert_eq!(rank_score(Some(0.0), &seen).rank, Some(14), "a different seed stays comparable");
@@ -210,20 +217,23 @@ mod tests {
             seen.last_day = days;
             let standing = rank_score(Some(2e6), &seen);
             assert_eq!(standing.rank.is_some(), ranked, "{days}");
-            assert_eq!(standing.entries.iter().any(|place| place.owner == ResultOwner::ThisRun), ranked);
+            assert_eq!(standing.entries.iter().any(|place| place.owner == ResultOrigin::ThisRun), ranked);
             assert_eq!(standing.describe() == "not ranked: 28 days instead of 500", !ranked);
         }
     }
 
     #[test]
-    fn results_compare_by_cash_then_survival() {
+    fn compare_results_orders_by_cash_then_survival() {
         assert_eq!(compare_results((5.0, 500), (4.0, 500)), Ordering::Greater);
         assert_eq!(compare_results((0.0, 90), (0.0, 131)), Ordering::Less);
-        assert_eq!((count_beaten(0.0), count_beaten(1.0), count_beaten(1e9)), ((0, 16), (4, 16), (16, 16)));
+        assert_eq!(
+            (count_published_below(0.0), count_published_below(1.0), count_published_below(1e9)),
+            ((0, 16), (4, 16), (16, 16))
+        );
     }
 
     #[test]
-    fn changed_parameters_prevent_ranking() {
+    fn run_with_changed_parameters_is_not_ranked() {
         let has_own_parameters = |scenario: &str, overrides: &[(&str, &str)]| {
             let overrides =
                 overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
@@ -242,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn other_seed_is_named() {
+    fn caveat_names_a_different_seed() {
         let mut seen = test_kit::play_weeks(0).company().observe();
         let caveat = |seen: &Observation| rank_score(None, seen).caveat;
         assert_eq!(

@@ -180,7 +180,7 @@ pub fn describe_obstacles(obstacles: &[RankingObstacle]) -> String {
 
 /// Returns the number of runs with obstacles and a text with the reasons. The text lists the reasons of a single run,
 /// or counts reasons by kind. Returns `None` if no run has an obstacle.
-pub fn describe_excluded(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String)> {
+pub fn describe_unranked_runs(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String)> {
     let left_out: Vec<&Vec<RankingObstacle>> =
         runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
     match left_out.as_slice() {
@@ -205,8 +205,8 @@ pub fn describe_excluded(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String
 }
 
 /// Explains in a sentence why finished runs are not ranked. Returns `None` if all finished runs are ranked.
-pub fn describe_not_ranked(runs: &[Vec<RankingObstacle>]) -> Option<String> {
-    describe_excluded(runs).map(|(count, why)| match count {
+pub fn explain_unranked_runs(runs: &[Vec<RankingObstacle>]) -> Option<String> {
+    describe_unranked_runs(runs).map(|(count, why)| match count {
         1 => format!("One finished run is not ranked: {why}."),
         count => format!("{count} finished runs are not ranked: {why}."),
     })
@@ -218,7 +218,7 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
     use novamind_session::{NewRun, Session};
 
-    const COMPARABLE: RankingCriteria<'static> = RankingCriteria {
+    const COMPARABLE_RUN: RankingCriteria<'static> = RankingCriteria {
         days: 500,
         start_cash: 1_000_000.0,
         scenario: "default",
@@ -232,18 +232,18 @@ mod tests {
     #[test]
     fn only_runs_with_published_conditions_are_ranked() {
         for (terms, reason) in [
-            (COMPARABLE, ""),
-            (RankingCriteria { scenario: "reference-seed42", ..COMPARABLE }, ""),
-            (RankingCriteria { scenario: "paper", ..COMPARABLE }, "scenario paper"),
-            (RankingCriteria { scenario: "competitor-off", ..COMPARABLE }, "scenario competitor-off"),
-            (RankingCriteria { days: 28, ..COMPARABLE }, "28 days instead of 500"),
-            (RankingCriteria { start_cash: 2e6, ..COMPARABLE }, "$2M at the start instead of $1M"),
-            (RankingCriteria { has_changed_parameters: true, ..COMPARABLE }, "changed parameters"),
-            (RankingCriteria { judged_by_model: true, ..COMPARABLE }, "posts judged by a language model"),
-            (RankingCriteria { is_branch: true, ..COMPARABLE }, "a branch of another run"),
-            (RankingCriteria { showed_hidden_state: true, ..COMPARABLE }, "played in debug mode"),
+            (COMPARABLE_RUN, ""),
+            (RankingCriteria { scenario: "reference-seed42", ..COMPARABLE_RUN }, ""),
+            (RankingCriteria { scenario: "paper", ..COMPARABLE_RUN }, "scenario paper"),
+            (RankingCriteria { scenario: "competitor-off", ..COMPARABLE_RUN }, "scenario competitor-off"),
+            (RankingCriteria { days: 28, ..COMPARABLE_RUN }, "28 days instead of 500"),
+            (RankingCriteria { start_cash: 2e6, ..COMPARABLE_RUN }, "$2M at the start instead of $1M"),
+            (RankingCriteria { has_changed_parameters: true, ..COMPARABLE_RUN }, "changed parameters"),
+            (RankingCriteria { judged_by_model: true, ..COMPARABLE_RUN }, "posts judged by a language model"),
+            (RankingCriteria { is_branch: true, ..COMPARABLE_RUN }, "a branch of another run"),
+            (RankingCriteria { showed_hidden_state: true, ..COMPARABLE_RUN }, "played in debug mode"),
             (
-                RankingCriteria { is_lesson: true, days: 14, ..COMPARABLE },
+                RankingCriteria { is_lesson: true, days: 14, ..COMPARABLE_RUN },
                 "part of a lesson, 14 days instead of 500",
             ),
         ] {
@@ -262,15 +262,15 @@ mod tests {
 
     #[test]
     fn obstacles_of_several_runs_are_counted() {
-        assert_eq!(describe_not_ranked(&[vec![]]), None);
+        assert_eq!(explain_unranked_runs(&[vec![]]), None);
         let short = vec![RankingObstacle::Length(28)];
         assert_eq!(
-            describe_not_ranked(&[vec![], short.clone()]).as_deref(),
+            explain_unranked_runs(&[vec![], short.clone()]).as_deref(),
             Some("One finished run is not ranked: 28 days instead of 500.")
         );
         let other = vec![RankingObstacle::Length(35), RankingObstacle::Scenario("short".to_owned())];
         assert_eq!(
-            describe_not_ranked(&[short, other]).as_deref(),
+            explain_unranked_runs(&[short, other]).as_deref(),
             Some("2 finished runs are not ranked: different length (2), different scenario (1).")
         );
     }

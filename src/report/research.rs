@@ -19,7 +19,7 @@ pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
 
 fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> String {
     let [quarter, half, three_quarters] = spread.quartile_days;
-    let by_the_end = format!("{} by the last day ({last_day})", format_of_100(spread.by_last_day));
+    let by_the_end = format!("{} by the last day ({last_day})", format_whole_percent(spread.by_last_day));
     if quarter > earliest {
         return format!(
             "half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}"
@@ -28,7 +28,7 @@ fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> S
     // A quartile that equals the minimum duration is not reported separately.
     let mut parts = vec![format!(
         "{} chance of finishing on day {earliest}, the earliest",
-        format_of_100(spread.at_earliest)
+        format_whole_percent(spread.at_earliest)
     )];
     if half > earliest {
         parts.push(format!("50% by day {half}"));
@@ -41,7 +41,7 @@ fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> S
 
 fn describe_gain(spread: &ResearchSpread) -> String {
     let [quarter, _, three_quarters] = spread.quartile_gains;
-    let least = match format_of_100(spread.at_least_gain).as_str() {
+    let least = match format_whole_percent(spread.at_least_gain).as_str() {
         "less than 1%" => String::new(),
         share => format!("; {share} gain the minimum, {:+}", spread.least_gain),
     };
@@ -49,7 +49,7 @@ fn describe_gain(spread: &ResearchSpread) -> String {
 }
 
 /// Formats a share as a whole percentage: `62%`.
-fn format_of_100(share: f64) -> String {
+fn format_whole_percent(share: f64) -> String {
     match (share * 100.0).round() {
         0.0 => "less than 1%".to_owned(),
         100.0 if share < 1.0 => "more than 99%".to_owned(),
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn mean_days_are_at_least_the_minimum() {
+    fn format_mean_days_is_at_least_the_minimum() {
         let mean_texts = |mode| {
             let session = run(500, mode);
             let means = session.company().research_means();

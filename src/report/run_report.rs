@@ -8,9 +8,9 @@ use super::measures::BehaviorMeasures;
 use super::ranking::{Ranking, rank_score};
 use novamind_insight::{BranchOrigin, branch_origin};
 use novamind_record::figures::WeekFigures;
-use novamind_record::rules::{ResultsShown, SessionRules};
+use novamind_record::rules::{ResultsDisclosure, SessionRules};
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_session::{Observation, ScoredForecast, Session, filed_forecasts};
+use novamind_session::{Observation, ScoredForecast, Session, submitted_forecasts};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bankruptcy {
@@ -74,7 +74,7 @@ impl RunReport {
             cash_by_day: session.cash_by_day().to_vec(),
             weeks: weeks.to_vec(),
             ranking: rank_score(seen.score, &seen),
-            forecasts: filed_forecasts(journal, session.cash_by_day()),
+            forecasts: submitted_forecasts(journal, session.cash_by_day()),
             decision_periods: decision_periods(session.company().decisions(), journal, start_cash),
             highlights: highlights(weeks, session.cash_by_day(), &figures.outages, seen.ended),
             measures,
@@ -87,12 +87,12 @@ impl RunReport {
     }
 
     /// Returns whether published results are shown. A study can hide them until the session has ended.
-    pub fn shows_published(&self) -> bool {
-        self.rules.results == ResultsShown::Published || self.observation.ended.is_some()
+    pub fn shows_published_results(&self) -> bool {
+        self.rules.results == ResultsDisclosure::Published || self.observation.ended.is_some()
     }
 
     /// Returns whether scores of the player's forecasts are shown. A study can hide them until the session has ended.
-    pub fn shows_calibration(&self) -> bool {
+    pub fn shows_forecast_scores(&self) -> bool {
         self.rules.calibration || self.observation.ended.is_some()
     }
 

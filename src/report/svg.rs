@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn values_increase_upwards() {
+    fn chart_values_increase_upwards() {
         let scale = || Scale { from: -10.0, to: 30.0, step: 10.0, kind: AxisScale::Linear };
         let sheet = PlotLayout { x: scale(), y: scale(), top: 20.0 };
         let places = [30.0, 10.0, -10.0, 99.0].map(|value| sheet.y_position(value));
@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn coordinates_are_inside_the_drawing() {
+    fn chart_coordinates_are_inside_the_drawing() {
         let wild = Curve {
             name: "a<b".to_owned(),
             points: vec![(0.0, 1.0), (1.0, 1e12), (2.0, f64::NAN), (3.0, -5.0)],

@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_show_the_run_figures() {
+    fn term_pictures_show_the_run_figures() {
         let session = test_kit::play_weeks(3);
         let Some(TermDrawing::Lines(leads)) = picture("network-source", 3).drawing else {
             panic!("no lines")
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn small_influence_has_no_spillover() {
+    fn spillover_picture_has_no_spillover_at_small_influence() {
         let Some(TermDrawing::Lines(term_lines)) = picture("spill-over", 0).drawing else {
             panic!("no lines")
         };

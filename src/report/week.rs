@@ -11,7 +11,7 @@ use super::formatting::{
 use novamind_base::formatting::{compact_number, percent};
 use novamind_record::figures::{CategoryTotals, WeekFigures};
 use novamind_session::{
-    Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT_RATIONALE, filed_forecasts,
+    Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT_RATIONALE, submitted_forecasts,
 };
 
 /// A figure that changed over the week.
@@ -278,7 +278,7 @@ fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
 /// Returns the amounts by ledger category: income first, then costs from the largest.
 fn cash_components(booked: &CategoryTotals) -> Vec<(&'static str, f64)> {
     let mut parts: Vec<(&'static str, f64)> =
-        booked.entries().map(|(category, dollars)| (category_name(category), dollars)).collect();
+        booked.nonzero_totals().map(|(category, dollars)| (category_name(category), dollars)).collect();
     parts.sort_by(|left, right| {
         (left.1 < 0.0).cmp(&(right.1 < 0.0)).then(right.1.abs().total_cmp(&left.1.abs()))
     });
@@ -330,7 +330,9 @@ fn category_changes(
 ) -> Vec<(&'static str, f64)> {
     let mut changes: Vec<(&'static str, f64)> = categories
         .iter()
-        .map(|category| (category_name(*category), before.total_of(*category) - now.total_of(*category)))
+        .map(|category| {
+            (category_name(*category), before.category_total(*category) - now.category_total(*category))
+        })
         .filter(|(_, dollars)| *dollars != 0.0)
         .collect();
     changes.sort_by(|left, right| right.1.abs().total_cmp(&left.1.abs()));
@@ -338,7 +340,7 @@ fn category_changes(
 }
 
 fn due_forecasts(sources: &WeekReportInput<'_>, day: u32) -> Vec<ScoredForecast> {
-    let mut due = filed_forecasts(sources.journal, sources.cash_by_day);
+    let mut due = submitted_forecasts(sources.journal, sources.cash_by_day);
     due.retain(|forecast| forecast.due_day() == day && forecast.outcome.is_some());
     due.sort_by_key(|due| due.forecast.horizon_days);
     due
@@ -371,20 +373,24 @@ mod tests {
     }
 
     #[test]
-    fn components_add_up_to_cash_change_and_match_the_ledger() {
+    fn cash_components_add_up_to_cash_change_and_match_the_ledger() {
         let mut session = test_kit::play_weeks(5);
         let report = WeekReport::from_session(&session).expect("five weeks have passed");
         let sum: f64 = report.cash_components.iter().map(|(_, dollars)| dollars).sum();
         assert!((sum - report.week.cash_change).abs() < 0.01);
         for (at, week) in session.weeks().to_vec().iter().enumerate() {
-            let of_week = novamind_session::entries_of_weeks_sql(at as u32 + 1, at as u32 + 1);
+            let of_week = novamind_session::ledger_weeks_condition_sql(at as u32 + 1, at as u32 + 1);
             let sql = format!("SELECT category, sum(amount) FROM ledger WHERE {of_week} GROUP BY 1");
             for row in session.query(&sql).expect("rows").rows {
                 let (id, dollars) =
                     (novamind_database::text_at(&row, 0), novamind_database::number_at(&row, 1));
                 let category =
                     Category::ALL.into_iter().find(|category| category.id() == id).expect("a category");
-                assert!((week.booked.total_of(category) - dollars).abs() < 0.01, "week {} {id}", at + 1);
+                assert!(
+                    (week.booked.category_total(category) - dollars).abs() < 0.01,
+                    "week {} {id}",
+                    at + 1
+                );
             }
         }
         let costs =
@@ -436,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn large_amounts_rank_above_single_counts() {
+    fn moved_figures_rank_large_amounts_above_single_counts() {
         let before =
             WeekFigures { cancellations: 1, payments: 4_000.0, costs: 20_000.0, ..WeekFigures::default() };
         let week = WeekFigures { cancellations: 0, payments: 9_800.0, ..before };
@@ -452,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn share_changes_are_percentage_points() {
+    fn share_changes_are_formatted_in_percentage_points() {
         let before = WeekFigures {
             new_individual_leads: 1_000,
             new_individual_subscribers: 517,

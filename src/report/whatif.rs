@@ -151,7 +151,7 @@ fn build_table(
     let headers =
         ["after week", "figure"].map(str::to_owned).into_iter().chain(numbers().map(|at| at.to_string()));
     let mut rows = Vec::new();
-    for day in comparison.milestones(days_per_week) {
+    for day in comparison.milestone_days(days_per_week) {
         for (at, figure) in comparison.figures.iter().enumerate() {
             let first = if at == 0 { milestone_label(comparison, day, days_per_week) } else { String::new() };
             let cells = numbers().map(|branch| cell(branch, *figure, day));
@@ -294,7 +294,7 @@ mod tests {
     use novamind_tools::ToolId;
 
     #[test]
-    fn weeks_after_the_record_are_marked_ahead() {
+    fn milestone_label_marks_weeks_after_the_record() {
         let comparison = BranchComparison {
             from: 21,
             until: 49,
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_call_differences_are_combined() {
+    fn describe_decisions_combines_equal_call_differences() {
         let call = |day, seq, was: Option<f64>, is: Option<f64>| CallDifference {
             day,
             tool: ToolId::SetPrices,

@@ -43,7 +43,7 @@ pub fn equation(why: &ChangeExplanation) -> String {
     format!(
         "{} {} = {}",
         why.quantity.name(),
-        format_signed_change(why.quantity.unit(), why.change()),
+        format_signed_change(why.quantity.unit(), why.total_change()),
         parts.join(" · ")
     )
 }
@@ -89,7 +89,7 @@ pub fn format_signed_change(unit: FigureUnit, change: f64) -> String {
 fn describe_detail(detail: &CauseDetail) -> String {
     match detail {
         CauseDetail::Setting(change) => describe_change(change),
-        CauseDetail::Occurred(times, noun) => pluralize(*times as u32, noun),
+        CauseDetail::Occurrences(times, noun) => pluralize(*times as u32, noun),
         CauseDetail::Input(InputDetail { name, old, new, is_share }) => {
             let value = |value: f64| if *is_share { percent(value, 1) } else { format_number(value) };
             format!("{name}: {} → {}", value(*old), value(*new))
@@ -104,7 +104,12 @@ mod tests {
     use novamind_record::figures::WeekFigure;
     use novamind_tools::ToolId;
 
-    fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> ChangeExplanation {
+    fn sample_explanation(
+        figure: WeekFigure,
+        before: f64,
+        after: f64,
+        amounts: &[(Cause, f64)],
+    ) -> ChangeExplanation {
         let part = |(cause, amount): &(Cause, f64)| CauseContribution {
             cause: *cause,
             amount: *amount,
@@ -128,28 +133,34 @@ mod tests {
     #[test]
     fn equation_names_every_cause_and_the_residual() {
         let price = Cause::Calls(ToolId::SetPrices);
-        let change_explanation =
-            why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Competitors, 3.5)]);
+        let change_explanation = sample_explanation(
+            WeekFigure::Cancellations,
+            195.0,
+            1137.0,
+            &[(price, 938.0), (Cause::Competitors, 3.5)],
+        );
         let equation_told = equation(&change_explanation);
         assert_eq!(equation_told, "cancellations +942 = price +938 · rivals +3.5 · residual +0.5");
         assert_eq!(heading(&change_explanation), "cancellations, week 20: 195 → 1,137");
         let short = ChangeExplanation { days: [7, 3], ..change_explanation };
         assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
-        let explanation = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
+        let explanation =
+            sample_explanation(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
         assert_eq!(
             equation(&explanation),
             "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0"
         );
-        let cash_explanation = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
+        let cash_explanation =
+            sample_explanation(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
         assert_eq!(equation(&cash_explanation), "cash change -$5,000 = market -$5,000 · residual 0");
     }
 
     #[test]
-    fn details_show_old_and_new_values() {
+    fn cause_details_show_old_and_new_values() {
         let input = |name, old, new, is_share| CauseDetail::Input(InputDetail { name, old, new, is_share });
         let cases = [
-            (CauseDetail::Occurred(2, "move"), "2 moves"),
-            (CauseDetail::Occurred(1, "call"), "1 call"),
+            (CauseDetail::Occurrences(2, "move"), "2 moves"),
+            (CauseDetail::Occurrences(1, "call"), "1 call"),
             (input("peak overload", 0.0, 0.131, true), "peak overload: 0.0% → 13.1%"),
             (input("index", 49.0, 50.25, false), "index: 49 → 50.25"),
         ];

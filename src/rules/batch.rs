@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::grammar::{Action, OfferLine, Price, Rule};
 use super::thread::{PlanEconomics, RULE_TOOLS, ThreadContext};
-use novamind_base::formatting::{cents, dollars, grouped_number, percent};
+use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, percent};
 use novamind_session::identifiers::Plan;
 use novamind_session::{EnterpriseNames, Session};
 use novamind_tools::{Rejection, ToolId};
@@ -192,7 +192,7 @@ impl RuleOutcome {
     pub fn describe_reply(&self) -> String {
         match &self.reply {
             Ok(RuleReply::Offer(lines)) => {
-                let line = |(plan, price): &(Plan, f64)| format!("{plan} {}", cents(*price));
+                let line = |(plan, price): &(Plan, f64)| format!("{plan} {}", dollars_and_cents(*price));
                 lines.iter().map(line).collect::<Vec<_>>().join(" or ")
             }
             Ok(RuleReply::Rejection) => "end the thread".to_owned(),

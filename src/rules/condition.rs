@@ -48,7 +48,7 @@ impl Field {
     }
 
     /// Returns the value of this field in a thread, or `None` if the thread has no value.
-    fn value_of(self, thread: &ThreadContext) -> Option<Value> {
+    fn thread_value(self, thread: &ThreadContext) -> Option<Value> {
         let (waiting_thread, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
         Some(match self {
             Field::Group => Value::Word(waiting_thread.group.to_owned()),
@@ -111,15 +111,15 @@ impl Condition {
     pub(super) fn is_satisfied(&self, thread: &ThreadContext) -> bool {
         match self {
             Condition::Compared(field, comparison, value) => {
-                field.value_of(thread).is_some_and(|actual| comparison.is_satisfied(&actual, value))
+                field.thread_value(thread).is_some_and(|actual| comparison.is_satisfied(&actual, value))
             }
             Condition::OneOf(field, values) => {
                 let is_one =
                     |actual: Value| values.iter().any(|value| Comparison::Equal.is_satisfied(&actual, value));
-                field.value_of(thread).is_some_and(is_one)
+                field.thread_value(thread).is_some_and(is_one)
             }
-            Condition::IsNull(field) => field.value_of(thread).is_none(),
-            Condition::IsPresent(field) => field.value_of(thread).is_some(),
+            Condition::IsNull(field) => field.thread_value(thread).is_none(),
+            Condition::IsPresent(field) => field.thread_value(thread).is_some(),
         }
     }
 }

@@ -72,11 +72,14 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, RuleError> {
         }
         rules.push(reader.parse_rule()?);
         if !reader.is_at_end() && !reader.accept(";") {
-            return Err(reader.error_here("the rule ends here: separate rules with ;"));
+            return Err(reader.error_at_current_token("the rule ends here: separate rules with ;"));
         }
     }
     match rules.is_empty() {
-        true => Err(reader.error_here("a rule is expected, for example offer where asked is null: B 85")),
+        true => {
+            Err(reader
+                .error_at_current_token("a rule is expected, for example offer where asked is null: B 85"))
+        }
         false => Ok(rules),
     }
 }
@@ -86,12 +89,12 @@ pub(super) fn parse_conditions(text: &str) -> Result<Vec<Condition>, RuleError> 
     let tokens = tokenize(text)?;
     let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
     if reader.is_at_end() {
-        return Err(reader.error_here("a condition is missing, example: seats >= 500"));
+        return Err(reader.error_at_current_token("a condition is missing, example: seats >= 500"));
     }
     let conditions = reader.parse_joined_conditions()?;
     match reader.is_at_end() {
         true => Ok(conditions),
-        false => Err(reader.error_here("the conditions end here: join conditions with and")),
+        false => Err(reader.error_at_current_token("the conditions end here: join conditions with and")),
     }
 }
 
@@ -173,7 +176,7 @@ impl RuleParser<'_> {
         Some(text)
     }
 
-    fn error_here(&self, text: impl Into<String>) -> RuleError {
+    fn error_at_current_token(&self, text: impl Into<String>) -> RuleError {
         let at = self.tokens.get(self.at).map_or(self.text.len(), |token| token.start);
         RuleError { text: text.into(), column: column(self.text, at) }
     }
@@ -181,7 +184,7 @@ impl RuleParser<'_> {
     /// Returns an error at the previous word.
     fn error_at_previous(&mut self, text: impl Into<String>) -> RuleError {
         self.at -= 1;
-        self.error_here(text)
+        self.error_at_current_token(text)
     }
 
     fn parse_rule(&mut self) -> Result<Rule, RuleError> {
@@ -209,14 +212,14 @@ impl RuleParser<'_> {
         let named = self.accept("where");
         match self.peek() {
             None | Some(";") => {
-                return Err(
-                    self.error_here(format!("{action} needs a condition, or rest for all other threads"))
-                );
+                return Err(self.error_at_current_token(format!(
+                    "{action} needs a condition, or rest for all other threads"
+                )));
             }
             Some(":") if !named => {
-                return Err(
-                    self.error_here("the condition is missing: use where …, or rest for all other threads")
-                );
+                return Err(self.error_at_current_token(
+                    "the condition is missing: use where …, or rest for all other threads",
+                ));
             }
             _ => {}
         }
@@ -229,7 +232,7 @@ impl RuleParser<'_> {
             conditions.push(self.parse_condition()?);
         }
         match self.peek() {
-            Some(word) if word.eq_ignore_ascii_case("or") => Err(self.error_here(
+            Some(word) if word.eq_ignore_ascii_case("or") => Err(self.error_at_current_token(
                 "or is not supported: conditions are joined with and; use in (…) for one of several values, and another \
                  rule for other threads",
             )),
@@ -238,7 +241,9 @@ impl RuleParser<'_> {
     }
 
     fn parse_condition(&mut self) -> Result<Condition, RuleError> {
-        let Some(name) = self.next_word() else { return Err(self.error_here("a condition is missing")) };
+        let Some(name) = self.next_word() else {
+            return Err(self.error_at_current_token("a condition is missing"));
+        };
         let lower = name.to_lowercase();
         let Some((_, field)) = FIELDS.into_iter().find(|(known, _)| *known == lower) else {
             let names: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
@@ -248,7 +253,7 @@ impl RuleParser<'_> {
         if self.accept("is") {
             let there = self.accept("not");
             if !self.accept("null") {
-                return Err(self.error_here("null is expected: is null or is not null"));
+                return Err(self.error_at_current_token("null is expected: is null or is not null"));
             }
             return Ok(if there { Condition::IsPresent(field) } else { Condition::IsNull(field) });
         }
@@ -290,10 +295,14 @@ impl RuleParser<'_> {
             Some("<=") => AtMost,
             Some(">") => More,
             Some(">=") => AtLeast,
-            _ => return Err(self.error_here("a comparison is expected: = != < <= > >=, in, is null")),
+            _ => {
+                return Err(
+                    self.error_at_current_token("a comparison is expected: = != < <= > >=, in, is null")
+                );
+            }
         };
         if field.is_word() && !matches!(comparison, Equal | NotEqual) {
-            return Err(self.error_here("words can only be compared with = or !="));
+            return Err(self.error_at_current_token("words can only be compared with = or !="));
         }
         self.at += 1;
         Ok(comparison)
@@ -301,14 +310,14 @@ impl RuleParser<'_> {
 
     fn parse_list_condition(&mut self, field: Field) -> Result<Condition, RuleError> {
         if !self.accept("(") {
-            return Err(self.error_here("a list is expected, for example in (E1, E2)"));
+            return Err(self.error_at_current_token("a list is expected, for example in (E1, E2)"));
         }
         let mut values = vec![self.parse_value(field)?];
         while self.accept(",") {
             values.push(self.parse_value(field)?);
         }
         if !self.accept(")") {
-            return Err(self.error_here("the bracket of the list is not closed"));
+            return Err(self.error_at_current_token("the bracket of the list is not closed"));
         }
         Ok(Condition::OneOf(field, values))
     }
@@ -317,7 +326,9 @@ impl RuleParser<'_> {
         if !field.is_word() {
             return Ok(Value::Number(self.parse_number()?));
         }
-        let Some(word) = self.next_word() else { return Err(self.error_here("a value is missing")) };
+        let Some(word) = self.next_word() else {
+            return Err(self.error_at_current_token("a value is missing"));
+        };
         // Any group that begins with `D_E` is accepted, so that errors do not reveal which undiscovered groups exist.
         let word = if field == Field::Group { word.to_uppercase() } else { word };
         if word.starts_with("D_E") {
@@ -338,7 +349,9 @@ impl RuleParser<'_> {
     }
 
     fn parse_number(&mut self) -> Result<f64, RuleError> {
-        let Some(word) = self.next_word() else { return Err(self.error_here("a number is missing")) };
+        let Some(word) = self.next_word() else {
+            return Err(self.error_at_current_token("a number is missing"));
+        };
         match word.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite()) {
             Some(number) => Ok(number),
             None => Err(self.error_at_previous(format!("a number is expected, not {word}"))),
@@ -347,12 +360,14 @@ impl RuleParser<'_> {
 
     fn parse_offer_lines(&mut self) -> Result<Vec<OfferLine>, RuleError> {
         if !self.accept(":") {
-            return Err(self.error_here("a colon and the offer are missing, for example : B 85"));
+            return Err(self.error_at_current_token("a colon and the offer are missing, for example : B 85"));
         }
         let mut lines = vec![self.parse_offer_line()?];
         while self.accept(",") {
             if lines.len() == MAX_OFFER_LINES {
-                return Err(self.error_here(format!("an offer has at most {MAX_OFFER_LINES} plans")));
+                return Err(
+                    self.error_at_current_token(format!("an offer has at most {MAX_OFFER_LINES} plans"))
+                );
             }
             lines.push(self.parse_offer_line()?);
         }
@@ -361,7 +376,7 @@ impl RuleParser<'_> {
 
     fn parse_offer_line(&mut self) -> Result<OfferLine, RuleError> {
         let Some(word) = self.next_word() else {
-            return Err(self.error_here("a plan and a price are missing"));
+            return Err(self.error_at_current_token("a plan and a price are missing"));
         };
         let plan = match Plan::parse(&word.to_uppercase()) {
             Some(plan) => Some(plan),
@@ -378,7 +393,7 @@ impl RuleParser<'_> {
     fn parse_price(&mut self) -> Result<Price, RuleError> {
         const NAMES: [&str; 3] = ["asked", "list", "last_offer"];
         let Some(word) = self.peek().map(str::to_lowercase) else {
-            return Err(self.error_here("a price is missing"));
+            return Err(self.error_at_current_token("a price is missing"));
         };
         if !word.starts_with(char::is_alphabetic) {
             let price = self.parse_number()?;
@@ -390,7 +405,7 @@ impl RuleParser<'_> {
         }
         if !NAMES.contains(&word.as_str()) {
             let near = suggestion(similar_names(&word, NAMES.into_iter()), &NAMES);
-            return Err(self.error_here(format!("unknown price {word}: use dollars, or {near}")));
+            return Err(self.error_at_current_token(format!("unknown price {word}: use dollars, or {near}")));
         }
         self.at += 1;
         let factor = if self.accept("*") { self.parse_number()? } else { 1.0 };
@@ -486,12 +501,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_panics(text in "\\PC{0,60}") {
+        fn parse_never_panics_on_any_text(text in "\\PC{0,60}") {
             let _ = parse(&text);
         }
 
         #[test]
-        fn no_words_panic(words in proptest::collection::vec(
+        fn parse_never_panics_on_any_words(words in proptest::collection::vec(
             prop::sample::select(vec!["offer", "where", "asked", "is", "null", "in", "(", ")", ":", ",", "B", "3", "*",
                 ";", "rest", "and", "=", "group", "E1", "not", "accept", "\n", "$"]), 0..12)) {
             let _ = parse(&words.join(" "));

@@ -20,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn offers_are_read_from_their_json() {
+    fn parse_offer_reads_plans_and_prices() {
         let two = r#"[{"plan": "A", "price_per_seat": 18.5, "contract_months": 1}, {"plan": "Z", "price_per_seat": 1}]"#;
         assert_eq!(parse_offer(two), (vec![(Plan::A, 18.5)], None));
         assert_eq!(parse_offer(r#"{"price": 27.34}"#), (vec![], Some(27.34)));

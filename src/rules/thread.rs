@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plans_are_found_in_words() {
+    fn first_plan_in_finds_plans_in_messages() {
         for (text, plan) in [
             ("At $27.34 a seat for plan B we can sign.", Some(Plan::B)),
             ("Plan C, please", Some(Plan::C)),

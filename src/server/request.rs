@@ -76,7 +76,7 @@ impl ApiRequest {
     /// [`ApiRequest::NextWeek`].
     ///
     /// The arguments may contain the request id.
-    pub fn for_tool(name: &str, args: Value, request_id: Value) -> ApiRequest {
+    pub fn from_tool_call(name: &str, args: Value, request_id: Value) -> ApiRequest {
         let mut fields = match args {
             Value::Object(fields) => fields,
             given => return ApiRequest::Call { tool: name.to_owned(), args: given, request_id },
@@ -191,7 +191,7 @@ impl ApiResponse {
     }
 
     /// Returns a successful response whose body is `body`.
-    pub fn raw(body: Value) -> ApiResponse {
+    pub fn with_body(body: Value) -> ApiResponse {
         ApiResponse { status: ResponseStatus::Done, body }
     }
 

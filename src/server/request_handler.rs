@@ -28,10 +28,10 @@ pub fn handle_request(session: &mut Session, request: ApiRequest, via: Via) -> A
             ResponseStatus::BadRequest,
             session.record_early_rejection(&tool, &args, via, refusal),
         ),
-        ApiRequest::CurrentDay => ApiResponse::raw(json!({ "current_day": session.day() })),
-        ApiRequest::Dashboard => {
-            ApiResponse::raw(json!({ "dashboard": session.company().dashboard(), "day": session.day() }))
-        }
+        ApiRequest::CurrentDay => ApiResponse::with_body(json!({ "current_day": session.day() })),
+        ApiRequest::Dashboard => ApiResponse::with_body(
+            json!({ "dashboard": session.company().dashboard(), "day": session.day() }),
+        ),
         ApiRequest::GameStatus => game_status(session),
         ApiRequest::DailyScripts => ApiResponse::tool_data(json!({ "scripts": daily_scripts(session) })),
         ApiRequest::SaveDailyScript { name, content, request_id } => {
@@ -114,7 +114,7 @@ fn query_error_status(code: &str) -> ResponseStatus {
 
 fn game_status(session: &Session) -> ApiResponse {
     let seen = session.company().observe();
-    ApiResponse::raw(json!({
+    ApiResponse::with_body(json!({
         "day": seen.day,
         "cash": seen.cash,
         "subscribers": seen.active_subscriptions(),

@@ -86,7 +86,7 @@ impl ForeignTranscript {
         for call in &self.calls {
             let api_response = handle_request(
                 session,
-                ApiRequest::for_tool(&call.tool, call.arguments.clone().into(), Value::Null),
+                ApiRequest::from_tool_call(&call.tool, call.arguments.clone().into(), Value::Null),
                 Via::Script,
             );
             let accepted = api_response.is_success();
@@ -199,7 +199,7 @@ mod tests {
     use novamind_session::NewRun;
 
     #[test]
-    fn names_are_read_as_clients_write_them() {
+    fn tool_name_accepts_client_prefixes() {
         for name in ["set_prices", "mcp__novamind__set_prices", "novamind.set_prices", "novamind/set_prices"]
         {
             assert_eq!(tool_name(name), Some("set_prices"), "{name}");
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn play_reports_calls_with_other_results() {
+    fn play_reports_calls_with_different_results() {
         let forecast = json!({"point": 1e6, "lower": 0, "upper": 2e6});
         let predictions =
             json!({"cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast});

@@ -14,7 +14,7 @@ use super::current_request::CurrentRequest;
 use super::request::{ApiRequest, ApiResponse, ResponseStatus};
 use super::request_handler::handle_request;
 use novamind_record::error::RunError;
-use novamind_record::trajectory::record::{LeavingCause, Via};
+use novamind_record::trajectory::record::{DetachCause, Via};
 use novamind_session::{Access, Interface, ModelSettings, RunDatabase, Session};
 use novamind_tools::NotebookSection;
 
@@ -194,7 +194,7 @@ impl WorkerState {
         }
         match self.session {
             Some(mut session) => {
-                session.activity().detach(LeavingCause::Quit);
+                session.activity().detach(DetachCause::Quit);
                 session.save()
             }
             None => Ok(()),

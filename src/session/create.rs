@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::consent::resolve_consent;
-use self::lesson_entry::LessonEntry;
+use self::lesson_entry::LessonOptions;
 use crate::company::reports::DayReport;
 use crate::model_voice::client::{ModelClient, select_model};
 use crate::play::Session;
@@ -21,11 +21,11 @@ use novamind_record::consent::{ConsentAgreement, ConsentText};
 use novamind_record::error::RunError;
 use novamind_record::files::create_folder;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use novamind_record::folder::manifest::{FORMAT, Manifest, changed_parameters, count_same_world};
+use novamind_record::folder::manifest::{FORMAT, Manifest, changed_parameters, count_runs_with_same_seed};
 use novamind_record::folder::runs::{earlier_runs, participant_of_folder};
 use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
-use novamind_record::stamp::{HandoutEntry, StudyStamp};
+use novamind_record::stamp::{HandoutOptions, StudyStamp};
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
@@ -53,11 +53,11 @@ pub struct NewRun {
     /// How and when the participant agreed to the consent text; baseline runs only.
     pub agreed: Option<ConsentAgreement>,
     /// Study to which the run belongs, with its session rules.
-    pub study: Option<StudyEntry>,
+    pub study: Option<StudyOptions>,
     /// Lesson that the run plays; lesson runs only.
-    pub lesson: Option<LessonEntry>,
+    pub lesson: Option<LessonOptions>,
     /// Handout from which the run starts, and the run id if the handout defines one.
-    pub handout: Option<HandoutEntry>,
+    pub handout: Option<HandoutOptions>,
     /// Where the run is stored.
     pub storage: Storage,
     /// Whether the database is written. Without a database, queries are rejected.
@@ -70,7 +70,7 @@ pub struct NewRun {
 
 /// The options of a new run that a study defines.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StudyEntry {
+pub struct StudyOptions {
     /// Stamp with the study and the participant's assignment.
     pub stamp: StudyStamp,
     /// Rules of the session.
@@ -123,10 +123,10 @@ impl Session {
         Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
-    /// Creates a run like [`Session::create`], and calls `tell` for each day that is simulated at the start of a lesson.
+    /// Creates a run like [`Session::create_run`], and calls `tell` for each day that is simulated at the start of a lesson.
     ///
     /// # Errors
-    /// The same errors as [`Session::create`].
+    /// The same errors as [`Session::create_run`].
     pub fn create_with_progress(
         new: NewRun,
         configuration: &Configuration,
@@ -142,7 +142,7 @@ impl Session {
         let model = select_model(new.mode, laid_down, named)?;
         let speaker = model.as_ref().map(ModelClient::new).transpose().map_err(model_voice_error)?;
         let (manifest, params) = build_manifest(&new, configuration)?;
-        let manifest = Manifest { voice: model.map(|model| model.stamp()), ..manifest };
+        let manifest = Manifest { voice: model.map(|model| model.recorded_settings()), ..manifest };
         let mut begun = Session::create_stored(manifest, params, &new, tell)?;
         begun.set_model_client(speaker);
         Ok(begun)
@@ -272,7 +272,7 @@ fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manife
         seed,
         days,
         cash,
-        earlier_runs: count_same_world(&earlier, seed, &scenario.name),
+        earlier_runs: count_runs_with_same_seed(&earlier, seed, &scenario.name),
         scenario: scenario.name,
         mode: new.mode,
         participant,
@@ -280,7 +280,7 @@ fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manife
         parameters_digest: params.digest(),
         parent: None,
         study,
-        lesson: new.lesson.as_ref().map(LessonEntry::stamp),
+        lesson: new.lesson.as_ref().map(LessonOptions::stamp),
         handout: handed_out.1,
         voice: None,
         rules: Some(rules.unwrap_or_else(|| SessionRules::for_mode(new.mode))),

@@ -169,7 +169,7 @@ pub fn query_rejection(error: QueryError) -> Rejection {
 }
 
 /// Returns the rejection for a record that cannot be read.
-pub fn unreadable_record(error: &RunError) -> Rejection {
+pub fn unreadable_record_rejection(error: &RunError) -> Rejection {
     Rejection::new("not_readable", error.to_string())
 }
 

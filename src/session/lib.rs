@@ -30,9 +30,11 @@ pub use company::hidden_state::HiddenState;
 pub use company::reports::{DayReport, WeekResult};
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
-pub use create::lesson_entry::LessonEntry;
-pub use create::{NewRun, Storage, StudyEntry};
-pub use database::{RunDatabase, query_rejection, rows_to_json, unreadable_record, with_hidden_table_hint};
+pub use create::lesson_entry::LessonOptions;
+pub use create::{NewRun, Storage, StudyOptions};
+pub use database::{
+    RunDatabase, query_rejection, rows_to_json, unreadable_record_rejection, with_hidden_table_hint,
+};
 pub use figures::attendance::{
     Attendance, AttendedWeek, Attention, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent,
 };
@@ -42,23 +44,25 @@ pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::{Estimates, true_value_range};
 pub use figures::groups::{GroupWeek, PaidLeads};
 pub use figures::journal::JournalEntry;
-pub use figures::naive::{Coverage, ErrorBands, GrowthStage, Hindcast, hindcasts};
-pub use figures::scored_forecast::{ForecastScore, IntervalPosition, ScoredForecast, filed_forecasts};
+pub use figures::naive::{Coverage, ErrorIntervals, GrowthStage, Hindcast, hindcasts};
+pub use figures::scored_forecast::{ForecastScore, IntervalPosition, ScoredForecast, submitted_forecasts};
 pub use figures::session_count::SessionCount;
 pub use figures::setting::{Audience, SettingId, setting_values};
-pub use figures::week::{Forecasts, WEEK_OF_ENTRY_SQL, describe_naive_share, entries_of_weeks_sql, week_of};
-pub use inspection::access::{InspectionPermit, WatchedDays};
+pub use figures::week::{
+    Forecasts, LEDGER_WEEK_SQL, describe_naive_share, ledger_weeks_condition_sql, week_of_day,
+};
+pub use inspection::access::{InspectionPermit, ObservedDays};
 pub use inspection::run_replay::RunReplay;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub use model_voice::stub::{StubBehavior, StubModel};
 pub use novamind_voice::EnterpriseNames;
-pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
+pub use novamind_voice::model::settings::{ModelSettings, RecordedModelSettings};
 pub use novamind_world::customers::drift::Expectation;
 pub use novamind_world::enterprise::OfferResponse;
 pub use novamind_world::events::{Category, EndCause, Severity, Source};
 pub use novamind_world::fault::Fault;
 pub use novamind_world::identifiers;
-pub use novamind_world::market::competitors::Event as CompetitorEvent;
+pub use novamind_world::market::competitors::CompetitorEvent;
 pub use novamind_world::market::surges::Surge;
 pub use novamind_world::reputation::{ReputationCause, Spillover, SpilloverEffect};
 pub use novamind_world::settings::{CoreSettings, Settings};
@@ -84,7 +88,7 @@ pub use recording::machine::Machine;
 pub use recording::recorder::read_afterwards;
 pub use recording::session_clock::TimeLeft;
 pub use resume::branch::create_lesson_branch;
-pub use resume::branch::{create_branch_files, not_saved_error};
+pub use resume::branch::{branch_not_saved_rejection, create_branch_files};
 pub use resume::external_read::record_external_read;
 pub use resume::origin::{Origin, read_origin};
 pub use resume::rebuild::{open_database_file, rebuild_database};
@@ -106,12 +110,12 @@ pub mod engine {
     pub use crate::company::facts_chain::StateHash;
     pub use crate::company::feed::Feed;
     pub use crate::company::overrides::{
-        Overrides, ParameterChange, ParameterConflict, UpdatedParams, json_to_value, parameter_not_allowed,
-        require_debug_mode, unknown_parameter, value_to_json,
+        Overrides, ParameterChange, ParameterConflict, UpdatedParams, json_to_value,
+        parameter_not_allowed_rejection, require_debug_mode, unknown_parameter_rejection, value_to_json,
     };
     pub use crate::company::simulation::Simulation;
     pub use crate::database::{EntryWriter, RunDatabase};
     pub use crate::figures::capacity_by_usage::UsageCapacityRule;
     pub use crate::figures::changes::setting_changes;
-    pub use crate::figures::groups::{count_day, mean_satisfaction, measure_group};
+    pub use crate::figures::groups::{add_day_to_week, mean_satisfaction, measure_group};
 }

@@ -15,7 +15,9 @@ use super::questions::Questionnaire;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::CONSENT_FILE;
 use novamind_record::folder::configuration::{DEFAULT_SCENARIO, check_cash, check_days};
-use novamind_record::rules::{DraftsKept, FreeText, ResultsShown, SessionRules, TimeLimits};
+use novamind_record::rules::{
+    DraftRecording, FreeTextRecording, ResultsDisclosure, SessionRules, TimeLimits,
+};
 use novamind_record::trajectory::record::Activity;
 use novamind_session::SealKey;
 use novamind_voice::model::settings::ModelSettings;
@@ -192,7 +194,7 @@ pub struct SessionOptions {
     /// Whether participants see the accuracy of their past forecasts during the run.
     pub calibration: bool,
     /// Results that are shown on the final page.
-    pub results: ResultsShown,
+    pub results: ResultsDisclosure,
     /// Whether participants must give a reason when they stop the clock.
     pub pause_reason: bool,
 }
@@ -203,7 +205,7 @@ impl Default for SessionOptions {
             tour: false,
             advice: false,
             calibration: false,
-            results: ResultsShown::Own,
+            results: ResultsDisclosure::Own,
             pause_reason: false,
         }
     }
@@ -216,14 +218,18 @@ pub struct RecordOptions {
     /// Kinds of activity that are not recorded.
     pub leave_out: Vec<String>,
     /// Form in which notes and text answers are recorded.
-    pub free_text: FreeText,
+    pub free_text: FreeTextRecording,
     /// Form in which edits of texts are recorded.
-    pub drafts: DraftsKept,
+    pub drafts: DraftRecording,
 }
 
 impl Default for RecordOptions {
     fn default() -> Self {
-        RecordOptions { leave_out: Vec::new(), free_text: FreeText::Kept, drafts: DraftsKept::Lengths }
+        RecordOptions {
+            leave_out: Vec::new(),
+            free_text: FreeTextRecording::Kept,
+            drafts: DraftRecording::Lengths,
+        }
     }
 }
 
@@ -251,13 +257,13 @@ pub struct CodeDigest(String);
 
 impl CodeDigest {
     /// Number of hashing rounds. Many rounds slow down guessing.
-    const ROUNDS: u32 = 100_000;
+    const HASH_ROUNDS: u32 = 100_000;
 
     /// Computes the digest of a code with a salt.
     pub fn from_code(code: &str, salt: &str) -> CodeDigest {
         let mut digest =
             blake3::derive_key("novamind experimenter code", format!("{salt}:{code}").as_bytes());
-        for _ in 0..CodeDigest::ROUNDS {
+        for _ in 0..CodeDigest::HASH_ROUNDS {
             digest = *blake3::hash(&digest).as_bytes();
         }
         let digits: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();

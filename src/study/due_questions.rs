@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::definition::Study;
 use super::questions::{Occasion, Question, Questionnaire};
-use novamind_record::rules::FreeText;
+use novamind_record::rules::FreeTextRecording;
 use novamind_record::trajectory::record::{Activity, QuestionAnswer, QuestionShown};
 use novamind_session::Session;
 
@@ -36,7 +36,11 @@ impl Study {
         asked
             .flat_map(|(questionnaire, occasion)| {
                 let open = questionnaire.questions.iter().filter(|question| {
-                    !session.log().answer_book().is_answered(&questionnaire.name, &occasion, &question.id)
+                    !session.log().answered_questions().is_answered(
+                        &questionnaire.name,
+                        &occasion,
+                        &question.id,
+                    )
                 });
                 let due = |question: &Question| DueQuestion {
                     questionnaire: questionnaire.name.clone(),
@@ -61,7 +65,7 @@ fn due_occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String
             due.map(|week| format!("week {week}")).collect()
         }
         Occasion::Break => {
-            let last = Some(session.log().answer_book().break_count)
+            let last = Some(session.log().answered_questions().break_count)
                 .filter(|breaks| *breaks > 0 && session.ended().is_none());
             last.map(|number| format!("break {number}")).into_iter().collect()
         }
@@ -86,7 +90,8 @@ impl DueQuestion {
     /// rules of the session require it. `shown_ms` is the time
     /// for which the question was shown.
     pub fn record_answer(&self, session: &mut Session, value: &Value, for_ms: u64, changes: u32) {
-        let masked = session.rules().free_text == FreeText::Masked && self.question.form.is_free_text();
+        let masked =
+            session.rules().free_text == FreeTextRecording::Masked && self.question.form.is_free_text();
         let kept = match value.as_str().filter(|_| masked) {
             Some(words) => json!({ "length": words.chars().count() }),
             None => value.clone(),

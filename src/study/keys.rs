@@ -22,7 +22,7 @@ pub const SEAL_KEY_FILE: &str = "seal.key";
 /// # Errors
 /// Returns an error if the system provides no random numbers, if a file cannot be read or written, or if `lab.pub` or
 /// `seal.key` exists without `lab.key`.
-pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError> {
+pub fn create_missing_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError> {
     let [lab_key, public, seal] =
         [LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE].map(|name| folder.join(name));
     let orphan = [&public, &seal].into_iter().find(|path| path.exists()).filter(|_| !lab_key.exists());
@@ -87,21 +87,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn make_keys_derives_missing_keys() {
+    fn create_missing_keys_derives_keys_from_the_lab_key() {
         let folder = tempfile::tempdir().expect("a folder");
-        let (public, written) = make_keys(folder.path()).expect("keys");
+        let (public, written) = create_missing_keys(folder.path()).expect("keys");
         assert_eq!(written.len(), 3);
         let seal = load_seal_key(folder.path()).expect("a key");
         assert!(seal != SealKey::default());
         std::fs::remove_file(folder.path().join(SEAL_KEY_FILE)).expect("gone");
         assert!(load_seal_key(folder.path()).expect("none") == SealKey::default());
-        let (public_key, written) = make_keys(folder.path()).expect("keys");
+        let (public_key, written) = create_missing_keys(folder.path()).expect("keys");
         assert_eq!((public_key, written), (public, vec![folder.path().join(SEAL_KEY_FILE)]));
         assert!(load_seal_key(folder.path()).expect("a key") == seal);
         assert_eq!(load_lab_public_key(folder.path()).expect("a key"), Some(public));
         // A new `lab.key` would not match the files that were derived from an earlier key.
         std::fs::remove_file(folder.path().join(LAB_KEY_FILE)).expect("gone");
-        let problem = make_keys(folder.path()).expect_err("the private key is elsewhere").to_string();
+        let problem =
+            create_missing_keys(folder.path()).expect_err("the private key is elsewhere").to_string();
         assert!(problem.contains("lab.pub was derived from a lab.key"), "{problem}");
         assert!(load_lab_key(folder.path()).expect("none").is_none());
         std::fs::write(folder.path().join(SEAL_KEY_FILE), "seal").expect("written");

@@ -21,8 +21,8 @@ pub use collection::{CollectNote, CollectedRuns, FoundRun, FoundVisit, collect_r
 pub use definition::{CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
 pub use due_questions::DueQuestion;
 pub use keys::{
-    LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, load_lab_key, load_lab_public_key, load_seal_key,
-    make_keys,
+    LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, create_missing_keys, load_lab_key, load_lab_public_key,
+    load_seal_key,
 };
 pub use novamind_record::folder::configuration::CONSENT_FILE;
 pub use participant_session::{DECLINED_NOTICE, NextStep, ParticipantSession};

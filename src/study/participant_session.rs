@@ -17,7 +17,7 @@ use novamind_record::folder::manifest_check::ManifestCheck;
 use novamind_record::folder::runs::{RunSummary, delete_run, list_runs, participant_folder};
 use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
-use novamind_session::{Access, NewRun, Session, Storage, StudyEntry};
+use novamind_session::{Access, NewRun, Session, Storage, StudyOptions};
 
 /// Message to a participant who declines consent.
 pub const DECLINED_NOTICE: &str = "You did not agree. Kept: your label, the time of your visit, and that you did not agree. Nothing else \
@@ -192,7 +192,7 @@ impl ParticipantSession {
             mode: Mode::Baseline,
             participant: Some(self.label.clone()),
             agreed,
-            study: Some(StudyEntry {
+            study: Some(StudyOptions {
                 stamp,
                 rules: self.study.session_rules(),
                 consent: self.consent_text(),
@@ -207,7 +207,7 @@ impl ParticipantSession {
     /// Creates a new run for the practice or the session.
     ///
     /// # Errors
-    /// Returns the errors of [`Session::create`].
+    /// Returns the errors of [`Session::create_run`].
     pub fn create_run(
         &self,
         practice: bool,
@@ -220,7 +220,7 @@ impl ParticipantSession {
     /// Opens an unfinished run of the participant.
     ///
     /// # Errors
-    /// Returns the errors of [`Session::open`].
+    /// Returns the errors of [`Session::open_run`].
     pub fn open_run(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
         session.connect_model(self.study.protocol.voice.as_ref());
@@ -283,12 +283,12 @@ impl ParticipantSession {
     /// Returns the participant's runs of this study, most recently played first.
     fn study_runs(&self) -> Result<Vec<ParticipantRun>, RunError> {
         let is_own = |stamp: &StudyStamp| stamp.digest == self.study.digest;
-        let all = self.all_study_runs()?.into_iter();
+        let all = self.runs_of_all_studies()?.into_iter();
         Ok(all.filter(|(manifest, _)| manifest.study.as_ref().is_some_and(is_own)).collect())
     }
 
     /// Returns the participant's runs of all studies, most recently played first.
-    fn all_study_runs(&self) -> Result<Vec<ParticipantRun>, RunError> {
+    fn runs_of_all_studies(&self) -> Result<Vec<ParticipantRun>, RunError> {
         let with_manifest = |run: RunSummary| {
             let manifest = ManifestCheck::read(&self.runs.join(&run.id)).ok()?.manifest;
             manifest.study.is_some().then_some((manifest, run))
@@ -298,7 +298,7 @@ impl ParticipantSession {
 
     /// Returns an error if the participant has a run with a different version of the protocol.
     fn check_protocol(&self) -> Result<(), RunError> {
-        let other = self.all_study_runs()?.into_iter().find_map(|(manifest, run)| {
+        let other = self.runs_of_all_studies()?.into_iter().find_map(|(manifest, run)| {
             let stamp = manifest.study?;
             (stamp.name == self.study.protocol.name && stamp.digest != self.study.digest).then_some(run.id)
         });

@@ -160,7 +160,7 @@ impl AnswerFormat {
             }
             AnswerFormat::Choice { options, several: true } => {
                 let chosen: Option<Vec<&String>> =
-                    typed.split(',').map(|one| find_option(options, one.trim())).collect();
+                    typed.split(',').map(|one| option_by_number_or_text(options, one.trim())).collect();
                 chosen
                     .filter(|chosen| !chosen.is_empty())
                     .map(|chosen| json!(chosen))
@@ -168,7 +168,7 @@ impl AnswerFormat {
             }
             AnswerFormat::Choice { options, several: false } | AnswerFormat::Attention { options, .. } => {
                 let none = || format!("a number from 1 to {}", options.len());
-                find_option(options, typed).map(|option| json!(option)).ok_or_else(none)
+                option_by_number_or_text(options, typed).map(|option| json!(option)).ok_or_else(none)
             }
             AnswerFormat::Text { most } => match typed.chars().count() {
                 0 => Err("a few words".to_owned()),
@@ -223,7 +223,7 @@ impl AnswerFormat {
 }
 
 /// Finds an option by its number, counted from 1, or by its text.
-fn find_option<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
+fn option_by_number_or_text<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
     let numbered = typed.parse::<usize>().ok().and_then(|number| options.get(number.checked_sub(1)?));
     numbered.or_else(|| options.iter().find(|option| option.eq_ignore_ascii_case(typed)))
 }
@@ -303,7 +303,7 @@ mod tests {
         Questionnaire::parse(Path::new("questions/effort.toml"), text).map_err(|error| error.to_string())
     }
 
-    const EFFORT_QUESTIONNAIRE: &str = r#"
+    const SAMPLE_QUESTIONNAIRE: &str = r#"
 title = "Effort"
 when = "weeks"
 weeks = [4, 12]
@@ -335,8 +335,8 @@ min = 0.0
 "#;
 
     #[test]
-    fn parse_answer_follows_the_format() {
-        let effort = read(EFFORT_QUESTIONNAIRE).expect("it reads");
+    fn parse_answer_depends_on_the_format() {
+        let effort = read(SAMPLE_QUESTIONNAIRE).expect("it reads");
         assert_eq!(effort.name, "effort");
         assert!(effort.is_due_after(4) && !effort.is_due_after(5));
         let value = |at: usize, typed: &str| effort.questions[at].form.parse_answer(typed);
@@ -360,7 +360,7 @@ min = 0.0
             ("when = \"weeks\"", "when = \"sometimes\"", "line 3"),
             ("low = \"easy\"", "lowest = \"easy\"", "lowest is not a key of this form"),
         ] {
-            let error = read(&EFFORT_QUESTIONNAIRE.replace(from, to)).expect_err(to);
+            let error = read(&SAMPLE_QUESTIONNAIRE.replace(from, to)).expect_err(to);
             assert!(error.contains(part), "{error}");
         }
     }

@@ -153,7 +153,7 @@ impl fmt::Display for VisitSummary {
 }
 
 /// Returns the visits in which a participant finished the study, for labels that have no run and did not withdraw.
-pub fn finished_without_run<'a>(
+pub fn finished_visits_without_run<'a>(
     lines: &'a BTreeSet<VisitLine>,
     with_runs: &BTreeSet<&str>,
 ) -> Vec<&'a VisitLine> {

@@ -21,11 +21,11 @@ pub struct ParameterNumbers(BTreeMap<String, f64>);
 impl ParameterNumbers {
     /// Returns the numbers in the bundled parameters.
     pub fn bundled() -> ParameterNumbers {
-        ParameterNumbers::for_params(&Params::bundled())
+        ParameterNumbers::from_params(&Params::bundled())
     }
 
     /// Collects the numbers in `params`.
-    pub fn for_params(params: &Params) -> ParameterNumbers {
+    pub fn from_params(params: &Params) -> ParameterNumbers {
         let mut numbers = ParameterNumbers::default();
         numbers.collect_numbers("", &serde_json::to_value(params).unwrap_or(Value::Null));
         numbers
@@ -132,7 +132,7 @@ mod tests {
     fn placeholders_are_replaced_by_parameter_values() {
         let mut params = Params::bundled();
         params.operations.base_outage_prob = 0.045;
-        let numbers = ParameterNumbers::for_params(&params);
+        let numbers = ParameterNumbers::from_params(&params);
         assert_eq!(
             numbers.substitute(
                 "{operations.base_outage_prob:%} of {\"A\": 1} {leads.lead_acquisition_cost:$} {x.y} {"
@@ -249,7 +249,7 @@ mod tests {
         params.market_research.market_research_discover_prob = 0.25;
         params.ceo_posts.multiplier_half_life_days = 4.0;
         params.limits.prediction_horizons_days[1] = 35;
-        let changed = ParameterNumbers::for_params(&params);
+        let changed = ParameterNumbers::from_params(&params);
         assert!(changed.substitute(study.cost).contains("$1,000 for 3"));
         assert!(changed.substitute(study.effect).contains("15 and 2 %."));
         assert!(changed.substitute(find.effect).starts_with("2.5 attempts in ten find"));

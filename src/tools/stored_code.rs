@@ -25,7 +25,7 @@ pub struct StoredCode {
 
 impl NamedCode {
     /// Returns the planned call that stores the code in a section of the notebook.
-    pub(super) fn store(self, what: NotebookSection) -> PlannedCall<StoredCode> {
+    pub(super) fn planned_store(self, what: NotebookSection) -> PlannedCall<StoredCode> {
         let NamedCode { name, code } = self;
         let answer = StoredCode { name: name.clone(), code_length: code.chars().count() };
         PlannedCall::with_notebook_change(NotebookChange::Store { section: what, name, code }, answer)
@@ -43,7 +43,7 @@ pub struct RemainingNames {
 
 impl RemainingNames {
     /// Returns the planned call that removes the code stored under a name.
-    pub(super) fn after_removal(
+    pub(super) fn planned_removal(
         statements: &NamedStatements,
         what: NotebookSection,
         name: String,

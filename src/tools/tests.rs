@@ -47,7 +47,7 @@ impl TestCompany {
     }
 
     /// Returns the code and field of an expected rejection. Checks that the call has changed nothing.
-    fn call_rejected(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
+    fn expect_rejection(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
         let before = self.world.part_hashes();
         let refusal =
             self.try_call(name, arguments.clone()).expect_err(&format!("{name} {arguments} is invalid"));
@@ -64,7 +64,7 @@ impl TestCompany {
 
     fn assert_rejections(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
         for (arguments, code, field) in cases {
-            let (own_code, own_field) = self.call_rejected(name, arguments.clone());
+            let (own_code, own_field) = self.expect_rejection(name, arguments.clone());
             assert_eq!((own_code, own_field.as_deref().unwrap_or("")), (*code, *field), "{name} {arguments}");
         }
         let spec = find(name).expect("the tool exists").spec();
@@ -267,7 +267,7 @@ fn set_ads_strength_applies_nothing_after_an_error() {
     );
     // Nothing is applied if a later scope is invalid.
     let wrong = json!({"global_strength": 0.4, "by_group": {"S2": 0.1}, "by_customer": {"5": 3}});
-    assert_eq!(company.call_rejected("set_ads_strength", wrong).0, "strength_out_of_range");
+    assert_eq!(company.expect_rejection("set_ads_strength", wrong).0, "strength_out_of_range");
     let data =
         company.call("set_ads_strength", json!({"global_strength": 0.05, "by_customer": {" 42 ": 0.5}}));
     assert_eq!(data, json!({"global": 0.05, "by_group": {}, "by_customer": {"42": 0.5}}));
@@ -600,7 +600,7 @@ fn reject_enterprise_deal_ends_threads() {
     ]});
     assert_eq!(data, expected);
     // A rejected lead is lost; a subscriber keeps the subscription.
-    let again = company.call_rejected("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
+    let again = company.expect_rejection("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
     assert_eq!(again.0, "no_subscription");
     company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
     assert_eq!(company.call("reject_enterprise_deal", deal(json!(4)))["results"][0]["success"], true);
@@ -613,7 +613,7 @@ fn read_tools_return_cost_info_and_day() {
     assert_eq!(costs["model_tiers"]["4"]["cost_per_usage_unit"], 0.012);
     assert_eq!(costs["capacity_tiers"]["1"], json!({"capacity_units": 200000, "cost_per_day": 215}));
     assert_eq!(company.call("get_vars", json!({})), json!({"current_day": 0}));
-    assert_eq!(company.call_rejected("get_vars", json!({"day": 1})).0, "unknown_argument");
+    assert_eq!(company.expect_rejection("get_vars", json!({"day": 1})).0, "unknown_argument");
 }
 
 #[test]
@@ -654,7 +654,7 @@ fn post_social_media_allows_one_post_per_day() {
         (json!({"content": "Hi", "reply_to_post_id": "1"}), "wrong_type", Some("reply_to_post_id")),
         (json!({"content": "Hi", "to": 1}), "unknown_argument", Some("to")),
     ] {
-        let (own_code, own_field) = company.call_rejected("post_social_media", arguments);
+        let (own_code, own_field) = company.expect_rejection("post_social_media", arguments);
         assert_eq!((own_code, own_field.as_deref()), (code, field));
     }
     let content = "\u{fc}".repeat(280);
@@ -663,7 +663,7 @@ fn post_social_media_allows_one_post_per_day() {
         json!({"agent_post_id": 1, "day": 0, "content": content, "reply_to_post_id": null})
     );
     assert_eq!(
-        company.call_rejected("post_social_media", json!({"content": "More."})),
+        company.expect_rejection("post_social_media", json!({"content": "More."})),
         ("already_posted", None)
     );
     company.world.day = 7;
@@ -741,7 +741,7 @@ fn running_project_is_rejected_before_missing_funds() {
     company.world.finance.cash = 1.0;
     for (tier, code) in [(0, "rd_tier_unknown"), (2, "rd_in_progress"), (1, "insufficient_funds")] {
         assert_eq!(
-            company.call_rejected("start_research_project", json!({"tier": tier})).0,
+            company.expect_rejection("start_research_project", json!({"tier": tier})).0,
             code,
             "tier {tier}"
         );

@@ -13,7 +13,7 @@ fn word_indexes(customer: u32) -> [u32; 5] {
 }
 
 /// Returns the company word in the address of an enterprise.
-pub(super) fn enterprise_word(customer: u32, parts: &EmailParts) -> &str {
+pub(super) fn company_word(customer: u32, parts: &EmailParts) -> &str {
     let [_, _, company, ..] = word_indexes(customer);
     let words = &parts.company_domains;
     words.get(company as usize % words.len().max(1)).map_or("", String::as_str)
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn addresses_are_lower_case_and_of_four_forms() {
+    fn addresses_are_lowercase_in_four_forms() {
         let parts = Params::bundled().personas.email;
         let local = format!("{}.{}", parts.first_names[28], parts.last_names[41]).to_lowercase();
         assert_eq!(enterprise_address(2, &parts), format!("{local}@{}.biz", parts.company_domains[0]));

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Deserialize;
 
-use super::address::enterprise_word;
+use super::address::company_word;
 use novamind_world::params::EmailParts;
 
 /// Words of enterprise names, from `assets/voice/companies.toml`.
@@ -49,7 +49,7 @@ impl EnterpriseNames {
 
     /// Returns the name of an enterprise, which consists of the company word of its address and sometimes another word.
     pub fn name(&self, customer: u32) -> String {
-        let first = name_from_address_word(enterprise_word(customer, &self.email));
+        let first = name_from_address_word(company_word(customer, &self.email));
         let mut draw =
             HashSequence(mix_bits(self.seed ^ u64::from(customer).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
         let words = NameWords::bundled();
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_short_words_and_rarely_shared() {
+    fn enterprise_names_are_short_and_rarely_equal() {
         let mut count: BTreeMap<String, u32> = BTreeMap::new();
         let names = names(42);
         for customer in (10_000..45_000).step_by(10) {

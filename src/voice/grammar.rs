@@ -243,7 +243,7 @@ impl<'a> Expansion<'a> {
 mod tests {
     use super::*;
 
-    const SAMPLE: &str = r#"
+    const SAMPLE_GRAMMAR: &str = r#"
         given = ["name", "group"]
         maybe = ["price"]
         tags = ["new"]
@@ -258,7 +258,7 @@ mod tests {
         "#;
 
     fn sample() -> Grammar {
-        Grammar::parse(SAMPLE).expect("a grammar")
+        Grammar::parse(SAMPLE_GRAMMAR).expect("a grammar")
     }
 
     fn all_expansions(rule: &str, context: &Context) -> BTreeSet<String> {
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn specific_rule_precedes_general_rule() {
-        let special = SAMPLE
+        let special = SAMPLE_GRAMMAR
             .replace("[rules.works]", "[rules.work_of]")
             .replace("work = [\"reports\"]", "work = [\"reports\"]\n\"work.S1\" = [\"sketches\"]");
         let grammar = Grammar::parse(&special).expect("a grammar");

@@ -8,7 +8,10 @@
 
 mod phrases;
 
-use phrases::{ACCEPTANCE, APART, DOWNGRADE, ENDINGS, FAR, LATE_ENDINGS, NEAR, Phrases, THREAT, UPGRADE};
+use phrases::{
+    ACCEPTANCE, DOWNGRADE, ENDINGS, FAR_COUNTER_OFFER, LATE_ENDINGS, MODERATE_COUNTER_OFFER,
+    NEAR_COUNTER_OFFER, Phrases, THREAT, UPGRADE,
+};
 
 use novamind_base::formatting::grouped_number;
 use novamind_world::events::{ThreadTurn, TurnContent};
@@ -61,9 +64,9 @@ fn format_price(price: f64) -> String {
 fn phrases_for_gap(asked: f64, offered: f64) -> &'static Phrases {
     let gap = if offered > 0.0 { (offered - asked) / offered } else { 0.0 };
     match gap {
-        _ if gap < PRICE_GAPS.0 => &NEAR,
-        _ if gap <= PRICE_GAPS.1 => &APART,
-        _ => &FAR,
+        _ if gap < PRICE_GAPS.0 => &NEAR_COUNTER_OFFER,
+        _ if gap <= PRICE_GAPS.1 => &MODERATE_COUNTER_OFFER,
+        _ => &FAR_COUNTER_OFFER,
     }
 }
 
@@ -164,7 +167,7 @@ mod tests {
     use novamind_world::identifiers::Plan;
     use novamind_world::params::Params;
 
-    fn turn(message: u32, content: TurnContent) -> ThreadTurn {
+    fn turn_with_content(message: u32, content: TurnContent) -> ThreadTurn {
         ThreadTurn {
             message,
             thread: 1,
@@ -193,14 +196,14 @@ mod tests {
     }
 
     #[test]
-    fn no_two_of_sixty_messages_are_equal() {
+    fn sixty_consecutive_messages_differ() {
         let personas = Params::bundled().personas;
         for content in situations() {
             // All messages have the same situation, so repetition is most likely.
             let mut recent: VecDeque<String> = VecDeque::new();
             let mut all = BTreeSet::new();
             for number in 0..500 {
-                let text = message(&turn(number, content.clone()), &personas);
+                let text = message(&turn_with_content(number, content.clone()), &personas);
                 assert!(!recent.contains(&text), "{text}");
                 all.insert(text.clone());
                 recent.push_back(text);
@@ -213,8 +216,16 @@ mod tests {
     }
 
     #[test]
-    fn pairs_are_many_and_the_stride_visits_all_of_them() {
-        for phrases in [&THREAT, &UPGRADE, &DOWNGRADE, &NEAR, &APART, &FAR, &ACCEPTANCE] {
+    fn stride_visits_all_phrase_pairs() {
+        for phrases in [
+            &THREAT,
+            &UPGRADE,
+            &DOWNGRADE,
+            &NEAR_COUNTER_OFFER,
+            &MODERATE_COUNTER_OFFER,
+            &FAR_COUNTER_OFFER,
+            &ACCEPTANCE,
+        ] {
             let pairs = (phrases.openings.len() * phrases.cores.len()) as u32;
             assert!(pairs > 60);
             let visited: BTreeSet<u32> = (0..pairs).map(|message| message * STRIDE % pairs).collect();
@@ -241,7 +252,7 @@ mod tests {
             &["plan b", "$31.50"],
         ]) {
             for number in 0..400 {
-                let text = message(&turn(number, content.clone()), &personas);
+                let text = message(&turn_with_content(number, content.clone()), &personas);
                 assert!(!text.contains(['{', '}']) && !text.contains("  "), "{text}");
                 let lowercase = text.to_lowercase();
                 assert!(facts.iter().all(|fact| lowercase.contains(fact)), "{facts:?} in {text}");
@@ -259,10 +270,10 @@ mod tests {
         let personas = Params::bundled().personas;
         let offering = Offering { plan: Plan::A, price: 28.0 };
         for content in [TurnContent::Opening, TurnContent::Rejection, TurnContent::Offer(vec![offering])] {
-            assert_eq!(message(&turn(3, content), &personas), "");
+            assert_eq!(message(&turn_with_content(3, content), &personas), "");
         }
         assert_eq!(
-            message(&turn(3, TurnContent::Closing(offering)), &personas),
+            message(&turn_with_content(3, TurnContent::Closing(offering)), &personas),
             "Deal closed with customer 43: plan A at $28.00 per seat and month, 1,200 seats."
         );
     }

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn notices_of_negotiations_name_the_company_if_it_is_known() {
+    fn negotiation_notices_name_the_enterprise_if_it_is_known() {
         let leave = notice_text(&Notice::ChurnThreat { customer: 7 }, None);
         assert!(leave.starts_with("Customer 7 threatens to leave"), "{leave}");
         let up = notice_text(&Notice::PlanChangeRequest { customer: 9, upgrade: true }, None);
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn readings_show_value_direction_and_band() {
+    fn reading_notices_show_value_direction_and_trend() {
         let reading = Reading {
             measured_day: 1,
             value: 48.3,
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reaction_names_views_beginning_tone_and_groups() {
+    fn reaction_text_contains_views_preview_tone_and_groups() {
         let posts = novamind_world::params::Params::bundled().ceo_posts;
         let group = |id| novamind_world::identifiers::Group::parse(id).expect("a group");
         let strongest = [Some((group("S3"), 0.87)), Some((group("S1"), -0.45)), Some((group("E1"), 0.02))];

@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn answer_on_thread_reports_a_result_a_refusal_and_a_panic() {
+    fn answer_on_thread_reports_a_result_a_rejection_and_a_panic() {
         let answered = |work: fn() -> Result<Option<u32>, Rejection>| {
             let (sender, news) = channel();
             answer_on_thread(sender, work, report);

@@ -13,7 +13,7 @@ use novamind_insight::{
     BranchComparison, DecisionEdit, Futures, RecordedDecision, WhatIf, create_branch_with_decisions,
     record_what_if_inspection,
 };
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Access, Session};
 use novamind_tools::Rejection;
 
@@ -94,7 +94,7 @@ impl SessionThread {
                 let remark = format!(
                     "now playing run {id}, simulated to day {day}; run {parent} is unchanged{refused}"
                 );
-                let _ = self.detach(LeavingCause::Quit);
+                let _ = self.detach(DetachCause::Quit);
                 self.show_opened_run(Ok(adopted.session), "", Some(remark));
             }
             Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),

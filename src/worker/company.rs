@@ -208,7 +208,7 @@ impl DisplayedCompany {
     }
 
     /// Returns the current value of a tool's argument as a number, or 0 if the argument has no number.
-    pub fn setting(&self, tool: ToolId, argument: &str) -> f64 {
+    pub fn current_setting(&self, tool: ToolId, argument: &str) -> f64 {
         self.settings.get(&tool).and_then(|all| all.get(argument)).and_then(Value::as_f64).unwrap_or(0.0)
     }
 
@@ -221,14 +221,14 @@ impl DisplayedCompany {
     }
 
     /// Returns the values of a figure in the last `count` weeks, oldest first.
-    pub fn trend(&self, count: usize, figure: impl Fn(&WeekFigures) -> f64) -> Vec<f64> {
+    pub fn recent_values(&self, count: usize, figure: impl Fn(&WeekFigures) -> f64) -> Vec<f64> {
         let from = self.weeks.len().saturating_sub(count);
         self.weeks[from..].iter().map(figure).collect()
     }
 
     /// Returns the mean of a figure over the last four weeks, or `None` before the first week.
     pub fn four_week_mean(&self, figure: impl Fn(&WeekFigures) -> f64) -> Option<f64> {
-        let last = self.trend(4, figure);
+        let last = self.recent_values(4, figure);
         (!last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
     }
 }
@@ -246,11 +246,11 @@ mod tests {
     use crate::test_kit::played_session;
 
     #[test]
-    fn trend_and_mean_use_the_last_weeks() {
+    fn recent_values_and_mean_use_the_last_weeks() {
         let company = DisplayedCompany::from_session(&played_session(6));
         let payments: Vec<f64> = company.weeks.iter().map(|week| week.payments).collect();
-        assert_eq!(company.trend(4, |week| week.payments), payments[2..]);
-        assert_eq!(company.trend(9, |week| week.payments), payments);
+        assert_eq!(company.recent_values(4, |week| week.payments), payments[2..]);
+        assert_eq!(company.recent_values(9, |week| week.payments), payments);
         let mean = company.four_week_mean(|week| week.payments).expect("weeks have passed");
         assert!((mean - payments[2..].iter().sum::<f64>() / 4.0).abs() < 1e-9);
         assert_eq!(

@@ -116,7 +116,7 @@ impl SessionThread {
         let rows = self.inspection_session(true).and_then(|session| {
             let interrupt = session.inspect().hidden_query_interrupt()?;
             // From here on, the user can stop this query.
-            let ticket = interrupt.ticket();
+            let ticket = interrupt.issue_ticket();
             hold(Some(interrupt));
             session.inspect().query_hidden_tables_with_ticket(ticket, sql, day)
         });
@@ -214,7 +214,7 @@ fn run_inspection(
             match session.inspect().customer_view(*customer, Some(*day))? {
                 CustomerView::Individual(view) => {
                     let days = view.days.iter().map(|individual_day| individual_day.satisfaction).collect();
-                    let day = view.day_shown().map_or(view.signup.day, |day_shown| day_shown.day);
+                    let day = view.shown_state().map_or(view.signup.day, |day_shown| day_shown.day);
                     let found = result_with_curve(describe_individual(&view), SATISFACTION_PREFIX, days);
                     return Ok(InspectionAnswer { day: Some(day), ..found });
                 }

@@ -6,8 +6,8 @@ use super::background::answer_on_thread;
 use super::{ActiveRun, SessionThread};
 use crate::message::Response;
 use crate::request::LessonRequest;
-use novamind_course::{PlayedPart, retry_step, start_part, submit_guess, take_hint};
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_course::{FinishedPart, retry_step, start_part, submit_guess, take_hint};
+use novamind_record::trajectory::record::DetachCause;
 use novamind_rules::calls_for_waiting_threads;
 use novamind_session::Session;
 use novamind_tools::Rejection;
@@ -41,7 +41,7 @@ impl SessionThread {
         let Some(ActiveRun::Live(session)) = &self.active_run else { return };
         match begin(session) {
             Ok(begun) => {
-                let _ = self.detach(LeavingCause::Quit);
+                let _ = self.detach(DetachCause::Quit);
                 self.show_opened_run(Ok(begun), "", Some(remark.to_owned()));
             }
             Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),
@@ -51,7 +51,7 @@ impl SessionThread {
     /// Computes the debrief on a background thread, because this simulates the reference play.
     fn compute_debrief(&mut self) {
         let Some(open) = &mut self.active_run else { return };
-        let (played, news) = (PlayedPart::from_session(open.session()), self.messages.clone());
+        let (played, news) = (FinishedPart::from_session(open.session()), self.messages.clone());
         let work = move || played.map(|played| Some(played.debrief(calls_for_waiting_threads)));
         answer_on_thread(news, work, |debrief| Response::DebriefReady(Arc::new(debrief)));
     }

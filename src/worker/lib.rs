@@ -45,7 +45,7 @@ use novamind_database::{Interrupt, QueryResult};
 use novamind_insight::{AnalysisCache, CauseAnalysis, WhatIf};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::trajectory::record::{LeavingCause, QuerySource};
+use novamind_record::trajectory::record::{DetachCause, QuerySource};
 use novamind_session::{Interface, Playback, SeekTarget, Session};
 use novamind_tools::Rejection;
 use open_run::OpenRun;
@@ -81,7 +81,7 @@ pub enum Job {
     /// Save preferences for the next start.
     SavePreferences(Preferences),
     /// Save and close the run.
-    Close(LeavingCause),
+    Close(DetachCause),
     /// Save, close the run and end the thread.
     ShutDown,
 }
@@ -254,7 +254,7 @@ impl SessionThread {
             }
             Job::Close(cause) => self.close_run(cause),
             // A run that is still open was not closed by the user: the terminal was closed.
-            Job::ShutDown => self.close_run(LeavingCause::Hangup),
+            Job::ShutDown => self.close_run(DetachCause::Hangup),
             Job::AnswerQuestion(answer) => answer(self),
             Job::Reconnect => drop(self.with_run(|run| run.queries.connect(run.session))),
             Job::RecordQuery(sql, answer, took, via) => {
@@ -293,7 +293,7 @@ impl SessionThread {
     }
 
     /// Records that the program detaches from the run, and saves the run.
-    fn detach(&mut self, cause: LeavingCause) -> Result<(), RunError> {
+    fn detach(&mut self, cause: DetachCause) -> Result<(), RunError> {
         match &mut self.active_run {
             Some(ActiveRun::Live(session)) => {
                 session.activity().detach(cause);
@@ -304,7 +304,7 @@ impl SessionThread {
         }
     }
 
-    fn close_run(&mut self, cause: LeavingCause) {
+    fn close_run(&mut self, cause: DetachCause) {
         let problem = self.detach(cause).err();
         (self.active_run, self.last_company, self.next_week_at, self.repair_at, self.next_limit_check) =
             (None, None, None, None, None);

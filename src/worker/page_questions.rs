@@ -15,14 +15,14 @@ use novamind_tools::{Rejection, ToolId};
 
 /// A question for the preview of a tool call.
 #[derive(Debug, Clone)]
-pub struct CallCheck {
+pub struct PreviewCallQuestion {
     /// Tool to call.
     pub tool: ToolId,
     /// Arguments of the call.
     pub arguments: Value,
 }
 
-impl Question for CallCheck {
+impl Question for PreviewCallQuestion {
     type Answer = Preview;
     type Progress = ();
 
@@ -43,7 +43,7 @@ impl Question for CurveQuestion {
     type Progress = ();
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
-        let found = thread.curve_of(self.0);
+        let found = thread.participation_curve(self.0);
         thread.report_record_loss();
         reply.answer(found);
     }
@@ -112,7 +112,7 @@ impl Question for OpponentsQuestion {
 impl SessionThread {
     /// Returns the participation curve of a group on the displayed day. The inspection of true values is recorded in
     /// the run, not in the session of a playback.
-    fn curve_of(&mut self, group: Group) -> Result<CurveExplorer, Rejection> {
+    fn participation_curve(&mut self, group: Group) -> Result<CurveExplorer, Rejection> {
         let none_open = || Rejection::new("not_possible", "no run is open");
         let (is_allowed, day) = match self.active_run.as_ref().ok_or_else(none_open)? {
             ActiveRun::Live(session) => (session.can_inspect(), session.day()),

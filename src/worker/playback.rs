@@ -13,7 +13,7 @@ use crate::request::RecordSource;
 use novamind_record::error::RunError;
 use novamind_record::folder::runs::{find_run, find_run_to_read};
 use novamind_record::mode::Mode;
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Playback, SeekResult, SeekTarget};
 
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(400);
@@ -93,7 +93,7 @@ impl SessionThread {
             }
         };
         // Ignore errors: all confirmed actions are on the disk; only database rows can be missing.
-        let _ = self.detach(LeavingCause::Quit);
+        let _ = self.detach(DetachCause::Quit);
         self.queries.connect(playback.session());
         let company = Arc::new(playback_company(&playback, None));
         let place = playback.position();

@@ -6,7 +6,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_tui::glyphs::Glyphs;
 
-const FILE: &str = "console.toml";
+const PREFERENCES_FILE: &str = "console.toml";
 
 /// Preferences for the appearance of the console.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,7 +23,7 @@ pub struct Preferences {
 impl Preferences {
     /// Loads the saved preferences. Ignores an unreadable file, which is replaced when preferences are saved.
     pub fn load(configuration: &Configuration) -> Preferences {
-        let file = configuration.read_file(FILE).ok().flatten();
+        let file = configuration.read_file(PREFERENCES_FILE).ok().flatten();
         file.and_then(|source| toml::from_str(&source.text).ok()).unwrap_or_default()
     }
 
@@ -36,7 +36,7 @@ impl Preferences {
         let before = Preferences::load(configuration);
         let all = Preferences { theme: self.theme.or(before.theme), marker: self.marker.or(before.marker) };
         std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-        let (path, draft) = (folder.join(FILE), folder.join("console.draft"));
+        let (path, draft) = (folder.join(PREFERENCES_FILE), folder.join("console.draft"));
         let text = toml::to_string(&all).expect("names are plain values");
         std::fs::write(&draft, text).map_err(RunError::io(&draft))?;
         std::fs::rename(&draft, &path).map_err(RunError::io(&path))
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn saving_one_choice_keeps_the_others() {
+    fn save_keeps_preferences_that_are_not_set() {
         let folder = tempfile::tempdir().expect("a folder");
         let configuration = Configuration { folder: Some(folder.path().join("not-yet")), voice: None };
         assert_eq!(Preferences::load(&configuration), Preferences::default());

@@ -153,7 +153,7 @@ impl QueryThreads {
 
     pub(super) fn ticket(&self) -> Option<QueryTicket> {
         let interrupt = self.interrupt.lock().unwrap_or_else(PoisonError::into_inner);
-        interrupt.as_ref().map(Interrupt::ticket)
+        interrupt.as_ref().map(Interrupt::issue_ticket)
     }
 
     pub(super) fn stop(&self) {

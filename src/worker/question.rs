@@ -49,7 +49,7 @@ impl<Q: Question> Default for ReplyState<Q> {
 }
 
 /// Locks a slot. Ignores poisoning, because no code panics between dependent changes.
-fn lock<Q: Question>(slot: &Slot<Q>) -> MutexGuard<'_, ReplyState<Q>> {
+fn lock_slot<Q: Question>(slot: &Slot<Q>) -> MutexGuard<'_, ReplyState<Q>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -87,12 +87,12 @@ impl<Q: Question> Pending<Q> {
 
     /// Returns the last reported progress of the unanswered question.
     pub fn progress(&self) -> Option<Q::Progress> {
-        lock(&self.0.as_ref()?.1).progress
+        lock_slot(&self.0.as_ref()?.1).progress
     }
 
     /// Takes the question and its answer, if the answer has been received.
     pub fn try_take(&mut self) -> Option<(Q, Result<Q::Answer, Rejection>)> {
-        let answer = lock(&self.0.as_ref()?.1).answer.take()?;
+        let answer = lock_slot(&self.0.as_ref()?.1).answer.take()?;
         let (question, _) = self.0.take()?;
         Some((question, answer))
     }
@@ -195,7 +195,7 @@ impl<Q: Question> Reply<Q> {
         let slot = self.slot.clone();
         let put = Box::new(move || {
             if let Some(slot) = slot.upgrade() {
-                put(&mut lock(&slot));
+                put(&mut lock_slot(&slot));
             }
         });
         // Ignore the error: the receiver has been dropped when the program ends.
@@ -221,7 +221,7 @@ mod test_support {
         /// Sets the answer to the pending question.
         pub fn set_answer(&self, answer: Result<Q::Answer, Rejection>) {
             if let Some((_, slot)) = &self.0 {
-                lock(slot).answer = Some(answer);
+                lock_slot(slot).answer = Some(answer);
             }
         }
 
@@ -229,7 +229,7 @@ mod test_support {
         #[cfg(any(test, feature = "test-kit"))]
         pub fn set_progress(&self, progress: Q::Progress) {
             if let Some((_, slot)) = &self.0 {
-                lock(slot).progress = Some(progress);
+                lock_slot(slot).progress = Some(progress);
             }
         }
     }

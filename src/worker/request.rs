@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use novamind_insight::DecisionEdit;
-use novamind_record::consent::ConsentGiven;
+use novamind_record::consent::ConsentDetails;
 use novamind_record::mode::Mode;
 use novamind_report::class::ClassDisplayOptions;
 use novamind_session::{Access, Forecasts, NewRun, SeekTarget};
@@ -109,7 +109,7 @@ pub enum StudyRequest {
         rejected_labels: u32,
     },
     /// The participant agrees to the consent text.
-    Agree(ConsentGiven),
+    Agree(ConsentDetails),
     /// The participant declines the consent text.
     Decline,
     /// The participant skips the practice run.

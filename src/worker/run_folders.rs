@@ -13,7 +13,7 @@ use novamind_record::folder::preview::{RunPreview, read_preview};
 use novamind_record::folder::runs::{
     RunSummary, all_run_folders, delete_run, find_run, find_run_to_read, list_runs,
 };
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Access, NewRun, SealKey, Session, Storage, abandon_run, recover};
 use novamind_tools::Rejection;
@@ -42,11 +42,11 @@ impl Question for PreviewQuestion {
 
 impl SessionThread {
     pub(super) fn list_runs(&self, done: Option<Result<String, String>>) {
-        self.send_response(Response::Runs(done, self.listed_runs().map_err(|error| error.to_string())));
+        self.send_response(Response::Runs(done, self.read_run_list().map_err(|error| error.to_string())));
     }
 
     /// Lists the runs in the runs folder. For experimenters, lists the runs of all participants.
-    fn listed_runs(&self) -> Result<Vec<RunSummary>, RunError> {
+    fn read_run_list(&self) -> Result<Vec<RunSummary>, RunError> {
         if !self.lists_all_participants {
             return list_runs(&self.runs_folder);
         }
@@ -108,7 +108,7 @@ impl SessionThread {
         });
         if opened.is_ok() {
             // Ignore errors: all confirmed actions are on the disk; only database rows can be missing.
-            let _ = self.detach(LeavingCause::Quit);
+            let _ = self.detach(DetachCause::Quit);
         }
         self.show_opened_run(opened, id, None);
     }

@@ -47,7 +47,7 @@ impl SessionThread {
                 self.start_participant(&label, refused)
             }
             StudyRequest::Agree(consent_given) => {
-                self.with_study(|active_study| active_study.consent = Some(consent_given.given_now()));
+                self.with_study(|active_study| active_study.consent = Some(consent_given.agree_now()));
                 self.send_next_step();
             }
             StudyRequest::Decline => {

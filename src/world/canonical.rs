@@ -104,14 +104,14 @@ pub trait Canonical {
 }
 
 /// Returns the hash of a value's canonical bytes.
-pub fn hash_of(value: &impl Canonical) -> blake3::Hash {
+pub fn canonical_hash(value: &impl Canonical) -> blake3::Hash {
     let mut hasher = CanonicalHasher::default();
     value.feed(&mut hasher);
     hasher.finish()
 }
 
 /// Returns the canonical bytes of a value.
-pub fn bytes_of(value: &impl Canonical) -> Vec<u8> {
+pub fn canonical_bytes(value: &impl Canonical) -> Vec<u8> {
     let mut collector = CanonicalHasher::collector(0);
     value.feed(&mut collector);
     collector.into_bytes()
@@ -318,7 +318,7 @@ mod tests {
     #[test]
     fn restore_inverts_feed() {
         let pair = Pair { first: 7, second: vec![0.1, f64::MIN_POSITIVE] };
-        let read: Pair = restore_all(&bytes_of(&pair)).expect("it reads");
+        let read: Pair = restore_all(&canonical_bytes(&pair)).expect("it reads");
         assert_eq!((read.first, read.second), (pair.first, pair.second));
     }
 
@@ -326,7 +326,7 @@ mod tests {
     fn list_boundaries_change_the_hash() {
         let left = (vec![1u32, 2], vec![3u32]);
         let right = (vec![1u32], vec![2u32, 3]);
-        assert_ne!(hash_of(&left), hash_of(&right));
+        assert_ne!(canonical_hash(&left), canonical_hash(&right));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! is applied. Applying a command cannot fail.
 //!
 //! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
-//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
+//! its result ([`World::resolve_names`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::messages::{OfferDraft, OfferMessage};
 use super::events::{Attempt, Project, Study};
@@ -88,14 +88,14 @@ impl World {
             Command::Set(change) => ResolvedCommand::Set(change),
             Command::StartResearch(tier) => {
                 let project = research::draw_project(&self.product, self.day, tier, params, streams);
-                ResolvedCommand::StartResearch(project, f64::from(params.research(tier).cost))
+                ResolvedCommand::StartResearch(project, f64::from(params.research_tier(tier).cost))
             }
             Command::ResearchMarket => {
                 ResolvedCommand::ResearchMarket(self.market.next_attempt(params, streams))
             }
             Command::ResearchGroup(group, target) => {
                 let study = self.market.plan_study(group, target, self.day, params);
-                ResolvedCommand::ResearchGroup(study, params.level(target).cost)
+                ResolvedCommand::ResearchGroup(study, params.study_level(target).cost)
             }
             Command::ReadInsights(group) => {
                 ResolvedCommand::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))

@@ -77,8 +77,8 @@ pub fn step_day_observed(
     }
 
     // Measure usage, then compute the service health at this usage.
-    let metered = usage::meter(customers, &morning, params, facts);
-    let service = service::observe_service(
+    let metered = usage::measure_usage(customers, &morning, params, facts);
+    let service = service::compute_service(
         metered.total,
         &morning,
         fixed_inputs.fixed_service_on(day),
@@ -259,7 +259,7 @@ pub fn compute_morning(world: &World, params: &Params) -> Morning {
         weekday: params.calendar.weekly[(world.day % 7) as usize],
         month_day: params.calendar.monthly[(world.day % 30) as usize],
         quotas: ByPlan::from_fn(|plan| core.quotas[plan].units()),
-        multipliers: ByPlan::from_fn(|plan| params.model(core.tiers[plan]).quality_multiplier),
+        multipliers: ByPlan::from_fn(|plan| params.model_tier(core.tiers[plan]).quality_multiplier),
         product: ByGroup::from_fn(|group| world.product.quality(group, params)),
         shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
         expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
@@ -318,7 +318,7 @@ mod wiring_tests;
 pub(crate) mod tests {
     use super::*;
     use crate::morning::tests::morning;
-    use crate::test_kit::policy_p;
+    use crate::test_kit::apply_policy_p;
 
     fn run(cash: f64, days: u32, prepare: impl Fn(&mut World)) -> Vec<DayFigures> {
         let (params, streams) = (Params::bundled(), Streams::new(42));
@@ -329,7 +329,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn idle_company_pays_85_dollars_a_day() {
+    fn company_without_actions_pays_85_dollars_per_day() {
         let days = run(1_000_000.0, 3, |_| {});
         assert_eq!((days[0].total_costs, days[0].cash), (85.0, 999_915.0));
         assert_eq!(days[2].cash, 999_745.0);
@@ -355,11 +355,11 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn week_of_policy_p_books_fixed_costs() {
+    fn policy_p_pays_fixed_costs_every_day() {
         let (params, streams) = (Params::bundled(), Streams::new(42));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
-        policy_p(&mut world);
+        apply_policy_p(&mut world);
         let mut booked = std::collections::BTreeMap::new();
         for _ in 0..7 {
             step_day(&mut world, &params, &streams, &mut facts);
@@ -380,7 +380,7 @@ pub(crate) mod tests {
         let (params, streams) = (Params::bundled(), Streams::new(7));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
-        policy_p(&mut world);
+        apply_policy_p(&mut world);
         let (mut ledger, mut opened, mut ended) = (1_000_000.0, 0, 0);
         for _ in 0..120 {
             let (figures, _) = step_day(&mut world, &params, &streams, &mut facts);
@@ -402,14 +402,14 @@ pub(crate) mod tests {
                         .iter()
                         .filter(|o| o.status == crate::events::SubscriptionStatus::Subscribed)
                         .count()
-                    - ended_today(&facts),
+                    - individual_cancellations(&facts),
                 opened - ended
             );
         }
         assert!(opened > 1000 && ended > 100);
     }
 
-    fn ended_today(facts: &Facts) -> usize {
+    fn individual_cancellations(facts: &Facts) -> usize {
         facts.endings.iter().filter(|ending| !ending.group.is_enterprise()).count()
     }
 }

@@ -37,7 +37,7 @@ pub fn compute_cost(metered: &MeteredUsage, morning: &Morning, params: &Params) 
         true => ByPlan([morning.core.tiers[Plan::A]; Plan::ALL.len()]),
         false => morning.core.tiers,
     };
-    let cost = |plan| metered.by_plan[plan] as f64 * params.model(tiers[plan]).unit_cost;
+    let cost = |plan| metered.by_plan[plan] as f64 * params.model_tier(tiers[plan]).unit_cost;
     Plan::ALL.into_iter().map(cost).sum()
 }
 
@@ -51,7 +51,7 @@ pub fn pay_running_costs(
     params: &Params,
     facts: &mut Facts,
 ) -> f64 {
-    let capacity = f64::from(params.capacity(settings.core.capacity_tier).cost_per_day);
+    let capacity = f64::from(params.capacity_tier(settings.core.capacity_tier).cost_per_day);
     let general = [
         (Category::Capacity, capacity),
         (Category::Compute, compute_cost(metered, morning, params)),
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn exactly_zero_is_not_bankrupt() {
+    fn zero_cash_is_not_bankrupt() {
         let params = Params::bundled();
         assert!(!Finance { cash: 0.0 }.is_bankrupt(&params));
         assert!(Finance { cash: -1e-9 }.is_bankrupt(&params));

@@ -67,16 +67,16 @@ mod tests {
     use crate::random::Streams;
     use crate::settings::PerGroup;
     use crate::state::World;
-    use crate::test_kit::policy_p;
+    use crate::test_kit::apply_policy_p;
 
-    const LOAD: f64 = 1000.0;
+    const LOAD_FACTOR: f64 = 1000.0;
 
     /// Returns the world of a company at the end of day `eve`, with its parameters and streams.
-    fn company(eve: u32) -> (World, Params, Streams) {
+    fn company_at_end_of_day(eve: u32) -> (World, Params, Streams) {
         let (params, streams) = (Params::bundled(), Streams::new(9));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
-        policy_p(&mut world);
+        apply_policy_p(&mut world);
         world.settings.core.capacity_tier = 7;
         let ads = &mut world.settings.targeted_ads.targeted_spend;
         ads.insert(Channel::SearchAds, PerGroup::from([(Group::parse("S1").expect("a group"), 20_000.0)]));
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn fixed_inputs_stay_constant_and_others_change() {
-        let eve = company(89);
+        let eve = company_at_end_of_day(89);
         let held = |change: fn(&mut FixedInputs)| {
             let mut fixed_inputs = FixedInputs { from: 90, ..FixedInputs::default() };
             change(&mut fixed_inputs);
@@ -118,17 +118,20 @@ mod tests {
     #[test]
     fn fixed_competitors_cause_no_events() {
         let moves = |rivals: bool| {
-            let mut eve = company(89);
+            let mut eve = company_at_end_of_day(89);
             let fixed_inputs = FixedInputs { from: 90, competitors: rivals, ..FixedInputs::default() };
             (0..60).for_each(|_| eve.0 = next_day(&eve, &fixed_inputs).0);
             eve.0.market.competitors.len()
         };
-        assert_eq!((moves(true), moves(false) > 2), (company(89).0.market.competitors.len(), true));
+        assert_eq!(
+            (moves(true), moves(false) > 2),
+            (company_at_end_of_day(89).0.market.competitors.len(), true)
+        );
     }
 
     #[test]
     fn fixed_factors_replace_lead_factors() {
-        let mut eve = company(59);
+        let mut eve = company_at_end_of_day(59);
         eve.0.market.surges.push(Surge { day: 58, end_day: 70, multiplier: 4.0 });
         let leads =
             |fixed_inputs: FixedInputs| next_day(&eve, &FixedInputs { from: 60, ..fixed_inputs }).1.new_leads;
@@ -141,7 +144,7 @@ mod tests {
 
     #[test]
     fn fixed_service_determines_overload_and_noise() {
-        let eve = company(59);
+        let eve = company_at_end_of_day(59);
         let service = |load: f64, luck_of: u32| {
             let fixed_inputs = FixedInputs {
                 from: 60,
@@ -152,16 +155,16 @@ mod tests {
         };
         let free = next_day(&eve, &FixedInputs::default()).1;
         assert_eq!(service(1.0, 60), free);
-        assert!(service(LOAD, 60).overload > 0.0 && free.overload == 0.0);
+        assert!(service(LOAD_FACTOR, 60).overload > 0.0 && free.overload == 0.0);
         assert_ne!(service(1.0, 59).p95_ms, free.p95_ms);
         // The fixed service inputs do not change usage.
-        assert_eq!(service(LOAD, 60).total_usage, free.total_usage);
+        assert_eq!(service(LOAD_FACTOR, 60).total_usage, free.total_usage);
     }
 
     /// The service does not affect a lead's decision, so a lead decides the same with and without overload.
     #[test]
     fn service_does_not_affect_lead_decisions() {
-        let (world, params, streams) = company(59);
+        let (world, params, streams) = company_at_end_of_day(59);
         let decisions = |load: f64| -> BTreeMap<(Group, u32), bool> {
             let fixed_inputs = FixedInputs {
                 from: 60,
@@ -180,7 +183,7 @@ mod tests {
                 |arrival: &Arrival| ((arrival.group, arrival.n), signed.contains(&arrival.customer));
             facts.arrivals.iter().map(decided).collect()
         };
-        let (calm, strained) = (decisions(1.0), decisions(LOAD));
+        let (calm, strained) = (decisions(1.0), decisions(LOAD_FACTOR));
         let both: Vec<_> = calm.iter().filter(|(lead, _)| strained.contains_key(lead)).collect();
         assert!(both.len() > 20 && both.iter().any(|(_, signed)| **signed));
         assert!(both.into_iter().all(|(lead, signed)| strained[lead] == *signed));

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn segment_follows_from_the_identifier() {
+    fn identifier_determines_the_segment() {
         for group in Group::all() {
             assert_eq!(group.is_enterprise(), group.id().trim_start_matches("D_").starts_with('E'));
             assert_eq!(group.is_initially_known(), !group.id().starts_with("D_"));

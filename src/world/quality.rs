@@ -74,7 +74,7 @@ pub fn ads_effect(summed_strength: f64, ads: &Ads) -> f64 {
 
 /// The terms from which a customer's perceived quality is computed.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct Experience {
+pub struct QualityTerms {
     /// Delivered quality, less the service penalty if it applies.
     pub delivered: f64,
     /// Quality bonus from the relationship, negative below the neutral point.
@@ -92,8 +92,8 @@ pub struct Experience {
 /// Returns the perceived quality. The released simulator computes (delivered + relationship + tenure) quota - issues -
 /// ads. In the paper, all terms are multiplied by the quota factor.
 #[inline]
-pub fn perceived_quality(experience: Experience, form: PerceivedQuality) -> f64 {
-    let Experience { delivered, relationship, tenure, quota, issues, ads } = experience;
+pub fn perceived_quality(experience: QualityTerms, form: PerceivedQuality) -> f64 {
+    let QualityTerms { delivered, relationship, tenure, quota, issues, ads } = experience;
     match form {
         PerceivedQuality::Release => (delivered + relationship + tenure) * quota - issues - ads,
         PerceivedQuality::Paper => (delivered + relationship + tenure - issues - ads) * quota,
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn paper_form_multiplies_all_terms_by_the_quota_factor() {
-        let experience = Experience {
+        let experience = QualityTerms {
             delivered: 0.5,
             relationship: 0.1,
             tenure: 0.05,

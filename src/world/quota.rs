@@ -57,20 +57,23 @@ impl Restore for Quota {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canonical::{bytes_of, restore_all};
+    use crate::canonical::{canonical_bytes, restore_all};
 
     #[test]
     fn quotas_round_trip_through_canonical_bytes() {
         for units in [0u64, 1, 59, 60_000, 1_200_000, 8_999_999_999_999_999] {
             let quota = Quota::from_units(units as f64).expect("a quota");
-            assert_eq!(bytes_of(&quota), units.to_le_bytes());
-            assert_eq!(restore_all(&bytes_of(&quota)), Some(quota));
+            assert_eq!(canonical_bytes(&quota), units.to_le_bytes());
+            assert_eq!(restore_all(&canonical_bytes(&quota)), Some(quota));
         }
         for units in [0.5, 59.75, 1e-300, f64::from_bits(1), 4_000_000_000_000_000.5] {
             let quota = Quota::from_units(units).expect("a quota");
-            assert_eq!(restore_all::<Quota>(&bytes_of(&quota)).map(Quota::units), Some(units));
+            assert_eq!(restore_all::<Quota>(&canonical_bytes(&quota)).map(Quota::units), Some(units));
         }
-        assert_eq!(bytes_of(&Quota::from_units(-0.0).expect("a quota")), bytes_of(&Quota::default()));
+        assert_eq!(
+            canonical_bytes(&Quota::from_units(-0.0).expect("a quota")),
+            canonical_bytes(&Quota::default())
+        );
     }
 
     #[test]

@@ -150,7 +150,7 @@ impl Streams {
     }
 
     /// Returns the stream keys of a part for many entities. [`Stream::from_key`] opens a key's stream, which equals
-    /// the stream of [`Streams::open`].
+    /// the stream of [`Streams::open_run`].
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
         map_in_lanes(
             entities,
@@ -321,9 +321,9 @@ impl Stream {
 
     /// Fills a slice with 32-bit words of the stream, for blocks in which each customer has a fixed position.
     pub fn fill(&mut self, words: &mut [u32]) {
-        const PIECE: usize = 64;
-        let mut bytes = [0u8; 4 * PIECE];
-        for words in words.chunks_mut(PIECE) {
+        const WORDS_PER_CHUNK: usize = 64;
+        let mut bytes = [0u8; 4 * WORDS_PER_CHUNK];
+        for words in words.chunks_mut(WORDS_PER_CHUNK) {
             let bytes = &mut bytes[..4 * words.len()];
             self.0.fill_bytes(bytes);
             for (word, four) in words.iter_mut().zip(bytes.chunks_exact(4)) {
@@ -335,7 +335,7 @@ impl Stream {
 
 /// Returns true with probability `p`, decided by a word of [`Stream::fill`] with a resolution of 2^-32.
 #[inline]
-pub fn word_below(word: u32, p: f64) -> bool {
+pub fn bernoulli_from_word(word: u32, p: f64) -> bool {
     f64::from(word) < p * 4_294_967_296.0
 }
 
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn first_bits_are_frozen() {
+    fn first_bits_of_streams_never_change() {
         // These bits must never change, because every recorded run depends on them.
         let mut stream = Streams::new(42).open(Part::Macro, [1]);
         assert_eq!(stream.uniform().to_bits(), FIRST_UNIFORM);
@@ -491,10 +491,10 @@ mod tests {
     }
 
     #[test]
-    fn word_below_matches_its_probability() {
-        assert!(!word_below(0, 0.0));
-        assert!(word_below(0, 1e-9));
-        assert!(word_below(u32::MAX, 1.0));
-        assert!(word_below(u32::MAX / 2, 0.5) && !word_below(u32::MAX / 2 + 1, 0.5));
+    fn bernoulli_from_word_matches_its_probability() {
+        assert!(!bernoulli_from_word(0, 0.0));
+        assert!(bernoulli_from_word(0, 1e-9));
+        assert!(bernoulli_from_word(u32::MAX, 1.0));
+        assert!(bernoulli_from_word(u32::MAX / 2, 0.5) && !bernoulli_from_word(u32::MAX / 2 + 1, 0.5));
     }
 }

@@ -239,7 +239,7 @@ mod tests {
         book
     }
 
-    fn assert_book(book: &ReputationBook, expected: &[(&str, f64)]) {
+    fn assert_reputations(book: &ReputationBook, expected: &[(&str, f64)]) {
         for &(id, value) in expected {
             let actual = book.get(group(id));
             assert!((actual / value - 1.0).abs() < 1e-9, "{id}: got {actual}, expected {value}");
@@ -248,20 +248,23 @@ mod tests {
 
     #[test]
     fn contributions_change_a_group_and_spill_over() {
-        assert_book(
+        assert_reputations(
             &reputation_after(&[("S1", 1000, 0.3)], 0.5, &[]),
             &[("S1", 0.501494867643), ("S3", 0.5), ("E1", 0.5)],
         );
         let unhappy = reputation_after(&[("S1", 1000, -0.3)], 0.5, &[]);
-        assert_book(&unhappy, &[("S1", 0.497010264715), ("S3", 0.499865461912), ("S2", 0.5), ("E1", 0.5)]);
+        assert_reputations(
+            &unhappy,
+            &[("S1", 0.497010264715), ("S3", 0.499865461912), ("S2", 0.5), ("E1", 0.5)],
+        );
         let small = reputation_after(&[("S1", 1, 0.5), ("S2", 100, 0.001)], 0.5, &[]);
-        assert_book(&small, &[("S1", 0.500125), ("S2", 0.5)]);
-        assert_book(
+        assert_reputations(&small, &[("S1", 0.500125), ("S2", 0.5)]);
+        assert_reputations(
             &reputation_after(&[("S1", 600, 0.2), ("S1", 400, -0.1)], 0.5, &[]),
             &[("S1", 0.500199315686)],
         );
         let crowd = reputation_after(&[("S1", 50_000, -1.2)], 0.5, &[]);
-        assert_book(&crowd, &[("S1", 0.481268431431), ("S2", 0.499719026471), ("S3", 0.499157079414)]);
+        assert_reputations(&crowd, &[("S1", 0.481268431431), ("S2", 0.499719026471), ("S3", 0.499157079414)]);
     }
 
     #[test]
@@ -278,13 +281,13 @@ mod tests {
             ("D_S07", 0.499605231766),
             ("D_S06", 0.5),
         ];
-        assert_book(&book, &expected);
+        assert_reputations(&book, &expected);
     }
 
     #[test]
     fn reputation_is_clamped_with_a_minimum() {
-        assert_book(&reputation_after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
-        assert_book(&reputation_after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
+        assert_reputations(&reputation_after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
+        assert_reputations(&reputation_after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
     }
 
     #[test]
@@ -312,7 +315,7 @@ mod tests {
         }
         let mut book = ReputationBook::initial(&params);
         book.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, reputation), &params);
-        assert_book(&book, &[("S1", 0.499738398)]);
+        assert_reputations(&book, &[("S1", 0.499738398)]);
     }
 
     #[test]

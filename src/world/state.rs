@@ -1,6 +1,6 @@
 //! The complete hidden state of a company and its market.
 
-use super::canonical::{Canonical, CanonicalHasher, canonical, hash_of};
+use super::canonical::{Canonical, CanonicalHasher, canonical, canonical_hash};
 use super::customers::Customers;
 use super::enterprise::Enterprise;
 use super::events::{Category, Facts, LedgerEntry, LedgerNote};
@@ -8,7 +8,7 @@ use super::finance::Finance;
 use super::market::Market;
 use super::params::Params;
 use super::product::Product;
-use super::retention::issues::IssueDesk;
+use super::retention::issues::IssueCounter;
 use super::settings::Settings;
 use super::settings::SettingsChange;
 
@@ -28,7 +28,7 @@ pub struct World {
     /// All customers.
     pub customers: Customers,
     /// Counter that numbers support issues.
-    pub issue_desk: IssueDesk,
+    pub issue_desk: IssueCounter,
     /// State of the market.
     pub market: Market,
     /// Negotiations with enterprises.
@@ -59,7 +59,7 @@ impl World {
             finance: Finance { cash: 0.0 },
             product: Product::initial(params),
             customers: Customers::default(),
-            issue_desk: IssueDesk::default(),
+            issue_desk: IssueCounter::default(),
             market: Market::initial(params),
             enterprise: Enterprise::default(),
             settings,
@@ -83,14 +83,14 @@ impl World {
             self;
         let part = |part, hash| PartHash { part, hash };
         vec![
-            part("calendar", hash_of(&(*day, *total_days))),
-            part("settings", hash_of(settings)),
-            part("money", hash_of(finance)),
-            part("product", hash_of(product)),
+            part("calendar", canonical_hash(&(*day, *total_days))),
+            part("settings", canonical_hash(settings)),
+            part("money", canonical_hash(finance)),
+            part("product", canonical_hash(product)),
             part("customers", customers.hash()),
-            part("issues", hash_of(issue_desk)),
-            part("market", hash_of(market)),
-            part("threads", hash_of(enterprise)),
+            part("issues", canonical_hash(issue_desk)),
+            part("market", canonical_hash(market)),
+            part("threads", canonical_hash(enterprise)),
         ]
     }
 }
@@ -108,7 +108,7 @@ pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canonical::{bytes_of, restore_all};
+    use crate::canonical::{canonical_bytes, restore_all};
     use crate::day::step_day;
     use crate::identifiers::{Channel, Group, Plan};
     use crate::random::Streams;
@@ -119,7 +119,7 @@ mod tests {
         let (params, streams) = (Params::bundled(), Streams::new(5));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
-        crate::test_kit::policy_p(&mut world);
+        crate::test_kit::apply_policy_p(&mut world);
         world.settings.core.tiers.0 = [3, 4, 5];
         let companies = |spend: f64| PerGroup::from([(Group::parse("E1").expect("a group"), spend)]);
         world.settings.targeted_ads.targeted_spend.insert(Channel::Linkedin, companies(5000.0));
@@ -135,7 +135,7 @@ mod tests {
     }
 
     /// A change of one field of the world. Some changes use the group.
-    type Change = fn(&mut World, Group);
+    type WorldChange = fn(&mut World, Group);
 
     fn changed_parts(world: &World, other: &World) -> Vec<&'static str> {
         let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
@@ -146,7 +146,7 @@ mod tests {
     fn part_hashes_localize_changes() {
         let world = busy_company();
         let s2 = Group::parse("S2").expect("a group");
-        let changes: [(&str, Change); 25] = [
+        let changes: [(&str, WorldChange); 25] = [
             ("calendar", |world, _| world.day += 1),
             ("calendar", |world, _| world.total_days += 1),
             ("settings", |world, _| world.settings.core.prices[Plan::C] += 0.01),
@@ -187,18 +187,18 @@ mod tests {
     #[test]
     fn part_hashes_cover_every_byte_once() {
         let world = busy_company();
-        let bytes = bytes_of(&world);
+        let bytes = canonical_bytes(&world);
         let parts = world.part_hashes();
         assert_eq!(restore_all::<World>(&bytes).expect("a world").part_hashes(), parts);
         let lengths = [
-            bytes_of(&(world.day, world.total_days)).len(),
-            bytes_of(&world.settings).len(),
-            bytes_of(&world.finance).len(),
-            bytes_of(&world.product).len(),
-            bytes_of(&world.customers).len(),
-            bytes_of(&world.issue_desk).len(),
-            bytes_of(&world.market).len(),
-            bytes_of(&world.enterprise).len(),
+            canonical_bytes(&(world.day, world.total_days)).len(),
+            canonical_bytes(&world.settings).len(),
+            canonical_bytes(&world.finance).len(),
+            canonical_bytes(&world.product).len(),
+            canonical_bytes(&world.customers).len(),
+            canonical_bytes(&world.issue_desk).len(),
+            canonical_bytes(&world.market).len(),
+            canonical_bytes(&world.enterprise).len(),
         ];
         assert_eq!(lengths.iter().sum::<usize>(), bytes.len());
         let mut begin = 0;

@@ -3,7 +3,7 @@
 use crate::customers::columns::Subscriber;
 use crate::customers::persona::PersonaPicks;
 use crate::customers::traits::Negotiator;
-use crate::enterprise::{Company, EnterpriseStatus};
+use crate::enterprise::{EnterpriseCustomer, EnterpriseStatus};
 use crate::identifiers::{ByPlan, Channel, Group, Plan};
 use crate::quota::Quota;
 use crate::state::World;
@@ -42,8 +42,13 @@ pub fn subscriber(n: u32) -> Subscriber {
 }
 
 /// Returns an enterprise with simple values.
-pub fn plain_enterprise(group: Group, n: u32, customer: u32, standing: EnterpriseStatus) -> Company {
-    Company {
+pub fn plain_enterprise(
+    group: Group,
+    n: u32,
+    customer: u32,
+    standing: EnterpriseStatus,
+) -> EnterpriseCustomer {
+    EnterpriseCustomer {
         customer,
         group,
         n,
@@ -56,12 +61,12 @@ pub fn plain_enterprise(group: Group, n: u32, customer: u32, standing: Enterpris
         },
         persona: PersonaPicks::default(),
         contract_end_day: 0,
-        standing,
+        status: standing,
     }
 }
 
 /// Applies the settings of policy P, a cautious policy.
-pub fn policy_p(world: &mut World) {
+pub fn apply_policy_p(world: &mut World) {
     let s1 = Group::at(0).expect("S1");
     let core = &mut world.settings.core;
     core.prices = ByPlan([9.0, 18.0, 40.0]);

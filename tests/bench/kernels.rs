@@ -86,7 +86,11 @@ impl Company {
 }
 
 /// Runs a kernel once on each copy of the company's customers.
-fn on_customers<R>(bencher: Bencher<'_, '_>, items: ItemsCount, kernel: impl Fn(&mut Customers) -> R + Sync) {
+fn bench_on_customers<R>(
+    bencher: Bencher<'_, '_>,
+    items: ItemsCount,
+    kernel: impl Fn(&mut Customers) -> R + Sync,
+) {
     bencher.counter(items).with_inputs(|| COMPANY.world.customers.clone()).bench_local_refs(kernel);
 }
 
@@ -94,7 +98,7 @@ fn on_customers<R>(bencher: Bencher<'_, '_>, items: ItemsCount, kernel: impl Fn(
 fn quality_and_satisfaction_sweep(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     company.on_day(|day| {
-        on_customers(bencher, company.subscribers(), |customers| {
+        bench_on_customers(bencher, company.subscribers(), |customers| {
             customers.sweep(|group, _, block| satisfaction::update_block(group, block, day)).len()
         });
     });
@@ -104,8 +108,8 @@ fn quality_and_satisfaction_sweep(bencher: Bencher<'_, '_>) {
 fn usage_metering(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     let morning = company.morning();
-    on_customers(bencher, company.subscribers(), |customers| {
-        usage::meter(customers, &morning, &company.params, &mut Facts::default())
+    bench_on_customers(bencher, company.subscribers(), |customers| {
+        usage::measure_usage(customers, &morning, &company.params, &mut Facts::default())
     });
 }
 
@@ -113,7 +117,7 @@ fn usage_metering(bencher: Bencher<'_, '_>) {
 fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     company.on_day(|day| {
-        on_customers(bencher, company.subscribers(), |customers| {
+        bench_on_customers(bencher, company.subscribers(), |customers| {
             let (mut connection, mut facts) = (company.world.issue_desk.clone(), Facts::default());
             let mut calls =
                 customers.sweep(|group, number, block| issues::find_issues(group, number, block, day));
@@ -128,11 +132,13 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
 
 #[divan::bench]
 fn customer_generation(bencher: Bencher<'_, '_>) {
-    const COUNT: u32 = 1_000;
+    const GENERATED_CUSTOMERS: u32 = 1_000;
     let (params, streams) = (Params::bundled(), Streams::new(42));
     let s1 = Group::at(0).expect("S1");
-    bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
-        (1..=COUNT).map(|n| draw_traits(s1, black_box(n), 1.0, &params, &streams).curve.c_max).sum::<f64>()
+    bencher.counter(ItemsCount::new(GENERATED_CUSTOMERS)).bench_local(|| {
+        (1..=GENERATED_CUSTOMERS)
+            .map(|n| draw_traits(s1, black_box(n), 1.0, &params, &streams).curve.c_max)
+            .sum::<f64>()
     });
 }
 
@@ -142,7 +148,7 @@ fn daily_billing(bencher: Bencher<'_, '_>) {
     let suspended = BTreeSet::new();
     let bills = ItemsCount::new(company.facts.payments.len());
     company.on_day(|day| {
-        on_customers(bencher, bills, |customers| {
+        bench_on_customers(bencher, bills, |customers| {
             let regulars =
                 customers.sweep(|group, number, block| billing::bill_block(group, number, block, day));
             billing::collect_payments(customers, regulars, day, &suspended, &mut Facts::default())

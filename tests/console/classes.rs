@@ -17,14 +17,14 @@ use super::harness::Console;
 const SMALL: (u16, u16) = (80, 24);
 const WIDE: (u16, u16) = (120, 40);
 
-fn class(folder: &Path, students: u32) -> Class {
+fn create_class(folder: &Path, students: u32) -> Class {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
     let lesson = HandoutSource::Lesson(Arc::new(Lesson::from_file(&path).expect("a lesson")));
     Class::create(folder, &lesson, students).expect("a class")
 }
 
 /// Plays a handout to its end at a price.
-fn play(handout: &Path, runs: &Path, price: f64) {
+fn play_handout(handout: &Path, runs: &Path, price: f64) {
     let handout = Handout::read(handout).expect("a hand-out");
     let run = handout.ensure_run(runs).expect("a run");
     let folder = runs.join("participants").join(&handout.label).join(run);
@@ -39,7 +39,7 @@ fn play(handout: &Path, runs: &Path, price: f64) {
 }
 
 /// Selects an entry on the first page of the start menu.
-fn choose(console: &mut Console, entry: &str) {
+fn choose_menu_entry(console: &mut Console, entry: &str) {
     for _ in 0..12 {
         if console.screen().contains(&format!("› {entry}")) {
             return console.press("enter");
@@ -57,9 +57,9 @@ fn enter(console: &mut Console, text: &str) {
 fn start_menu_opens_and_resumes_a_handout() {
     let place = tempfile::tempdir().expect("a folder");
     let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
-    class(&folder, 2);
+    create_class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
-    choose(&mut console, "Handout");
+    choose_menu_entry(&mut console, "Handout");
     console.assert_shows("Handout file");
     console.press("enter");
     console.assert_shows("Type a path");
@@ -67,7 +67,7 @@ fn start_menu_opens_and_resumes_a_handout() {
     console.assert_shows("nothing.nm");
     assert!(console.app.run().is_none());
     console.press("esc");
-    choose(&mut console, "Handout");
+    choose_menu_entry(&mut console, "Handout");
     let path = folder.join("S01.nm").display().to_string();
     enter(&mut console, &path);
     console.assert_shows("Three weeks");
@@ -78,12 +78,12 @@ fn start_menu_opens_and_resumes_a_handout() {
     // The menu lists the student's runs, and the same file resumes.
     console.press("esc ; q");
     console.assert_shows("1 on this machine");
-    choose(&mut console, "Handout");
+    choose_menu_entry(&mut console, "Handout");
     enter(&mut console, &path);
     assert_eq!(run_folder(&console), first);
     // A different student uses the same computer.
     console.press("esc ; q");
-    choose(&mut console, "Handout");
+    choose_menu_entry(&mut console, "Handout");
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(run_folder(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
@@ -95,9 +95,9 @@ fn start_menu_opens_and_resumes_a_handout() {
 fn handout_of_another_student_is_rejected() {
     let place = tempfile::tempdir().expect("a folder");
     let (folder, runs) = (place.path().join("class"), place.path().join("runs/participants/S02"));
-    class(&folder, 2);
+    create_class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
-    choose(&mut console, "Handout");
+    choose_menu_entry(&mut console, "Handout");
     enter(&mut console, &folder.join("S01.nm").display().to_string());
     console.assert_shows("this is the handout of S01, but this folder has the runs of S02");
     assert!(console.app.run().is_none() && !runs.with_file_name("S01").exists());
@@ -107,14 +107,14 @@ fn handout_of_another_student_is_rejected() {
 fn start_menu_shows_a_class() {
     let place = tempfile::tempdir().expect("a folder");
     let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
-    let class = class(&folder, 7);
+    let class = create_class(&folder, 7);
     let mut console = Console::start(&place.path().join("own"), WIDE);
-    choose(&mut console, "Class");
+    choose_menu_entry(&mut console, "Class");
     let path = folder.display().to_string();
     enter(&mut console, &path);
     console.assert_shows("nothing was collected in");
     for (number, student) in class.students.iter().enumerate().take(6) {
-        play(&folder.join(format!("{}.nm", student.label)), &runs, 8.0 + 6.0 * number as f64);
+        play_handout(&folder.join(format!("{}.nm", student.label)), &runs, 8.0 + 6.0 * number as f64);
     }
     let sources = CollectionInput { class: &class, folder: &folder, places: &[runs] };
     ClassCollection::collect(&sources, calls_for_waiting_threads, &mut |_, _| {}).expect("collected");

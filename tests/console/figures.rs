@@ -11,7 +11,7 @@ use super::company::copy_played_run;
 use super::harness::Console;
 
 /// A young company, a company with enterprise deals, and a company with losses: policy, seed, and last days of two weeks.
-const COMPANIES: [(&str, u64, [u32; 2]); 3] =
+const PLAYED_COMPANIES: [(&str, u64, [u32; 2]); 3] =
     [("opening.toml", 7, [7, 28]), ("companies.toml", 11, [35, 84]), ("crisis.toml", 5, [28, 70])];
 
 /// Window sizes in which the screens are read.
@@ -238,7 +238,7 @@ fn shown_cash_change(cell: &str) -> Option<ShownNumber> {
 }
 
 /// Splits a line into independent parts. Cash in the header is a separate part.
-fn cells(part: &str) -> impl Iterator<Item = &str> {
+fn split_cells(part: &str) -> impl Iterator<Item = &str> {
     let at = part.find("   cash ").unwrap_or(0);
     [&part[..at], &part[at..]].into_iter().flat_map(|part| part.split(" | "))
 }
@@ -249,7 +249,7 @@ fn shown_figures(text: &str) -> Vec<(usize, ShownNumber, String)> {
     for line in text.lines() {
         // Changes after the semicolon are changes of the figure's components.
         let line = line.split(';').next().unwrap_or_default();
-        for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(cells) {
+        for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(split_cells) {
             for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
                 let numbers = names.iter().filter_map(|name| match *name {
                     CASH_CHANGE => shown_cash_change(cell),
@@ -301,7 +301,7 @@ fn report_page(runs: &Path) -> String {
 
 /// Returns the value of every figure in the database, `None` for figures without a query.
 fn database_figures(runs: &Path, day: u32) -> Vec<Option<f64>> {
-    let in_week = novamind::session::entries_of_weeks_sql(day.div_ceil(7), day.div_ceil(7));
+    let in_week = novamind::session::ledger_weeks_condition_sql(day.div_ceil(7), day.div_ceil(7));
     let statement = |sql: &str| {
         let sql = sql.replace("{in_week}", &in_week);
         sql.replace("{from}", &(day - 6).to_string()).replace("{to}", &day.to_string())
@@ -342,7 +342,7 @@ fn shown_texts(runs: &Path) -> Vec<(String, String)> {
 fn figures_with_one_name_have_one_value() {
     let mut places: BTreeMap<usize, usize> = BTreeMap::new();
     let mut wrong = Vec::new();
-    for (policy, seed, days) in COMPANIES {
+    for (policy, seed, days) in PLAYED_COMPANIES {
         for day in days {
             let runs = tempfile::tempdir().expect("a folder");
             copy_played_run(policy, seed, day, runs.path());

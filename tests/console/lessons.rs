@@ -206,7 +206,7 @@ fn lesson_matches_snapshots() {
 }
 
 #[test]
-fn finished_part_continues_with_the_next() {
+fn finished_part_continues_with_the_next_part() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(folder.path(), WIDE);
     open_lessons(&mut console);

@@ -142,7 +142,7 @@ const DRAFTS: [(&str, &str); 5] = [
 ];
 
 /// Keys that navigate and change no text.
-const WALKS: [&str; 16] =
+const NAVIGATION_KEYS: [&str; 16] =
     ["1", "2", "3", "4", "7", "9", "0", "tab", "up", "down", "?", ":", "c", "w", "d", "["];
 
 /// Writes a draft, navigates at random, and checks that the draft has been kept.
@@ -169,7 +169,7 @@ fn check_draft_is_kept(console: &mut Console, dice: &mut Dice) {
     console.press("esc esc esc 1");
     let mut walked = Vec::new();
     for _ in 0..6 {
-        let key = *dice.pick(&WALKS);
+        let key = *dice.pick(&NAVIGATION_KEYS);
         walked.push(key);
         console.press(key);
         console.press("esc esc");

@@ -99,7 +99,7 @@ impl Lab {
         lab
     }
 
-    fn edit(&self, from: &str, to: &str) {
+    fn edit_protocol(&self, from: &str, to: &str) {
         let path = self.folder().join("study.toml");
         let text = std::fs::read_to_string(&path).expect("a protocol");
         assert!(text.contains(from), "{from}");
@@ -127,7 +127,7 @@ impl Lab {
         folders.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect()
     }
 
-    fn events(&self) -> Vec<(String, VisitEvent)> {
+    fn recorded_events(&self) -> Vec<(String, VisitEvent)> {
         let lines = read_visits(&self.runs().join("visits.jsonl"));
         lines.into_iter().map(|line| (line.label, line.event)).collect()
     }
@@ -227,13 +227,13 @@ fn participant_session_runs_from_label_to_thanks() {
     let consent_given = start.consent.as_ref().and_then(|consent| consent.given).expect("it was given");
     assert_eq!((consent_given.means, consent_given.scrolled_to_end), (ConsentMeans::Screen, true));
     assert_eq!(start.study.as_ref().map(|study| study.refused_labels), Some(2));
-    let seen: Vec<VisitEvent> = lab.events().into_iter().map(|(_, event)| event).collect();
+    let seen: Vec<VisitEvent> = lab.recorded_events().into_iter().map(|(_, event)| event).collect();
     use VisitEvent::{Came, Finished, LabelRefused};
     assert_eq!(seen, [LabelRefused, LabelRefused, Came, Came, Finished]);
 }
 
 #[test]
-fn declining_leaves_no_run_and_withdrawal_leaves_a_record() {
+fn declined_consent_creates_no_run_and_withdrawal_is_recorded() {
     let lab = Lab::new();
     let mut console = lab.open_console((80, 24));
     console.press("'P02' enter n");
@@ -256,7 +256,7 @@ fn declining_leaves_no_run_and_withdrawal_leaves_a_record() {
     assert!(!lab.runs().join("participants/P02").exists());
     console.press("enter 'P01' enter");
     console.assert_shows("You have withdrawn");
-    let seen: Vec<(String, VisitEvent)> = lab.events();
+    let seen: Vec<(String, VisitEvent)> = lab.recorded_events();
     assert!(seen.contains(&("P02".to_owned(), VisitEvent::ConsentDeclined)));
     assert!(seen.contains(&("P01".to_owned(), VisitEvent::Withdrew)));
 }
@@ -264,7 +264,7 @@ fn declining_leaves_no_run_and_withdrawal_leaves_a_record() {
 #[test]
 fn practice_comes_first_and_is_skippable_if_optional() {
     let lab = Lab::new();
-    lab.edit(
+    lab.edit_protocol(
         "offer = \"none\"",
         "offer = \"optional\"\nscenario = \"short\"\ndays = 7\n[session]\ntour = true",
     );
@@ -290,7 +290,7 @@ fn practice_comes_first_and_is_skippable_if_optional() {
     let mut other = lab.open_console((100, 30));
     other.press("'P02' enter end y s");
     other.assert_shows("The session starts now.");
-    assert!(lab.events().contains(&("P02".to_owned(), VisitEvent::PassedPractice)));
+    assert!(lab.recorded_events().contains(&("P02".to_owned(), VisitEvent::PassedPractice)));
 }
 
 #[test]
@@ -344,13 +344,13 @@ fn other_runs_require_the_experimenter_code() {
 }
 
 #[test]
-fn the_results_page_shows_what_the_protocol_says() {
+fn results_page_shows_only_results_that_the_protocol_permits() {
     for (results, shows_score, published) in
         [("none", false, false), ("own", true, false), ("published", true, true)]
     {
         let lab = Lab::new();
-        lab.edit("[access]", &format!("[session]\nresults = \"{results}\"\n[access]"));
-        lab.edit("days = 14", "days = 7");
+        lab.edit_protocol("[access]", &format!("[session]\nresults = \"{results}\"\n[access]"));
+        lab.edit_protocol("days = 14", "days = 7");
         let mut console = lab.open_console((120, 40));
         console.press("'P01' enter end y enter 4 enter enter n enter 'test' enter f enter");
         let screen = console.screen();
@@ -364,7 +364,7 @@ fn the_results_page_shows_what_the_protocol_says() {
 #[test]
 fn study_pages_fit_every_window() {
     let lab = Lab::new();
-    lab.edit("offer = \"none\"", "offer = \"optional\"\nscenario = \"short\"\ndays = 7");
+    lab.edit_protocol("offer = \"none\"", "offer = \"optional\"\nscenario = \"short\"\ndays = 7");
     let mut console = lab.open_console((100, 30));
     let steps = [
         "",
@@ -413,7 +413,7 @@ fn study_pages_fit_every_window() {
 }
 
 #[test]
-fn question_pages_show_their_keys() {
+fn question_pages_show_their_keys_in_the_footer() {
     let lab = Lab::new();
     for size in [(60, 16), (80, 24)] {
         let mut console = lab.open_console(size);

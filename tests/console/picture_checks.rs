@@ -24,7 +24,7 @@ pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> Str
 }
 
 /// Minimum number of spaces after a truncated word that count as free space instead of a gap between columns.
-const MAX_COLUMN_GAP: usize = 4;
+const MIN_FREE_SPACES: usize = 4;
 
 /// Returns the lines that contain a word that is truncated although free space follows up to the next border.
 pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
@@ -33,7 +33,7 @@ pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
             let behind = &line[at + sign.len()..];
             let blanks = behind.chars().take_while(|letter| *letter == ' ').count();
             let next = behind.chars().nth(blanks);
-            blanks >= MAX_COLUMN_GAP && matches!(next, Some('│' | '┃') | None) && next.is_some()
+            blanks >= MIN_FREE_SPACES && matches!(next, Some('│' | '┃') | None) && next.is_some()
         })
     };
     screen.lines().filter(wasteful).map(str::to_owned).collect()
@@ -57,14 +57,15 @@ pub fn min_half_coverage(screen: &str, width: usize) -> f64 {
             .enumerate()
             .flat_map(|(y, row)| row.iter().enumerate().map(move |(x, cell)| (x, y, *cell)));
         let characters: Vec<char> = cells.filter(|(x, y, _)| of(*x, *y)).map(|(_, _, cell)| cell).collect();
-        characters.iter().filter(|cell| is_ink(**cell)).count() as f64 / characters.len().max(1) as f64
+        characters.iter().filter(|cell| is_non_empty_cell(**cell)).count() as f64
+            / characters.len().max(1) as f64
     };
     let halves: [&dyn Fn(usize, usize) -> bool; 4] =
         [&|x, _| x < columns_half, &|x, _| x >= columns_half, &|_, y| y < rows_half, &|_, y| y >= rows_half];
     halves.into_iter().map(share).fold(1.0, f64::min)
 }
 
-fn is_ink(cell: char) -> bool {
+fn is_non_empty_cell(cell: char) -> bool {
     !" \u{2800}─│┌┐└┘├┤┬┴┼━┃┏┓┗┛".contains(cell)
 }
 
@@ -78,7 +79,7 @@ fn truncation_is_reported_only_with_free_space() {
 }
 
 #[test]
-fn empty_half_is_reported() {
+fn min_half_coverage_finds_an_empty_half() {
     let half = "xxxxx     \n".repeat(4);
     assert!(min_half_coverage(&half, 10) < 1e-9);
     assert!(min_half_coverage(&"x x x x x \n".repeat(4), 10) > 0.39);

@@ -46,7 +46,7 @@ fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let rich = until > 300;
     for (place, keys, back) in PLACES {
         console.press(keys);
-        let picture = picture(&mut console, place, rich, &mut complaints);
+        let picture = picture_text(&mut console, place, rich, &mut complaints);
         insta::assert_snapshot!(format!("{name}-{place}"), picture);
         console.size = SIZES[1];
         console.press(back);
@@ -59,7 +59,7 @@ const MIN_INK_SHARE: f64 = 0.04;
 
 /// Returns the layout problems of a picture. Empty halves are a problem only if `rich` is set, because only a company
 /// with much data fills both halves.
-fn complaints(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
+fn layout_problems(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
     let cut = needlessly_truncated_lines(letters);
     let mut found: Vec<String> = cut
         .into_iter()
@@ -72,7 +72,7 @@ fn complaints(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<S
     found
 }
 
-fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<String>) -> String {
+fn picture_text(console: &mut Console, place: &str, rich: bool, found: &mut Vec<String>) -> String {
     let mut text = String::new();
     for size in SIZES {
         console.size = size;
@@ -84,7 +84,7 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
             if let Some(before) = &letters {
                 assert_eq!(*before, drawn_text, "the theme {theme} changes the text");
             } else {
-                found.extend(complaints(place, size, rich, &drawn_text));
+                found.extend(layout_problems(place, size, rich, &drawn_text));
                 if size == SIZES[1] {
                     text.clone_from(&drawn_text);
                 }
@@ -101,12 +101,12 @@ fn buffer_text(buffer: &Buffer) -> String {
 }
 
 #[test]
-fn pictures_of_the_first_week() {
+fn first_week_matches_snapshots() {
     check_pictures("week-1", "opening.toml", 42, 7);
 }
 
 #[test]
-fn pictures_of_a_crisis_in_week_30() {
+fn crisis_in_week_30_matches_snapshots() {
     check_pictures("week-30", "crisis.toml", 42, 210);
 }
 
@@ -126,14 +126,14 @@ const REPLAY_PLACES: [(&str, &str, &str); 6] = [
 ];
 
 #[test]
-fn pictures_of_a_replay() {
+fn replay_matches_snapshots() {
     let runs = tempfile::tempdir().expect("a folder");
     drop(played_run(runs.path(), Mode::Sandbox, 12));
     let mut console = console_in_replay(runs.path(), SIZES[1], SeekTarget::Week(7));
     let mut complaints = Vec::new();
     for (place, keys, back) in REPLAY_PLACES {
         console.press(keys);
-        let picture = picture(&mut console, place, false, &mut complaints);
+        let picture = picture_text(&mut console, place, false, &mut complaints);
         insta::assert_snapshot!(format!("replay-{place}"), picture);
         console.size = SIZES[1];
         console.press(back);

@@ -7,7 +7,7 @@ use crossterm::event::Event;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::find_run;
 use novamind::record::trajectory::record::{
-    Activity, ClockEvent, LeavingCause, PresenceEvent, QuerySource, ScreenView, TextEdit, TextEditOutcome,
+    Activity, ClockEvent, DetachCause, PresenceEvent, QuerySource, ScreenView, TextEdit, TextEditOutcome,
 };
 use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{NewRun, Session, Storage, verify};
@@ -15,7 +15,7 @@ use novamind::session::{NewRun, Session, Storage, verify};
 use super::harness::Console;
 
 /// Returns the recorded lines of the only run in a folder.
-fn lines(runs: &Path) -> Vec<Record> {
+fn recorded_lines(runs: &Path) -> Vec<Record> {
     let folder = find_run(runs, "latest").expect("a run");
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
     trajectory.lines.into_iter().map(|line| line.record).collect()
@@ -23,7 +23,7 @@ fn lines(runs: &Path) -> Vec<Record> {
 
 fn activities(runs: &Path) -> Vec<Activity> {
     let activity = |record| if let Record::Activity(activity) = record { Some(activity) } else { None };
-    lines(runs).into_iter().filter_map(activity).collect()
+    recorded_lines(runs).into_iter().filter_map(activity).collect()
 }
 
 fn views(runs: &Path) -> Vec<ScreenView> {
@@ -36,7 +36,7 @@ fn drafts(runs: &Path) -> Vec<TextEdit> {
     activities(runs).into_iter().filter_map(draft).collect()
 }
 
-fn presence(runs: &Path) -> Vec<PresenceEvent> {
+fn presence_events(runs: &Path) -> Vec<PresenceEvent> {
     let event =
         |activity| if let Activity::Session(presence) = activity { Some(presence.event) } else { None };
     activities(runs).into_iter().filter_map(event).collect()
@@ -72,7 +72,7 @@ fn activity_lines(runs: &Path) -> Vec<String> {
         Record::Start(_) => "start".to_owned(),
         other => format!("{other:?}"),
     };
-    lines(runs).into_iter().map(one).collect()
+    recorded_lines(runs).into_iter().map(one).collect()
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn screen_time_never_exceeds_week_time() {
     let views = views(runs.path());
     assert!(views.iter().all(|view| view.from != view.screen), "{views:#?}");
     let mut before_week = vec![0];
-    for record in lines(runs.path()) {
+    for record in recorded_lines(runs.path()) {
         match record {
             Record::Activity(Activity::View(view)) => *before_week.last_mut().expect("one") += view.for_ms,
             Record::Advance(_) => before_week.push(0),
@@ -213,7 +213,7 @@ fn idle_time_is_recorded_until_a_key() {
     advance_clock(&mut console, 1);
     drop(console);
     use PresenceEvent::{Active, Closed, FocusGained, FocusLost, Idle, Opened, Resized};
-    assert_eq!(presence(runs.path()), [Opened, Idle, FocusLost, FocusGained, Active, Resized, Closed]);
+    assert_eq!(presence_events(runs.path()), [Opened, Idle, FocusLost, FocusGained, Active, Resized, Closed]);
     let all = activities(runs.path());
     let idle = |activity: &Activity| match activity {
         Activity::Session(presence) => presence.idle_ms.map(|ms| ms / 1000),
@@ -224,7 +224,7 @@ fn idle_time_is_recorded_until_a_key() {
         Activity::Session(presence) => presence.cause,
         _ => None,
     });
-    assert_eq!(closed, Some(LeavingCause::Quit));
+    assert_eq!(closed, Some(DetachCause::Quit));
 }
 
 #[test]
@@ -278,7 +278,7 @@ fn queries_record_their_source() {
     console.advance_week();
     console.press("esc 9 'SELECT' _ '1' esc f5 v ctrl-o enter 2 f esc");
     drop(console);
-    let via: Vec<QuerySource> = lines(runs.path())
+    let via: Vec<QuerySource> = recorded_lines(runs.path())
         .into_iter()
         .filter_map(|record| if let Record::Query(query) = record { query.via } else { None })
         .collect();

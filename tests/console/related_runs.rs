@@ -14,7 +14,7 @@ use crate::support::company::{advance_weeks, call_tool};
 
 /// Creates a run of four weeks, a branch from week 3 with different decisions, and a branch of the branch. Returns the
 /// ids of the three runs.
-fn related_runs(runs: &Path) -> [String; 3] {
+fn create_related_runs(runs: &Path) -> [String; 3] {
     let id = |session: &Session| session.manifest().id.clone();
     let root = played_run(runs, Mode::Sandbox, 4);
     let mut cheaper = root.branch(3, Mode::Sandbox).expect("a branch");
@@ -24,7 +24,7 @@ fn related_runs(runs: &Path) -> [String; 3] {
     [id(&root), id(&cheaper), id(&later)]
 }
 
-fn console_in(runs: &Path, id: &str, size: (u16, u16)) -> Console {
+fn console_in_run(runs: &Path, id: &str, size: (u16, u16)) -> Console {
     let mut console = Console::start(runs, size);
     console.open(id).expect("it opens");
     console
@@ -39,8 +39,8 @@ fn screen_without_ids(console: &mut Console, ids: &[String; 3]) -> String {
 #[test]
 fn run_tree_matches_snapshots() {
     let runs = tempfile::tempdir().expect("a folder");
-    let ids = related_runs(runs.path());
-    let mut console = console_in(runs.path(), &ids[1], SIZES[2]);
+    let ids = create_related_runs(runs.path());
+    let mut console = console_in_run(runs.path(), &ids[1], SIZES[2]);
     console.press("0 shift-tab");
     let (mut text, mut complaints) = (String::new(), Vec::new());
     for size in SIZES {
@@ -57,9 +57,9 @@ fn run_tree_matches_snapshots() {
 #[test]
 fn run_tree_opens_by_key_in_small_windows() {
     let runs = tempfile::tempdir().expect("a folder");
-    let ids = related_runs(runs.path());
+    let ids = create_related_runs(runs.path());
     for size in SIZES {
-        let mut console = console_in(runs.path(), &ids[1], size);
+        let mut console = console_in_run(runs.path(), &ids[1], size);
         console.press("0");
         console.assert_shows("t tree of 3 runs");
         console.press("t");
@@ -71,8 +71,8 @@ fn run_tree_opens_by_key_in_small_windows() {
 #[test]
 fn enter_opens_a_branch_and_confirms_unsaved_text() {
     let runs = tempfile::tempdir().expect("a folder");
-    let ids = related_runs(runs.path());
-    let mut console = console_in(runs.path(), &ids[1], (120, 40));
+    let ids = create_related_runs(runs.path());
+    let mut console = console_in_run(runs.path(), &ids[1], (120, 40));
     console.press("0 shift-tab enter");
     console.assert_shows(&format!("run {} is already open", ids[1]));
     // The root run is listed first. There are no drafts, so no confirmation is required.
@@ -94,7 +94,7 @@ fn enter_opens_a_branch_and_confirms_unsaved_text() {
 #[test]
 fn replay_shows_the_run_tree_and_opens_a_branch() {
     let runs = tempfile::tempdir().expect("a folder");
-    let ids = related_runs(runs.path());
+    let ids = create_related_runs(runs.path());
     let mut console = console_in_replay(runs.path(), (120, 40), SeekTarget::Week(1));
     console.press("0");
     for id in &ids {
@@ -105,7 +105,7 @@ fn replay_shows_the_run_tree_and_opens_a_branch() {
 }
 
 #[test]
-fn a_run_without_branches_has_no_tree() {
+fn run_without_branches_has_no_tree() {
     let runs = tempfile::tempdir().expect("a folder");
     drop(played_run(runs.path(), Mode::Sandbox, 1));
     drop(played_run(runs.path(), Mode::Sandbox, 2));
@@ -118,7 +118,7 @@ fn a_run_without_branches_has_no_tree() {
 #[test]
 fn copied_run_folder_appears_once_in_the_tree() {
     let runs = tempfile::tempdir().expect("a folder");
-    let ids = related_runs(runs.path());
+    let ids = create_related_runs(runs.path());
     let copy = runs.path().join("copied");
     std::fs::create_dir(&copy).expect("a folder");
     for entry in std::fs::read_dir(runs.path().join(&ids[1])).expect("files").flatten() {
@@ -126,7 +126,7 @@ fn copied_run_folder_appears_once_in_the_tree() {
             std::fs::copy(entry.path(), copy.join(entry.file_name())).expect("a copy");
         }
     }
-    let mut console = console_in(runs.path(), &ids[0], (120, 40));
+    let mut console = console_in_run(runs.path(), &ids[0], (120, 40));
     console.press("0 t");
     let screen = console.screen();
     assert!(!screen.contains("copied"), "{screen}");

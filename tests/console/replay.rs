@@ -97,7 +97,7 @@ fn playback_steps_by_weeks_and_actions_and_seeks() {
     assert_eq!(shown_day(&console), 7);
     // Steps through single actions. The third action sets a price.
     let price = |console: &Console| {
-        console.app.run().expect("a run").company.setting(novamind::tools::ToolId::SetPrices, "A")
+        console.app.run().expect("a run").company.current_setting(novamind::tools::ToolId::SetPrices, "A")
     };
     assert_eq!(price(&console), 12.0);
     console.press(") ) )");
@@ -180,7 +180,7 @@ fn playback_runs_to_the_end_and_pauses_at_a_key() {
 }
 
 #[test]
-fn the_final_page_offers_a_replay_a_what_if_and_another_run_from_the_last_decision() {
+fn final_page_offers_replay_what_if_and_branch_from_the_last_decision() {
     let runs = tempfile::tempdir().expect("a folder");
     let folder = closed_run(runs.path(), Mode::Baseline, 12);
     let mut console = Console::start(runs.path(), (120, 40));

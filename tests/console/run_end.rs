@@ -55,7 +55,7 @@ fn final_page_what_if_starts_twelve_weeks_before_the_end() {
 }
 
 #[test]
-fn a_defect_in_background_work_is_reported_in_its_dialog() {
+fn panic_in_background_work_is_reported_in_its_dialog() {
     let runs = tempfile::tempdir().expect("a folder");
     let console = console_in_finished_run(runs.path(), Mode::Baseline, (120, 40));
     let id = console.app.run().expect("a run").company.observation.run.clone();

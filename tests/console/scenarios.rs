@@ -53,7 +53,7 @@ fn new_user_plays_two_weeks_and_resumes() {
 }
 
 #[test]
-fn a_short_run_ends_on_the_final_page() {
+fn short_run_ends_on_the_final_page() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(runs.path(), (100, 30));
     console.press("n up up up '17' down down down enter");
@@ -154,7 +154,7 @@ fn palette_finds_every_action() {
 }
 
 #[test]
-fn a_run_that_cannot_be_opened_is_explained_in_the_menu() {
+fn menu_explains_why_a_run_cannot_be_opened() {
     let runs = tempfile::tempdir().expect("a folder");
     std::fs::create_dir(runs.path().join("broken")).expect("a folder");
     std::fs::write(runs.path().join("broken/run.toml"), "seed = [").expect("written");
@@ -193,7 +193,7 @@ fn deleted_trajectory_stops_the_run_with_a_message() {
 }
 
 #[test]
-fn a_post_is_published_from_the_feed_after_one_question() {
+fn feed_publishes_a_post_after_one_confirmation() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     open_shop(&mut console);
@@ -287,7 +287,7 @@ fn named_query_is_run_charted_and_saved_as_a_copy() {
 }
 
 #[test]
-fn a_week_without_decisions_takes_three_keys() {
+fn week_without_decisions_takes_three_keys() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     for week in 1..=3 {

@@ -58,7 +58,7 @@ const WIDTHS: [u16; 30] = [
 const HEIGHTS: [u16; 20] = [0, 1, 2, 15, 16, 17, 19, 20, 23, 24, 25, 29, 30, 31, 39, 40, 41, 59, 60, 120];
 
 /// Returns a console in a run of five weeks, with data on every screen.
-fn console(runs: &std::path::Path) -> Console {
+fn console_in_played_run(runs: &std::path::Path) -> Console {
     super::company::copy_played_run("companies.toml", 3, 35, runs);
     Console::in_latest_run(runs, (120, 40))
 }
@@ -76,14 +76,14 @@ const ROOMY_SIZES: [(u16, u16); 3] = [(160, 50), (220, 60), (400, 120)];
 
 /// Complete words, and words at the edge of a pane, which can be truncated.
 #[derive(Default)]
-struct Words {
+struct ScreenWords {
     whole: BTreeSet<String>,
     at_edges: BTreeMap<String, String>,
 }
 
-impl Words {
+impl ScreenWords {
     /// Collects the words of a screen. If `roomy` is set, all words are complete.
-    fn read(&mut self, screen: &str, width: u16, roomy: bool, place: &str) {
+    fn read_screen(&mut self, screen: &str, width: u16, roomy: bool, place: &str) {
         for line in screen.lines() {
             let mut begin = 0;
             let characters: Vec<char> = line.chars().collect();
@@ -115,7 +115,7 @@ impl Words {
 /// Draws every screen and dialog in windows of the given sizes. Asserts that restoring the size restores the picture,
 /// and that no word is truncated.
 fn check_sizes(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
-    let mut words = Words::default();
+    let mut words = ScreenWords::default();
     for (open, close) in PLACES {
         console.size = (120, 40);
         console.press(open);
@@ -124,13 +124,13 @@ fn check_sizes(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>
         let alone = !close.contains("esc");
         for size in ROOMY_SIZES {
             console.size = size;
-            words.read(&console.screen(), size.0, true, open);
+            words.read_screen(&console.screen(), size.0, true, open);
         }
         for size in sizes() {
             console.size = size;
             let drawn = console.screen();
             if alone && size.0 >= 60 && size.1 >= 16 {
-                words.read(&drawn, size.0, false, &format!("{open} at {size:?}"));
+                words.read_screen(&drawn, size.0, false, &format!("{open} at {size:?}"));
             }
             if (size.0 < 60 || size.1 < 16) && size.0 > 20 && size.1 > 0 {
                 assert!(drawn.contains("NovaMind needs 60"), "{open} at {size:?}: {drawn}");
@@ -147,29 +147,28 @@ fn check_sizes(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>
 #[test]
 fn layout_boundaries_do_not_panic_and_restore_the_screen() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = console(runs.path());
+    let mut console = console_in_played_run(runs.path());
     check_sizes(&mut console, &mut || boundary_sizes().collect());
 }
 
 /// Keys of the screens whose panes are focused with tab. Each pane is drawn in its normal size and zoomed.
 const SCREENS: [&str; 8] = ["1", "2", "3", "4", "5", "6", "7", "0"];
-const SIZES_OF_PANES: [(u16, u16); 7] =
-    [(0, 0), (3, 200), (60, 16), (69, 30), (110, 37), (200, 57), (300, 17)];
+const PANE_SIZES: [(u16, u16); 7] = [(0, 0), (3, 200), (60, 16), (69, 30), (110, 37), (200, 57), (300, 17)];
 
 #[test]
-fn every_pane_is_drawn_with_and_without_data() {
+fn panes_are_drawn_with_and_without_data() {
     let runs = tempfile::tempdir().expect("a folder");
     let (new, led) = (runs.path().join("new"), runs.path().join("led"));
-    for mut console in [Console::in_new_run(&new, (120, 40)), console(&led)] {
+    for mut console in [Console::in_new_run(&new, (120, 40)), console_in_played_run(&led)] {
         for screen in SCREENS {
             console.press(&format!("esc esc {screen}"));
             for _ in 0..6 {
-                draw_in(&mut console, &SIZES_OF_PANES);
+                draw_in(&mut console, &PANE_SIZES);
                 console.press("z");
                 let alone = console.screen();
                 let is_alone = alone.matches('┏').count() == 1 && !alone.contains("┌ ");
                 assert!(is_alone, "the focused pane fills the screen:\n{alone}");
-                draw_in(&mut console, &SIZES_OF_PANES);
+                draw_in(&mut console, &PANE_SIZES);
                 console.press("z tab");
             }
         }
@@ -190,7 +189,7 @@ fn draw_in(console: &mut Console, sizes: &[(u16, u16)]) {
 #[ignore = "slow: .ci/full runs it"]
 fn soak_any_size_does_not_panic() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = console(runs.path());
+    let mut console = console_in_played_run(runs.path());
     check_sizes(&mut console, &mut || {
         let all = (0..=200).flat_map(|width| (0..=60).map(move |height| (width, height)));
         // Half of all pairs of a width and a height.
@@ -199,20 +198,20 @@ fn soak_any_size_does_not_panic() {
 }
 
 #[test]
-fn the_menu_fits_every_window() {
+fn start_menu_fits_every_window() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(runs.path(), (80, 24));
     for keys in ["", "n"] {
         console.press(keys);
         let before = console.screen();
-        let mut words = Words::default();
+        let mut words = ScreenWords::default();
         for (size, roomy) in
             ROOMY_SIZES.map(|size| (size, true)).into_iter().chain(boundary_sizes().map(|size| (size, false)))
         {
             console.size = size;
             let drawn = console.screen();
             if size.0 >= 60 && size.1 >= 16 {
-                words.read(&drawn, size.0, roomy, &format!("menu {keys} at {size:?}"));
+                words.read_screen(&drawn, size.0, roomy, &format!("menu {keys} at {size:?}"));
             }
         }
         console.size = (80, 24);
@@ -224,7 +223,7 @@ fn the_menu_fits_every_window() {
 #[test]
 fn ascii_mode_draws_only_ascii() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = console(runs.path());
+    let mut console = console_in_played_run(runs.path());
     console.app.glyphs = Glyphs::Ascii;
     for (open, close) in PLACES {
         console.press(open);
@@ -237,7 +236,7 @@ fn ascii_mode_draws_only_ascii() {
 #[test]
 fn the_smallest_window_names_the_screen_that_is_shown() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = console(runs.path());
+    let mut console = console_in_played_run(runs.path());
     console.size = (60, 16);
     for (key, title) in [("1", "Overview"), ("5", "Social"), ("6", "Inbox"), ("8", "Tools"), ("0", "Journal")]
     {
@@ -251,7 +250,7 @@ fn the_smallest_window_names_the_screen_that_is_shown() {
 #[test]
 fn footer_message_is_separated_from_keys() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = console(runs.path());
+    let mut console = console_in_played_run(runs.path());
     let message = "charts use blocks";
     console.press("; d");
     let mut shared_width_count = 0;

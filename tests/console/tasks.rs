@@ -40,13 +40,13 @@ const TOUR: [(&str, &str); 18] = [
 const CHANGE_ONE_QUOTA: usize = 14;
 const RAISE_A_PRICE: usize = 7;
 const BUY_CAPACITY: usize = 3;
-const ANSWER_ALL_COMPANIES: usize = 4;
+const ANSWER_ALL_ENTERPRISES: usize = 4;
 const QUERY_CHART_EXPORT: usize = 42;
-const POST: usize = 22;
+const PUBLISH_A_POST: usize = 22;
 const ORDER_A_STUDY: usize = 4;
 const UNDO_TWICE_AND_REDO: usize = 3;
 const COMPARE_TWO_RUNS: usize = 5;
-const LEAVE_AND_GO_ON: usize = 2;
+const LEAVE_AND_RESUME: usize = 2;
 
 /// Presses keys one by one. Each key must change the picture, and no key may be rejected.
 fn press_within(console: &mut Console, keys: &str, most: usize) {
@@ -98,7 +98,7 @@ fn console_in_played_run(policy: &str, seed: u64, until: u32, size: (u16, u16)) 
 }
 
 #[test]
-fn tour_texts_name_the_right_keys() {
+fn tour_texts_name_the_keys_of_their_step() {
     for size in SIZES {
         let runs = tempfile::tempdir().expect("a folder");
         let mut console = Console::start(runs.path(), size);
@@ -156,7 +156,7 @@ fn answering_all_threads_takes_few_keys() {
     for size in SIZES {
         let (_runs, mut console) = console_in_played_run("companies.toml", 3, 35, size);
         assert!(console.app.run().expect("a run").company.observation.waiting.len() > 1);
-        press_within(&mut console, "6 a ctrl-s y", ANSWER_ALL_COMPANIES);
+        press_within(&mut console, "6 a ctrl-s y", ANSWER_ALL_ENTERPRISES);
         assert_eq!(
             console.app.run().expect("a run").company.observation.waiting.len(),
             0,
@@ -187,7 +187,7 @@ fn publishing_a_post_takes_few_keys() {
     for size in SIZES {
         let runs = tempfile::tempdir().expect("a folder");
         let mut console = console_with_open_company(runs.path(), size);
-        press_within(&mut console, "5 p 'Drafts,_at_once.' ctrl-s y", POST);
+        press_within(&mut console, "5 p 'Drafts,_at_once.' ctrl-s y", PUBLISH_A_POST);
         console.assert_shows("Drafts, at once.");
     }
 }
@@ -238,7 +238,7 @@ fn leaving_and_resuming_takes_few_keys() {
         let run = list_runs(runs.path()).expect("a list").remove(0);
         assert_eq!(verify(&runs.path().join(&run.id)).expect("an intact run").day, 7);
         let mut console = Console::start(runs.path(), size);
-        press_within(&mut console, "c", LEAVE_AND_GO_ON - 1);
+        press_within(&mut console, "c", LEAVE_AND_RESUME - 1);
         console.assert_shows("day 7/500");
     }
 }

@@ -57,7 +57,7 @@ fn tour_is_offered_only_in_practice() {
 }
 
 #[test]
-fn a_baseline_run_explains_but_has_no_tour() {
+fn baseline_run_has_explanations_but_no_tour() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(runs.path(), (120, 40));
     console.press("n up up up up up up left down down down down down 'P01' down enter");
@@ -78,7 +78,7 @@ fn a_baseline_run_explains_but_has_no_tour() {
 }
 
 #[test]
-fn menu_compares_ends_and_deletes_runs() {
+fn start_menu_compares_abandons_and_deletes_runs() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     console.advance_week();

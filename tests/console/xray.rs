@@ -126,7 +126,7 @@ fn inspections_do_not_change_the_state_hash() {
 }
 
 #[test]
-fn held_factor_shows_expected_leads() {
+fn fixed_lead_factor_shows_expected_leads() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_on_xray_screen(runs.path(), 3, (120, 40));
     console.press("enter = enter");
@@ -140,7 +140,7 @@ fn held_factor_shows_expected_leads() {
 }
 
 #[test]
-fn a_debug_run_runs_to_a_breakpoint_that_is_set_on_the_screen() {
+fn debug_run_stops_at_a_breakpoint_set_on_the_xray_screen() {
     let runs = tempfile::tempdir().expect("a folder");
     drop(create_run(runs.path(), Mode::Debug, 2));
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
@@ -249,7 +249,7 @@ fn replay_of_an_unfinished_run_cannot_be_inspected() {
 }
 
 /// Types a command on the X-ray screen and sends it.
-fn submit_words(console: &mut Console, words: &str) {
+fn submit_command(console: &mut Console, words: &str) {
     console.press("a");
     console.send(Event::Paste(words.to_owned()));
     console.press("enter");
@@ -263,7 +263,7 @@ fn debug_commands_match_plain_mode_and_are_recorded() {
         ["find leads(S1) >= 1", "who reputation(S1) 20", "diff 27 28", "set", "set group.S1.c_max_mean"];
     let mut screens = Vec::new();
     for words in asked {
-        submit_words(&mut console, words);
+        submit_command(&mut console, words);
         screens.push(console.screen());
     }
     console.press("a 'fond' enter");
@@ -301,12 +301,12 @@ fn parameters_are_set_only_in_debug_runs_after_confirmation() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_on_xray_screen(runs.path(), 2, (120, 40));
     let before = console.app.run().map(|run| run.company.observation.day);
-    submit_words(&mut console, "set group.S1.c_max_mean 300");
+    submit_command(&mut console, "set group.S1.c_max_mean 300");
     console.assert_shows("the run will not be ranked");
     console.press("esc");
-    submit_words(&mut console, "set group.S1.c_max_mean");
+    submit_command(&mut console, "set group.S1.c_max_mean");
     assert!(!console.screen().contains("= 300"), "{}", console.screen());
-    submit_words(&mut console, "set group.S1.c_max_mean 300 from 20");
+    submit_command(&mut console, "set group.S1.c_max_mean 300 from 20");
     console.press("y");
     console.assert_shows("from day 20");
     // Changing the view and returning sends no new request.
@@ -326,13 +326,13 @@ fn parameters_are_set_only_in_debug_runs_after_confirmation() {
     let mut console = Console::start(runs.path(), (120, 40));
     console.open(&id).expect("it opens");
     console.press("esc g x");
-    submit_words(&mut console, "set group.S1.c_max_mean 300");
+    submit_command(&mut console, "set group.S1.c_max_mean 300");
     console.press("y");
     console.assert_shows("parameters can be set in debug runs only");
     drop(console);
     let mut console = console_in_replay(runs.path(), (120, 40), SeekTarget::Week(1));
     console.press("g x");
-    submit_words(&mut console, "set group.S1.c_max_mean 300");
+    submit_command(&mut console, "set group.S1.c_max_mean 300");
     console.assert_shows("this is a replay");
 }
 

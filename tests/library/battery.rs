@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use novamind::database::query::QueryLimits;
 use novamind::database::{Cell, QueryConnection, QueryResult, register_mathematics, tables};
-use novamind::lab::benchmark::{BenchContext, company_for_queries};
+use novamind::lab::benchmark::{BenchContext, create_company_for_queries};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
@@ -219,7 +219,7 @@ fn statement_times_with_190_000_subscribers() {
     let scratch = tempfile::tempdir().expect("a folder");
     let configuration = Configuration::bundled();
     let bench = BenchContext { repetitions: 1, scratch_folder: scratch.path().to_owned(), configuration };
-    let session = company_for_queries(&bench).expect("a company");
+    let session = create_company_for_queries(&bench).expect("a company");
     let connection = session.database().open_connection().expect("a connection");
     let patient = QueryLimits { steps: None, time: Duration::from_secs(120), ..LIMITS };
     let mut times: Vec<(Duration, &str)> = Vec::new();

@@ -21,10 +21,10 @@ use crate::xray::debug_run_with_offers;
 const DAYS: u32 = 126;
 
 fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
-    run_with(folder, mode, days, 1_000_000.0)
+    run_with_overrides(folder, mode, days, 1_000_000.0)
 }
 
-fn run_with(folder: &Path, mode: Mode, days: u32, cash: f64) -> Session {
+fn run_with_overrides(folder: &Path, mode: Mode, days: u32, cash: f64) -> Session {
     let new = NewRun {
         cash: (mode == Mode::Debug).then_some(cash),
         seed: Some(7),
@@ -303,7 +303,7 @@ fn apply_changes(from: f64, changes: &[f64], floor: f64) -> f64 {
 
 /// Counts the writes of each mechanism. Checks that the writes of a day lead, bit for bit, from the recorded value of
 /// the previous day to the recorded value of the day.
-fn check_writers(
+fn check_write_chain(
     session: &mut Session,
     targets: &[WriteTarget],
     days: &[u32],
@@ -355,7 +355,7 @@ fn assert_seen(causes: &BTreeMap<String, u32>, expected: &[&str]) {
 #[test]
 fn writers_sum_to_the_change_exactly() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = run_with(folder.path(), Mode::Debug, DAYS, 5_000_000.0);
+    let mut session = run_with_overrides(folder.path(), Mode::Debug, DAYS, 5_000_000.0);
     let spend =
         json!({"targeted_spend": {"linkedin": {"E1": 6000}, "content_marketing": {"S1": 900, "S3": 900}}});
     call_tool(&mut session, "set_targeted_ad_spend", spend);
@@ -375,7 +375,7 @@ fn writers_sum_to_the_change_exactly() {
         })
     };
     let targets = [group_targets(&["S1", "S3", "E1"]), vec![WriteTarget::Cash]].concat();
-    let causes = check_writers(&mut session, &targets, &[1, 2, 40, 71, 86, 101, 126], &recorded);
+    let causes = check_write_chain(&mut session, &targets, &[1, 2, 40, 71, 86, 101, 126], &recorded);
     let expected = [
         "Reputation(Cancellations)",
         "Reputation(Contributions(ReputationContribution",
@@ -404,7 +404,7 @@ fn writers_cover_signed_and_lost_enterprises() {
     let began = query_column(&mut session, &sql("start_day"));
     let ended = query_column(&mut session, &sql("end_day"));
     let days: Vec<u32> = began.iter().take(2).chain(ended.iter().take(3)).map(|day| *day as u32).collect();
-    let causes = check_writers(&mut session, &group_targets(&["E1", "E2", "E3"]), &days, &|_, _| None);
+    let causes = check_write_chain(&mut session, &group_targets(&["E1", "E2", "E3"]), &days, &|_, _| None);
     assert_seen(&causes, &["Reputation(LostEnterprise)", "FirstDeals"]);
 }
 
@@ -574,7 +574,7 @@ fn condition_errors_name_column_and_similar_words() {
 
 proptest! {
     #[test]
-    fn no_condition_panics(text in "\\PC{0,60}", wild in "[a-z(S1)<>=0-9.%_ #-]{0,40}") {
+    fn parsing_a_condition_never_panics(text in "\\PC{0,60}", wild in "[a-z(S1)<>=0-9.%_ #-]{0,40}") {
         for text in [text, wild] {
             if let Ok(condition) = text.parse::<Condition>() {
                 prop_assert_eq!(condition.to_string().parse(), Ok(condition));

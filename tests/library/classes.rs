@@ -47,7 +47,7 @@ impl TestClass {
     }
 
     /// Opens a handout on a separate machine and returns the folder of its run.
-    fn begin(&self, label: &str, machine: &str) -> PathBuf {
+    fn open_handout(&self, label: &str, machine: &str) -> PathBuf {
         let runs = self.machine(machine);
         let run = Handout::read(&self.handout(label)).expect("a hand-out").ensure_run(&runs).expect("a run");
         runs.join("participants").join(label).join(run)
@@ -55,7 +55,7 @@ impl TestClass {
 
     /// Plays a handout with a price on a separate machine and returns the folder of its run.
     fn play(&self, label: &str, machine: &str, price: f64, weeks: u32) -> PathBuf {
-        let folder = self.begin(label, machine);
+        let folder = self.open_handout(label, machine);
         play_weeks(&folder, price, weeks);
         folder
     }
@@ -110,7 +110,7 @@ fn export_and_remove_run(folder: &Path, archive: &Path) {
     fs::remove_dir_all(folder).expect("removed");
 }
 
-fn replace_in(path: &Path, from: &str, to: &str) {
+fn replace_in_file(path: &Path, from: &str, to: &str) {
     let text = fs::read_to_string(path).expect("a text");
     assert!(text.contains(from), "{from} in {}", path.display());
     fs::write(path, text.replacen(from, to, 1)).expect("written");
@@ -135,7 +135,7 @@ fn class_of_thirty_is_collected_completely() {
                 let folder = school.play(label, &machine, price, 3);
                 match label {
                     // Changes a figure without updating the checksum of its line.
-                    "S05" => replace_in(
+                    "S05" => replace_in_file(
                         &folder.join("trajectory.jsonl"),
                         "\"event\":\"goal\"",
                         "\"event\":\"hint\"",
@@ -296,18 +296,18 @@ fn modified_handout_is_rejected() {
 #[test]
 fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     let school = TestClass::new(&lesson(), 2);
-    let folder = school.begin("S02", "one");
+    let folder = school.open_handout("S02", "one");
     assert_eq!(folder.file_name().expect("a name").to_string_lossy(), school.class.students[1].run);
     let manifest = read_manifest(&folder).expect("a manifest");
     assert_eq!(manifest.participant.as_deref(), Some("S02"));
     play_weeks(&folder, 40.0, 3);
-    assert_eq!(school.begin("S02", "one"), folder, "the finished run is shown");
+    assert_eq!(school.open_handout("S02", "one"), folder, "the finished run is shown");
     let first = Session::open(&folder, Access::Write, true).expect("it opens");
     let session = retry_step(&first, 0).expect("a try");
     drop(first);
     let id = session.manifest().id.clone();
     drop(session);
-    let path = school.begin("S02", "one");
+    let path = school.open_handout("S02", "one");
     assert_eq!(path, folder.with_file_name(&id), "the open attempt continues");
     play_weeks(&path, 8.0, 3);
     let collection = school.collect(&[school.machine("one")]);

@@ -5,14 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use novamind::course::{
-    Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, retry_step, submit_guess, take_hint,
+    Debrief, DecisionComparison, FinishedPart, Lesson, ReferencePlay, retry_step, submit_guess, take_hint,
 };
 use novamind::record::figures::WeekFigure;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::report::{debrief_to_html, debrief_to_markdown};
 use novamind::rules::calls_for_waiting_threads;
-use novamind::session::{Access, LessonEntry, NewRun, PartPlay, Session, Storage, play_part};
+use novamind::session::{Access, LessonOptions, NewRun, PartPlay, Session, Storage, play_part};
 use serde_json::json;
 
 use crate::support::company::{advance_week, call_tool};
@@ -33,12 +33,12 @@ fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
 }
 
 /// Starts the lesson for a student, with a seed that differs from the seed of the lesson.
-fn student(folder: &Path) -> Session {
-    student_of(lesson(), folder)
+fn start_student_lesson(folder: &Path) -> Session {
+    start_lesson_of_plan(lesson(), folder)
 }
 
-fn student_of(lesson: Arc<Lesson>, folder: &Path) -> Session {
-    let entry = LessonEntry { lesson, part: 0, is_judged: true };
+fn start_lesson_of_plan(lesson: Arc<Lesson>, folder: &Path) -> Session {
+    let entry = LessonOptions { lesson, part: 0, is_judged: true };
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { mode: Mode::Lesson, seed: Some(3), lesson: Some(entry), storage, ..NewRun::default() };
     Session::create(new, &Configuration::bundled()).expect("the lesson begins")
@@ -46,7 +46,7 @@ fn student_of(lesson: Arc<Lesson>, folder: &Path) -> Session {
 
 /// Plays the lesson to its end, with a price that is set in week `from`.
 fn play_lesson(folder: &Path, price: u32, from: u32) -> Session {
-    finish_lesson(student(folder), price, from)
+    finish_lesson(start_student_lesson(folder), price, from)
 }
 
 fn finish_lesson(mut session: Session, price: u32, from: u32) -> Session {
@@ -61,7 +61,7 @@ fn finish_lesson(mut session: Session, price: u32, from: u32) -> Session {
 }
 
 fn debrief(session: &Session) -> Debrief {
-    PlayedPart::from_session(session).expect("it is over").debrief(calls_for_waiting_threads)
+    FinishedPart::from_session(session).expect("it is over").debrief(calls_for_waiting_threads)
 }
 
 fn reference(play: &ReferencePlay) -> Vec<f64> {
@@ -126,8 +126,11 @@ fn debrief_recognizes_the_reference_play() {
 #[test]
 fn debrief_uses_the_figure_of_the_goal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let session =
-        finish_lesson(student_of(judged_by_revenue(folder.path()), &folder.path().join("runs")), 30, 0);
+    let session = finish_lesson(
+        start_lesson_of_plan(judged_by_revenue(folder.path()), &folder.path().join("runs")),
+        30,
+        0,
+    );
     let found = debrief(&session);
     let judged = found.judged_by.as_ref().expect("a figure");
     let actual: Vec<(u32, f64)> =
@@ -156,7 +159,7 @@ fn retry_starts_at_the_same_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = play_lesson(folder.path(), 30, 0);
     let mut session = retry_step(&first, 0).expect("another try");
-    let begun = student(&folder.path().join("other"));
+    let begun = start_student_lesson(&folder.path().join("other"));
     assert_eq!(session.settings(), begun.settings());
     assert_eq!(
         session.lesson().map(|lesson_progress| (lesson_progress.attempt(0), lesson_progress.guess(0))),
@@ -180,12 +183,12 @@ fn retry_starts_at_the_same_day() {
 #[test]
 fn reference_play_is_hidden_until_the_part_is_over() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = student(folder.path());
+    let mut session = start_student_lesson(folder.path());
     submit_guess(&mut session, 0.5).expect("a guess");
     advance_week(&mut session);
-    assert_eq!(PlayedPart::from_session(&session).expect_err("it continues").code, "lesson_not_over");
+    assert_eq!(FinishedPart::from_session(&session).expect_err("it continues").code, "lesson_not_over");
     let mut other = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
-    assert_eq!(PlayedPart::from_session(&other).expect_err("no lesson").code, "not_in_a_lesson");
+    assert_eq!(FinishedPart::from_session(&other).expect_err("no lesson").code, "not_in_a_lesson");
     assert_eq!(take_hint(&mut other).expect_err("no lesson").code, "not_in_a_lesson");
 }
 

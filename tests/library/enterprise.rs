@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::{call_tool, query_column, query_number};
 
-fn create(storage: Storage) -> Session {
+fn create_run(storage: Storage) -> Session {
     let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), storage, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
@@ -82,10 +82,10 @@ fn assert_no_rows(session: &mut Session, wrong: &str) {
 #[test]
 fn run_with_deals_resumes_and_verifies() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut straight = create(Storage::Memory);
+    let mut straight = create_run(Storage::Memory);
     (0..15).for_each(|_| advance_week(&mut straight));
 
-    let mut session = create(Storage::Runs(folder.path().to_owned()));
+    let mut session = create_run(Storage::Runs(folder.path().to_owned()));
     let place = session.folder().expect("a folder").to_owned();
     for at in 0..15 {
         advance_week(&mut session);
@@ -127,7 +127,7 @@ fn check_forged_price_is_detected(place: &Path) {
 
 #[test]
 fn check_turn_rows() {
-    let mut session = create(Storage::Memory);
+    let mut session = create_run(Storage::Memory);
     (0..16).for_each(|_| advance_week(&mut session));
     let run = &mut session;
     for kind in ["new_lead", "churn_prevention", "plan_change", "renegotiation"] {
@@ -209,7 +209,7 @@ fn check_turn_rows() {
 
 #[test]
 fn check_deal_rows() {
-    let mut session = create(Storage::Memory);
+    let mut session = create_run(Storage::Memory);
     (0..16).for_each(|_| advance_week(&mut session));
     let seen = session.company().observe();
     let run = &mut session;
@@ -280,7 +280,7 @@ fn check_deal_rows() {
 
 #[test]
 fn check_week_counts() {
-    let mut session = create(Storage::Memory);
+    let mut session = create_run(Storage::Memory);
     (0..12).for_each(|_| advance_week(&mut session));
     let seen = session.company().observe();
     let figures = seen.last_week.expect("a week");
@@ -334,7 +334,7 @@ fn check_plan_request_text(run: &mut Session, thread: &ThreadContext) {
 /// Checks the rows of subscribers that ask for a different plan: they contain the plan before a price is named.
 #[test]
 fn check_plan_request_rows() {
-    let mut session = create(Storage::Memory);
+    let mut session = create_run(Storage::Memory);
     let mut wishes = 0;
     for _ in 0..20 {
         advance_week(&mut session);

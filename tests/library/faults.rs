@@ -57,7 +57,7 @@ fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
-fn parameter(session: &Session, key: &str) -> f64 {
+fn parameter_value(session: &Session, key: &str) -> f64 {
     session
         .company()
         .debug_parameters()
@@ -69,13 +69,13 @@ fn parameter(session: &Session, key: &str) -> f64 {
 
 /// Symptom of a fault: the number of days after which it is visible, and a check whether a view differs from the
 /// correct mechanism.
-struct Symptom {
+struct FaultSymptom {
     days: u32,
     shows: fn(&mut Session) -> bool,
 }
 
-fn symptom(fault: Fault) -> Symptom {
-    let at = |days, shows| Symptom { days, shows };
+fn fault_symptom(fault: Fault) -> FaultSymptom {
+    let at = |days, shows| FaultSymptom { days, shows };
     match fault {
         Fault::EconomyReversed => at(12, |session| {
             let leads = session.inspect().lead_equations(group("S1"), Some(12)).expect("a look");
@@ -85,8 +85,8 @@ fn symptom(fault: Fault) -> Symptom {
                 .query_hidden_tables("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
                 .expect("a look");
             let pmi = novamind::database::number_at(&rows.rows[0], 0);
-            let gap = pmi - parameter(session, "macro.neutral_pmi");
-            assert!(gap.abs() > 0.1 && parameter(session, "group.S1.macro_beta.lead_generation") > 0.0);
+            let gap = pmi - parameter_value(session, "macro.neutral_pmi");
+            assert!(gap.abs() > 0.1 && parameter_value(session, "group.S1.macro_beta.lead_generation") > 0.0);
             (factor - 1.0) * gap < 0.0
         }),
         Fault::QuotaInverted => at(12, |session| {
@@ -117,8 +117,8 @@ fn symptom(fault: Fault) -> Symptom {
         }),
         Fault::TenureInDays => at(12, |session| {
             let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
-            let most = parameter(session, "quality.stickiness_log_scale")
-                * libm::log(1.0 + 12.0 / parameter(session, "quality.stickiness_days_scale"));
+            let most = parameter_value(session, "quality.stickiness_log_scale")
+                * libm::log(1.0 + 12.0 / parameter_value(session, "quality.stickiness_days_scale"));
             mood.term(SatisfactionTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
@@ -137,7 +137,8 @@ fn symptom(fault: Fault) -> Symptom {
                 word_of_mouth.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
             };
             let shown = from_s1("S2") / from_s1("S1");
-            let rate = |to: &str| parameter(session, &format!("referral_leads_per_subscriber_day.S1.{to}"));
+            let rate =
+                |to: &str| parameter_value(session, &format!("referral_leads_per_subscriber_day.S1.{to}"));
             (shown / (rate("S2") / rate("S1")) - 1.0).abs() > 1e-9
         }),
         Fault::ComputeOfOnePlan => at(30, |session| {
@@ -147,12 +148,12 @@ fn symptom(fault: Fault) -> Symptom {
                 .find(|figure_write| figure_write.source == WriteSource::LedgerEntries(Category::Compute));
             let paid = -compute.expect("compute is booked").requested_change();
             let used = query_number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
-            let unit = |tier: u32| parameter(session, &format!("model_tier.{tier}.unit_cost"));
+            let unit = |tier: u32| parameter_value(session, &format!("model_tier.{tier}.unit_cost"));
             // Some subscribers use plan B or C, whose models are more expensive.
             paid <= used * unit(1) * (1.0 + 1e-9)
         }),
         Fault::ReputationWithoutFloor => at(STRESSED_DAYS, |session| {
-            let floor = parameter(session, "reputation.reputation_floor");
+            let floor = parameter_value(session, "reputation.reputation_floor");
             (29..=STRESSED_DAYS).any(|day| {
                 let target = WriteTarget::Reputation(group("S1"));
                 let writes = session.inspect().figure_writes(target, Some(day)).expect("a look").writes;
@@ -163,8 +164,8 @@ fn symptom(fault: Fault) -> Symptom {
             let mut group_gain =
                 |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
             let grown = group_gain(5) - group_gain(4);
-            let gain = parameter(session, "development.targeted_dev_improvement_coef")
-                * libm::log(1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale"));
+            let gain = parameter_value(session, "development.targeted_dev_improvement_coef")
+                * libm::log(1.0 + 6000.0 / parameter_value(session, "development.targeted_dev_spend_scale"));
             (grown / gain - 1.0).abs() > 1e-9
         }),
     }
@@ -179,7 +180,7 @@ fn each_fault_changes_the_state_and_is_visible_in_its_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut sound_companies = BTreeMap::new();
     for fault in Fault::ALL {
-        let Symptom { days, shows } = symptom(fault);
+        let FaultSymptom { days, shows } = fault_symptom(fault);
         let sound = sound_companies.entry(days).or_insert_with(|| create_company(folder.path(), None, days));
         let mut faulty = create_company(folder.path(), Some(fault), days);
         assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");

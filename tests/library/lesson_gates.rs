@@ -223,7 +223,7 @@ value = 1
 "#;
     let lesson =
         Arc::new(write_lesson(folder.path(), "gates", &(PARTS.to_owned() + measured)).expect("a lesson"));
-    let [elsewhere, here] = [0, 1].map(|at| lesson.with_world_of(&lesson.plan.measured[at]));
+    let [elsewhere, here] = [0, 1].map(|at| lesson.with_figure_parameters(&lesson.plan.measured[at]));
     assert!(Arc::ptr_eq(&here, &lesson));
     let play = |lesson: &Arc<Lesson>| {
         let play = PartPlay {

@@ -96,7 +96,7 @@ fn begin_lesson(folder: &Path) -> Session {
 }
 
 #[test]
-fn wrong_files_name_line_and_key() {
+fn invalid_lesson_files_are_reported_with_line_and_key() {
     let folder = tempfile::tempdir().expect("a folder");
     for (old, new, part) in [
         ("minutes = 5", "minutes = 5\nlevel = 3", "line 4"),
@@ -125,7 +125,7 @@ fn wrong_files_name_line_and_key() {
 }
 
 #[test]
-fn lesson_asks_evaluates_and_ends() {
+fn lesson_asks_questions_judges_goals_and_ends() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_lesson(folder.path());
     assert_eq!(session.day(), 7);
@@ -151,7 +151,7 @@ fn lesson_asks_evaluates_and_ends() {
     advance_lesson_week(&mut session).expect("a week");
     advance_lesson_week(&mut session).expect("a week");
     assert_eq!(session.ended(), Some(RunEndReason::Lesson));
-    assert!(session.lesson().expect("a lesson").has_reached_all());
+    assert!(session.lesson().expect("a lesson").has_reached_all_goals());
     assert_eq!(session.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(true));
     assert_eq!(rejection_code(advance_lesson_week(&mut session)), "lesson_over");
 }
@@ -231,7 +231,7 @@ fn bankruptcy_in_a_lesson_is_evaluated_once() {
         assert_eq!(standing.outcome(step).expect("an outcome").met, (step == 1).then_some(false));
         assert_eq!(standing.goal_results(step)[0].met, Some(false));
         assert_eq!(standing.goal_results(step)[0].value, Some(cash));
-        assert_eq!(standing.met_pitfalls(), ["costly"]);
+        assert_eq!(standing.triggered_pitfall_names(), ["costly"]);
         let path = session.folder().expect("a folder").to_owned();
         drop(session);
         let again = Session::open(&path, Access::Write, true).expect("it opens");
@@ -304,7 +304,7 @@ fn modified_lesson_is_reported() {
 }
 
 #[test]
-fn pitfalls_are_met_once_and_reference_plays_differ() {
+fn pitfalls_are_triggered_once_and_reference_plays_differ() {
     let folder = tempfile::tempdir().expect("a folder");
     let lesson = Arc::new(write_lesson(folder.path(), "two", PLAN).expect("a lesson"));
     let check = check_plays(&lesson, &[7, 8]).expect("plays");
@@ -314,7 +314,7 @@ fn pitfalls_are_met_once_and_reference_plays_differ() {
 }
 
 /// The shortest lessons, which every test run plays.
-const SHORT: [&str; 4] = ["ads-in-the-product", "ladder", "list-price", "price-follows-quality"];
+const SHORT_LESSONS: [&str; 4] = ["ads-in-the-product", "ladder", "list-price", "price-follows-quality"];
 
 fn check_lessons(names: &[&str]) {
     let configuration = Configuration::bundled();
@@ -333,7 +333,7 @@ fn check_lessons(names: &[&str]) {
 
 #[test]
 fn short_lessons_pass_their_check_on_a_seed() {
-    check_lessons(&SHORT);
+    check_lessons(&SHORT_LESSONS);
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn scripts_have_the_limits_of_queries() {
 }
 
 #[test]
-fn calculations_run_before_the_week_and_stand_on_its_dashboard() {
+fn calculations_run_before_the_week_and_appear_on_its_dashboard() {
     let mut session = create(Storage::Memory);
     let cash = "SELECT max(day) AS day, sum(amount) AS cash FROM ledger";
     call_tool(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));

@@ -48,7 +48,7 @@ fn run_folder(session: &Session) -> PathBuf {
     session.folder().expect("a folder").to_owned()
 }
 
-fn states(folder: &Path) -> Vec<(u32, String)> {
+fn recorded_states(folder: &Path) -> Vec<(u32, String)> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
     let state = |line: &novamind::record::trajectory::Line| match &line.record {
         Record::Week(closing) | Record::Step(closing) => Some((line.day, closing.state_hash.clone())),
@@ -129,7 +129,7 @@ fn killed_run_keeps_its_overrides() {
     let mut session = run_with_overrides(folder.path());
     set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(70));
     advance_weeks(&mut session, 4);
-    let expected = states(&run_folder(&session));
+    let expected = recorded_states(&run_folder(&session));
     let path = run_folder(&session).join("trajectory.jsonl");
     drop(session);
     let text = std::fs::read_to_string(&path).expect("lines");
@@ -146,7 +146,7 @@ fn killed_run_keeps_its_overrides() {
         }
         std::fs::write(&path, lines[..=at].concat() + "{\"seq\"").expect("written");
         let mut again = Session::open(&parent_run_folder(&path), Access::Write, true).expect("it opens");
-        let reached = states(&run_folder(&again));
+        let reached = recorded_states(&run_folder(&again));
         assert_eq!(reached, expected[..reached.len()], "cut after line {}", at + 1);
         if again.day() == 56 {
             // Overrides for later days stay pending after a snapshot.
@@ -164,7 +164,7 @@ fn killed_run_keeps_its_overrides() {
                 .any(|changed_parameter| changed_parameter.key == "operations.base_outage_prob");
             if outages {
                 advance_weeks(&mut again, 4);
-                assert_eq!(states(&run_folder(&again)), expected);
+                assert_eq!(recorded_states(&run_folder(&again)), expected);
             }
         }
     }
@@ -178,7 +178,7 @@ fn parent_run_folder(path: &Path) -> PathBuf {
 fn branches_and_recovered_runs_keep_overrides() {
     let folder = tempfile::tempdir().expect("a folder");
     let session = run_with_overrides(folder.path());
-    let expected = states(&run_folder(&session));
+    let expected = recorded_states(&run_folder(&session));
     for (week, count) in [(1, 0), (3, 0), (4, 2), (9, 8)] {
         let mut branch = session.branch(week, Mode::Debug).expect("a branch");
         let lines = Trajectory::read(&run_folder(&branch).join("trajectory.jsonl")).expect("lines").lines;
@@ -187,7 +187,7 @@ fn branches_and_recovered_runs_keep_overrides() {
         self::advance_week(&mut branch);
         let run_path = run_folder(&branch);
         drop(branch);
-        let reached = states(&run_path);
+        let reached = recorded_states(&run_path);
         assert_eq!(reached[..reached.len() - 1], expected[..reached.len() - 1], "week {week}");
         verify(&run_path).expect("it verifies");
     }
@@ -212,7 +212,7 @@ fn overrides_require_a_debug_run() {
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = begin_run(folder.path(), mode, 140);
         apply_opening_decisions(&mut session);
-        let before = states(&run_folder(&session)).len();
+        let before = recorded_states(&run_folder(&session)).len();
         let tried = |session: &mut Session| {
             let mut texts = Vec::new();
             for (key, value, from) in [
@@ -246,7 +246,7 @@ fn overrides_require_a_debug_run() {
         );
         session.abandon().expect("it ends");
         assert_eq!(tried(&mut session), rejections, "{mode}");
-        assert_eq!(states(&run_folder(&session)).len(), before);
+        assert_eq!(recorded_states(&run_folder(&session)).len(), before);
     }
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     session.abandon().expect("it ends");
@@ -388,11 +388,15 @@ fn run_with_overrides_is_excluded_from_comparisons() {
 
 /// Returns one parameter of each kind, for example one `group.*.c_max_mean` instead of all 26.
 fn parameter_kinds(params: &Value) -> Vec<String> {
-    fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
+    fn collect_parameter_kinds(
+        path: &str,
+        value: &Value,
+        found: &mut std::collections::BTreeMap<String, String>,
+    ) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match value {
             Value::Object(fields) => {
-                fields.iter().for_each(|(name, member)| walk(&below(name), member, found))
+                fields.iter().for_each(|(name, member)| collect_parameter_kinds(&below(name), member, found))
             }
             Value::Array(list) => {
                 let groups: Vec<&str> = Group::all().map(Group::id).collect();
@@ -404,7 +408,7 @@ fn parameter_kinds(params: &Value) -> Vec<String> {
                             Value::String(id) => Some(id.clone()),
                             number => Some(number.to_string()),
                         });
-                    walk(&below(&name.unwrap_or(place)), element, found);
+                    collect_parameter_kinds(&below(&name.unwrap_or(place)), element, found);
                 }
             }
             Value::Null => {}
@@ -417,7 +421,7 @@ fn parameter_kinds(params: &Value) -> Vec<String> {
         }
     }
     let mut found = std::collections::BTreeMap::new();
-    walk("", params, &mut found);
+    collect_parameter_kinds("", params, &mut found);
     found.into_values().collect()
 }
 
@@ -497,7 +501,7 @@ fn excessive_leads_are_rejected_and_the_run_stays_intact() {
 }
 
 #[test]
-fn override_keys_must_exist_and_lists_use_names() {
+fn overrides_require_existing_keys_and_named_list_entries() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     for (key, value, text) in [

@@ -84,7 +84,7 @@ fn script_queries_and_prints() {
 }
 
 #[test]
-fn failed_script_reports_why_and_changes_nothing() {
+fn failed_script_reports_its_error_and_changes_nothing() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     let hash = session.state_hash();
     let code = "print('so far')\ndef half(x):\n    return x / 0\nhalf(1)";

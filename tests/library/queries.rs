@@ -69,7 +69,7 @@ fn query_in_parts(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn due_bills_are_paid_by_active_subscribers() {
+fn due_bills_query_matches_payments_of_active_subscribers() {
     let mut session = company_with_offers();
     let due = run_named_query(&mut session, "billing-waves");
     let today = session.day();
@@ -111,7 +111,7 @@ fn due_bills_are_paid_by_active_subscribers() {
 }
 
 #[test]
-fn every_lead_has_one_choice() {
+fn lead_choices_query_counts_every_lead_once() {
     let mut session = company_with_offers();
     let chosen = run_named_query(&mut session, "choices-of-new-leads");
     let since = session.day() - 7;
@@ -143,7 +143,7 @@ fn every_lead_has_one_choice() {
 }
 
 #[test]
-fn first_offers_are_those_of_the_turns() {
+fn first_offers_query_matches_the_turns() {
     let mut session = company_with_offers();
     let offers = run_named_query(&mut session, "first-offers");
     let turns = query_rows(

@@ -9,7 +9,7 @@ use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{Session, WeekRequest, read_afterwards, verify};
 use serde_json::{Value, json};
 
-use crate::durability::run::{create, open, runs};
+use crate::durability::run::{create_run, open_run, temporary_runs_folder};
 
 fn advance_week(
     session: &mut Session,
@@ -52,8 +52,8 @@ fn count_lines(folder: &Path, kind: &str) -> usize {
 
 #[test]
 fn retry_returns_the_first_response_after_reopening() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     let folder = session.folder().expect("a folder").to_owned();
     let prices = json!({ "A": 12, "B": 25 });
     let first = call(&mut session, "set_prices", prices.clone(), "p").expect("prices");
@@ -84,11 +84,11 @@ fn retry_returns_the_first_response_after_reopening() {
     session.save().expect("it is saved");
     drop(session);
     // The run is opened with the snapshot, and from its lines alone.
-    let mut session = open(&folder);
+    let mut session = open_run(&folder);
     retry(&mut session);
     drop(session);
     fs::remove_file(folder.join("snapshot.bin")).expect("a snapshot");
-    let mut session = open(&folder);
+    let mut session = open_run(&folder);
     retry(&mut session);
     drop(session);
     assert_eq!(fs::read(folder.join("trajectory.jsonl")).expect("a file"), written, "nothing ran again");
@@ -100,8 +100,8 @@ fn retry_returns_the_first_response_after_reopening() {
 
 #[test]
 fn reused_or_invalid_request_ids_are_rejected() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     let code = |refused: Result<Value, String>| refused.expect_err("a refusal");
     call(&mut session, "set_prices", json!({ "A": 12, "B": 25 }), "x").expect("prices");
     // The order of keys does not matter.
@@ -136,8 +136,8 @@ fn reused_or_invalid_request_ids_are_rejected() {
 
 #[test]
 fn retry_answers_after_an_interrupted_week() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     let folder = session.folder().expect("a folder").to_owned();
     advance_week(&mut session, "on", Value::Null, "w0").expect("a week");
     let first = advance_week(&mut session, "on", Value::Null, "w1").expect("a week");
@@ -152,7 +152,7 @@ fn retry_answers_after_an_interrupted_week() {
     for derived in ["snapshot.bin", "world.db"] {
         fs::remove_file(folder.join(derived)).expect("it was there");
     }
-    let mut session = open(&folder);
+    let mut session = open_run(&folder);
     assert_eq!(session.day(), 14);
     assert_eq!(advance_week(&mut session, "on", Value::Null, "w1"), Ok(first));
     assert_eq!((session.day(), count_lines(&folder, "advance"), count_lines(&folder, "week")), (14, 2, 2));
@@ -162,8 +162,8 @@ fn retry_answers_after_an_interrupted_week() {
 
 #[test]
 fn branch_keeps_request_ids_of_shared_lines() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     let first = call(&mut session, "set_prices", json!({ "A": 12 }), "p").expect("a price");
     let passed = advance_week(&mut session, "on", Value::Null, "w0").expect("a week");
     call(&mut session, "set_prices", json!({ "A": 14 }), "q").expect("a price");
@@ -178,8 +178,8 @@ fn branch_keeps_request_ids_of_shared_lines() {
 
 #[test]
 fn undo_does_not_release_a_request_id() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     call(&mut session, "set_prices", json!({ "A": 12 }), "o").expect("a price");
     let first = call(&mut session, "set_prices", json!({ "A": 14 }), "p").expect("a price");
     session.undo(Via::Plain).expect("it is taken back");
@@ -189,8 +189,8 @@ fn undo_does_not_release_a_request_id() {
 
 #[test]
 fn records_without_request_ids_are_unchanged() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     session.call_once("set_prices", &json!({ "A": 12 }), Via::Http, &Value::Null).expect("a price");
     advance_week(&mut session, "naive", Value::Null, "w").expect("a week");
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
@@ -200,9 +200,9 @@ fn records_without_request_ids_are_unchanged() {
 }
 
 #[test]
-fn calls_of_unknown_tools_are_recorded_with_names_of_bounded_length() {
-    let place = runs();
-    let mut session = create(place.path(), 7, 28);
+fn names_of_unknown_tools_are_truncated_in_the_record() {
+    let place = temporary_runs_folder();
+    let mut session = create_run(place.path(), 7, 28);
     let folder = session.folder().expect("a folder").to_owned();
     let long = "x".repeat(10_000_000);
     for name in ["", "get_customer_feedback", long.as_str()] {

@@ -22,7 +22,7 @@ fn create(new: NewRun) -> Session {
     Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
-fn runs(folder: &tempfile::TempDir) -> Storage {
+fn runs_folder(folder: &tempfile::TempDir) -> Storage {
     Storage::Runs(folder.path().to_owned())
 }
 
@@ -46,9 +46,9 @@ fn database_matches_the_session() {
 }
 
 #[test]
-fn refused_calls_change_nothing_and_are_recorded() {
+fn rejected_calls_change_nothing_and_are_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(new_run(runs(&folder)));
+    let mut session = create(new_run(runs_folder(&folder)));
     let before = session.state_hash();
     let refusal = session.call("set_prices", &json!({"A": 0}), Via::Form).expect_err("a price of zero");
     assert_eq!((refusal.code, refusal.field.as_deref()), ("price_not_positive", Some("A")));
@@ -156,7 +156,7 @@ fn redo_reapplies_until_a_new_setting() {
 fn undo_history_survives_reopening() {
     let folder = tempfile::tempdir().expect("a folder");
     for snapshot in [false, true] {
-        let mut session = create(new_run(runs(&folder)));
+        let mut session = create(new_run(runs_folder(&folder)));
         call_tool(&mut session, "set_prices", json!({"A": 10}));
         call_tool(&mut session, "set_prices", json!({"A": 12}));
         call_tool(&mut session, "set_capacity_tier", json!({"tier": 2}));
@@ -193,18 +193,22 @@ fn purchases_count_in_the_following_week() {
     assert!(seen.dashboard.contains(&format!("{:.0}", -seen.cash_change)[..2]), "{}", seen.dashboard);
     call_tool(&mut session, "research_market", json!({}));
     assert_eq!(session.company().observe().cash_change, seen.cash_change, "the last week is what it was");
-    let sql =
-        format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks_sql(1, 1));
+    let sql = format!(
+        "SELECT sum(amount) FROM ledger WHERE {}",
+        novamind::session::ledger_weeks_condition_sql(1, 1)
+    );
     assert!((query_number(&mut session, &sql) - seen.cash_change).abs() < 1e-6);
-    let sql =
-        format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks_sql(2, 2));
+    let sql = format!(
+        "SELECT sum(amount) FROM ledger WHERE {}",
+        novamind::session::ledger_weeks_condition_sql(2, 2)
+    );
     assert_eq!(query_number(&mut session, &sql), -25_000.0);
 }
 
 #[test]
 fn finished_run_rejects_calls() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(NewRun { days: Some(10), ..new_run(runs(&folder)) });
+    let mut session = create(NewRun { days: Some(10), ..new_run(runs_folder(&folder)) });
     advance_week(&mut session);
     let forecasts = session.company().naive_forecasts();
     let last = session.advance("the end", &forecasts, Via::Script, &mut |_| {}).expect("three days");
@@ -250,7 +254,7 @@ fn bankruptcy_ends_the_week_and_the_run() {
 #[test]
 fn damaged_run_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(new_run(runs(&folder)));
+    let mut session = create(new_run(runs_folder(&folder)));
     apply_opening_decisions(&mut session);
     advance_week(&mut session);
     let place = session.folder().expect("a folder").to_owned();
@@ -285,7 +289,7 @@ fn damaged_run_is_rejected() {
 #[test]
 fn run_in_use_is_locked() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(new_run(runs(&folder)));
+    let mut session = create(new_run(runs_folder(&folder)));
     apply_opening_decisions(&mut session);
     advance_week(&mut session);
     let place = session.folder().expect("a folder").to_owned();
@@ -305,9 +309,9 @@ fn run_in_use_is_locked() {
 fn runs_are_listed_found_and_named() {
     let folder = tempfile::tempdir().expect("a folder");
     assert!(list_runs(&folder.path().join("nothing")).expect("an empty list").is_empty());
-    let mut first = create(new_run(runs(&folder)));
+    let mut first = create(new_run(runs_folder(&folder)));
     advance_week(&mut first);
-    let mut second = create(NewRun { days: Some(500), ..new_run(runs(&folder)) });
+    let mut second = create(NewRun { days: Some(500), ..new_run(runs_folder(&folder)) });
     assert_eq!((first.manifest().earlier_runs, second.manifest().earlier_runs), (0, 1));
     let list = list_runs(folder.path()).expect("a list");
     assert_eq!(list.len(), 2);
@@ -373,7 +377,7 @@ fn hidden_state_requires_a_debug_run() {
 #[test]
 fn filed_forecasts_can_be_read() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(new_run(runs(&folder)));
+    let mut session = create(new_run(runs_folder(&folder)));
     let predictions = json!({
         "cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000},
         "cash_4wk": {"point": 960000, "lower": 930000, "upper": 980000},
@@ -400,7 +404,7 @@ fn filed_forecasts_can_be_read() {
 #[test]
 fn branch_shares_history_and_then_differs() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut parent = create(new_run(runs(&folder)));
+    let mut parent = create(new_run(runs_folder(&folder)));
     apply_opening_decisions(&mut parent);
     advance_weeks(&mut parent, 3);
     let at_week_3 = parent.cash_by_day()[..=14].to_vec();
@@ -429,7 +433,7 @@ fn branch_shares_history_and_then_differs() {
 #[test]
 fn baseline_run_cannot_be_branched_before_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut run = create(NewRun { mode: Mode::Baseline, ..new_run(runs(&folder)) });
+    let mut run = create(NewRun { mode: Mode::Baseline, ..new_run(runs_folder(&folder)) });
     advance_week(&mut run);
     assert_eq!(run.branch(1, Mode::Sandbox).map(drop).expect_err("unfinished").code, "not_in_this_mode");
     run.abandon().expect("given up");
@@ -439,7 +443,7 @@ fn baseline_run_cannot_be_branched_before_its_end() {
 #[test]
 fn journal_lists_decisions_and_scores_forecasts() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut run = create(new_run(runs(&folder)));
+    let mut run = create(new_run(runs_folder(&folder)));
     apply_opening_decisions(&mut run);
     advance_weeks(&mut run, 5);
     run.set_notes("prices were a guess").expect("noted");
@@ -458,9 +462,9 @@ fn journal_lists_decisions_and_scores_forecasts() {
 }
 
 #[test]
-fn player_post_gets_reactions_comments_and_a_notice() {
+fn player_post_receives_reactions_comments_and_a_notification() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = create(NewRun { mode: Mode::Debug, ..new_run(runs(&folder)) });
+    let mut session = create(NewRun { mode: Mode::Debug, ..new_run(runs_folder(&folder)) });
     apply_opening_decisions(&mut session);
     advance_weeks(&mut session, 2);
     let complaint =

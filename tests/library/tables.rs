@@ -11,7 +11,7 @@ use serde_json::json;
 
 use crate::support::company::{call_tool, query_number, query_rows, query_text};
 
-fn create(overrides: &[(&str, &str)]) -> Session {
+fn create_run(overrides: &[(&str, &str)]) -> Session {
     let overrides = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     let new = NewRun { seed: Some(7), days: Some(140), mode: Mode::Debug, overrides, ..NewRun::default() };
     Session::create(new, &Configuration::bundled()).expect("the run begins")
@@ -57,7 +57,7 @@ fn assert_no_rows(session: &mut Session, table: &str, condition: &str) {
 }
 
 #[test]
-fn visible_tables_and_columns_are_the_listed_ones() {
+fn visible_tables_and_columns_match_the_list() {
     let mut listed: Vec<(String, Vec<(String, String)>)> = Vec::new();
     let mut reader = csv::Reader::from_reader(include_str!("../data/visible_columns.csv").as_bytes());
     for row in reader.records().map(|row| row.expect("a row")) {
@@ -76,7 +76,7 @@ fn visible_tables_and_columns_are_the_listed_ones() {
         })
         .collect();
     assert_eq!(documented, listed);
-    let mut session = create(&[]);
+    let mut session = create_run(&[]);
     for (table, columns) in listed {
         let texts = session.query(&format!("SELECT * FROM {table}")).expect("an answer").columns;
         assert_eq!(texts, columns.into_iter().map(|(name, _)| name).collect::<Vec<_>>(), "{table}");
@@ -84,8 +84,8 @@ fn visible_tables_and_columns_are_the_listed_ones() {
 }
 
 #[test]
-fn day_0_has_its_rows_and_no_others() {
-    let mut session = create(&[]);
+fn tables_contain_only_the_expected_rows_on_day_0() {
+    let mut session = create_run(&[]);
     for table in novamind::database::tables() {
         let expected = match table.name.as_str() {
             "customers" | "ledger" | "config_history" => 1.0,
@@ -179,8 +179,8 @@ fn customers_match_subscriptions() {
 }
 
 #[test]
-fn usage_service_and_settings_follow_the_days() {
-    let mut session = create(&[]);
+fn usage_service_and_settings_have_a_row_per_day() {
+    let mut session = create_run(&[]);
     fund_two_channels(&mut session);
     advance_days(&mut session, 10);
     call_tool(&mut session, "set_capacity_tier", json!({"tier": 2}));
@@ -214,8 +214,8 @@ fn usage_service_and_settings_follow_the_days() {
 }
 
 #[test]
-fn overrides_keep_the_whole_family_after_every_call() {
-    let mut session = create(&[]);
+fn targeted_settings_keep_the_whole_family_after_every_call() {
+    let mut session = create_run(&[]);
     call_tool(&mut session, "set_targeted_ops_spend", json!({"E1": 30}));
     call_tool(
         &mut session,
@@ -260,8 +260,8 @@ fn overrides_keep_the_whole_family_after_every_call() {
 }
 
 #[test]
-fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
-    let mut session = create(&[]);
+fn ledger_is_ordered_and_adds_up_to_cash() {
+    let mut session = create_run(&[]);
     fund_two_channels(&mut session);
     call_tool(&mut session, "set_targeted_ops_spend", json!({"S1": 20}));
     call_tool(&mut session, "set_ads_strength", json!({"global_strength": 0.5}));
@@ -307,8 +307,8 @@ fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
 }
 
 #[test]
-fn forecasts_have_the_day_they_were_filed() {
-    let mut session = create(&[]);
+fn forecast_rows_have_the_filing_day() {
+    let mut session = create_run(&[]);
     for _ in 0..2 {
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
@@ -328,8 +328,8 @@ fn forecasts_have_the_day_they_were_filed() {
 }
 
 #[test]
-fn research_discovery_and_the_economy_are_announced() {
-    let mut session = create(&[("market_research.market_research_discover_prob", "1.0")]);
+fn research_discovery_and_economy_create_notifications() {
+    let mut session = create_run(&[("market_research.market_research_discover_prob", "1.0")]);
     advance_days(&mut session, 7);
     let found = call_tool(&mut session, "research_market", json!({}));
     let group = found["discovered_group_id"].as_str().expect("a group").to_owned();
@@ -407,8 +407,8 @@ fn research_discovery_and_the_economy_are_announced() {
 }
 
 #[test]
-fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
-    let mut session = create(&[]);
+fn funded_channels_have_a_row_per_day_and_ad_revenue_a_row_per_subscriber() {
+    let mut session = create_run(&[]);
     fund_two_channels(&mut session);
     advance_days(&mut session, 35);
     // The third pair of channel and group has no budget, so it has no rows.
@@ -452,7 +452,7 @@ struct Issue {
 
 #[test]
 fn issue_rows_match_the_facts() {
-    let mut session = create(&[]);
+    let mut session = create_run(&[]);
     fund_two_channels(&mut session);
     let mut issues: BTreeMap<u32, Issue> = BTreeMap::new();
     for _ in 0..70 {

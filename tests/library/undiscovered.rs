@@ -133,7 +133,7 @@ fn database_reveals_no_undiscovered_groups() {
     // After the run is reopened, the file still reveals no undiscovered group.
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
-    let mut session = super::durability::run::open(&folder);
+    let mut session = super::durability::run::open_run(&folder);
     advance_week(&mut session);
     check_undiscovered_groups(&mut session, &found);
 }

@@ -19,7 +19,7 @@ fn parse_question(text: &str) -> WeekQuestion {
     text.parse().unwrap_or_else(|problem| panic!("{text}: {problem:?}"))
 }
 
-fn why(session: &Session, text: &str) -> Result<ChangeExplanation, Rejection> {
+fn explain_change(session: &Session, text: &str) -> Result<ChangeExplanation, Rejection> {
     let mut causes = CauseAnalysis::open(&cause_analysis_folder(session)?)?;
     Ok(causes.explain(parse_question(text), &|_| ControlFlow::Continue(()))?.expect("it is not stopped"))
 }
@@ -37,7 +37,7 @@ fn run_in(folder: &Path) -> Session {
 }
 
 #[test]
-fn group_figures_match_breakpoints_and_tables() {
+fn causes_of_group_figures_match_breakpoints_and_tables() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path());
     for figure in
@@ -46,24 +46,24 @@ fn group_figures_match_breakpoints_and_tables() {
         let condition: Condition = format!("{figure} >= 0 over 7").parse().expect("a condition");
         let value =
             session.inspect().condition_history(condition).expect("a look").today.value.expect("a value");
-        let explanation = why(&session, figure).expect("an answer");
+        let explanation = explain_change(&session, figure).expect("an answer");
         assert!((explanation.after - value).abs() < 1e-12, "{figure}: {} {value}", explanation.after);
         let sum =
             explanation.contributions.iter().map(|part| part.amount).sum::<f64>() + explanation.residual;
-        assert!((sum - explanation.change()).abs() < 1e-9, "{figure}");
+        assert!((sum - explanation.total_change()).abs() < 1e-9, "{figure}");
     }
     for figure in ["subscribers(S1)", "satisfaction(S1)", "reputation(S1)", "open_issues(S1)"] {
         let condition: Condition = format!("{figure} >= 0").parse().expect("a condition");
         let value =
             session.inspect().condition_history(condition).expect("a look").today.value.expect("a value");
-        assert_eq!(why(&session, figure).expect("an answer").after, value, "{figure}");
+        assert_eq!(explain_change(&session, figure).expect("an answer").after, value, "{figure}");
     }
     let left = query_number(
         &mut session,
         "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE group_id = 'S1' \
          AND status = 'cancelled' AND end_day BETWEEN 64 AND 70",
     );
-    let explanation = why(&session, "cancellations(S1)").expect("an answer");
+    let explanation = explain_change(&session, "cancellations(S1)").expect("an answer");
     assert_eq!(explanation.after, left);
     assert_eq!(explanation.contributions[0].cause.name(), "price", "{explanation:#?}");
 }

@@ -19,7 +19,7 @@ use crate::support::company::{
     advance_week, advance_weeks, apply_opening_decisions, begin_run, query_column, query_rows,
 };
 
-fn s2() -> Group {
+fn group_s2() -> Group {
     Group::parse("S2").expect("a group")
 }
 
@@ -45,7 +45,7 @@ fn unfinished_non_debug_runs_cannot_be_inspected() {
         let before = lines();
         // The rejection is the same for a known group, an unknown group and a missing day.
         let texts: Vec<String> =
-            [(s2(), None), (Group::at(25).expect("a group"), Some(3)), (s2(), Some(9000))]
+            [(group_s2(), None), (Group::at(25).expect("a group"), Some(3)), (group_s2(), Some(9000))]
                 .into_iter()
                 .map(|(group, day)| {
                     session.inspect().lead_equations(group, day).expect_err("hidden").to_string()
@@ -59,7 +59,7 @@ fn unfinished_non_debug_runs_cannot_be_inspected() {
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         // After the run is abandoned, the user can inspect it but cannot continue it.
         session.abandon().expect("it ends");
-        assert_eq!(session.inspect().lead_equations(s2(), Some(3)).expect("a look").len(), 3);
+        assert_eq!(session.inspect().lead_equations(group_s2(), Some(3)).expect("a look").len(), 3);
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         assert_eq!(inspections(&trajectory), [], "the end is the last line");
@@ -77,7 +77,7 @@ fn inspections_are_recorded_without_changing_the_state() {
         apply_opening_decisions(session);
         advance_week(session);
     }
-    watched.inspect().lead_equations(s2(), Some(2)).expect("a look");
+    watched.inspect().lead_equations(group_s2(), Some(2)).expect("a look");
     watched.step(3, &mut |_| {}).expect("days");
     alone.step(3, &mut |_| {}).expect("days");
     // Inspections are made within a week, after a call, and for an earlier day.
@@ -87,17 +87,17 @@ fn inspections_are_recorded_without_changing_the_state() {
     assert_eq!(
         watched
             .inspect()
-            .lead_equations(s2(), None)
+            .lead_equations(group_s2(), None)
             .expect("a look")
             .last()
             .map(|lead_equation| lead_equation.day),
         Some(10)
     );
-    watched.inspect().lead_equations(s2(), Some(4)).expect("a look");
+    watched.inspect().lead_equations(group_s2(), Some(4)).expect("a look");
     advance_week(&mut watched);
     advance_week(&mut alone);
     assert_eq!(watched.state_hash(), alone.state_hash());
-    let refused = watched.inspect().lead_equations(s2(), Some(15)).expect_err("not simulated");
+    let refused = watched.inspect().lead_equations(group_s2(), Some(15)).expect_err("not simulated");
     assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
     let place = watched.folder().expect("a folder").to_owned();
     drop(watched);
@@ -107,7 +107,7 @@ fn inspections_are_recorded_without_changing_the_state() {
     assert_eq!(texts, ["leads S2 2", "leads S2 10", "leads S2 4"]);
     assert_eq!(verify(&place).expect("it verifies").day, 14);
     let mut again = Session::open(&place, Access::Write, false).expect("it opens");
-    assert_eq!(again.inspect().lead_equations(s2(), Some(10)).expect("a look").len(), 10);
+    assert_eq!(again.inspect().lead_equations(group_s2(), Some(10)).expect("a look").len(), 10);
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn lead_equation_yields_the_expectation_of_the_draw() {
             );
             assert_eq!((lead_equation.expected_leads(), lead_equation.actual_leads), (expected, arrivals));
             assert_eq!(lead_equation.is_known, group.is_initially_known());
-            let held = lead_equation.expected_with(&[(
+            let held = lead_equation.expected_leads_with(&[(
                 LeadFactor::Reputation,
                 2.0 * lead_equation.factor(LeadFactor::Reputation),
             )]);
@@ -202,7 +202,7 @@ fn customer_view_matches_the_tables() {
             );
             if status == "subscribed" {
                 assert_eq!(
-                    view.day_shown().map(|individual_day| individual_day.day),
+                    view.shown_state().map(|individual_day| individual_day.day),
                     Some(last_day).filter(|_| view.signup.day < last_day)
                 );
             }
@@ -218,7 +218,7 @@ fn customer_view_matches_the_tables() {
                     individual_day.day
                 );
             }
-            if let (Some(since), Some(shown)) = (view.issue_opened_on(), view.day_shown()) {
+            if let (Some(since), Some(shown)) = (view.issue_opened_on(), view.shown_state()) {
                 let sql = format!(
                     "SELECT max(open_day) FROM issues WHERE customer_id = {customer} AND open_day <= {}",
                     shown.day
@@ -312,7 +312,7 @@ fn enterprise_view_predicts_recorded_answers() {
             panic!("a company")
         };
         let thread_day = view
-            .threads_of_day()
+            .threads_on_shown_day()
             .find(|enterprise_thread_day| enterprise_thread_day.thread == thread)
             .expect("its thread");
         assert_eq!(thread_day.reply_day, Some(day));
@@ -394,7 +394,7 @@ fn read_only_run_cannot_be_inspected() {
     drop(session);
     let before = std::fs::read(path.join("trajectory.jsonl")).expect("bytes");
     let mut read = Session::open(&path, Access::Read, true).expect("it opens");
-    assert_eq!(read.inspect().lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
+    assert_eq!(read.inspect().lead_equations(group_s2(), None).expect_err("a refusal").code, "read_only");
     assert_eq!(
         read.inspect().query_hidden_tables("SELECT 1", None).expect_err("a refusal").code,
         "read_only"

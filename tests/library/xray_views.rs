@@ -21,7 +21,7 @@ fn run_in(folder: &Path, mode: Mode) -> Session {
 }
 
 /// Returns the success or the rejection of every view for a group and a day.
-fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Rejection>> {
+fn call_every_view(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Rejection>> {
     let group = Group::parse(group).expect("a group");
     let mut inside = session.inspect();
     vec![
@@ -45,9 +45,9 @@ fn views_are_unavailable_in_unfinished_non_debug_runs() {
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
         // The rejection is the same for existing and missing days and for any number of draws.
-        let mut answers = views(&mut session, "S1", None);
-        answers.extend(views(&mut session, "D_E10", Some(3)));
-        answers.extend(views(&mut session, "S1", Some(9000)));
+        let mut answers = call_every_view(&mut session, "S1", None);
+        answers.extend(call_every_view(&mut session, "D_E10", Some(3)));
+        answers.extend(call_every_view(&mut session, "S1", Some(9000)));
         for part in RandomPart::ALL {
             answers.extend(
                 [None, Some(0), Some(3), Some(usize::MAX)]
@@ -63,7 +63,7 @@ fn views_are_unavailable_in_unfinished_non_debug_runs() {
         }
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         session.abandon().expect("it ends");
-        assert!(views(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
+        assert!(call_every_view(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
         session.inspect().next_draws(RandomPart::Service, None).expect("a look");
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
@@ -95,7 +95,7 @@ fn views_do_not_change_the_state_hash() {
         }
         let day = watched.day();
         for shown in [None, Some(1), Some(day)] {
-            assert!(views(&mut watched, "S1", shown).into_iter().all(|answer| answer.is_ok()));
+            assert!(call_every_view(&mut watched, "S1", shown).into_iter().all(|answer| answer.is_ok()));
         }
         for part in RandomPart::ALL {
             watched.inspect().next_draws(part, Some(5)).expect("a look");
@@ -104,7 +104,7 @@ fn views_do_not_change_the_state_hash() {
         advance_week(&mut alone);
         assert_eq!(watched.state_hash(), alone.state_hash());
     }
-    for answer in views(&mut watched, "S2", Some(41)) {
+    for answer in call_every_view(&mut watched, "S2", Some(41)) {
         let refusal = answer.expect_err("not simulated").to_string();
         assert!(refusal.starts_with("day_unknown (day): there is no day 41"), "{refusal}");
     }
@@ -117,7 +117,7 @@ fn views_do_not_change_the_state_hash() {
 fn only_draws_are_available_before_the_first_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
-    for answer in views(&mut session, "S1", None) {
+    for answer in call_every_view(&mut session, "S1", None) {
         assert_eq!(
             answer.expect_err("no day").to_string(),
             "day_unknown (day): no day has been simulated yet"

@@ -82,6 +82,11 @@ def sources(errors):
         plant(texts, error)
     changed = {path: text for path, text in texts.items() if text != original[path]}
     base = ROOT / "src/base"
+    # Every crate with a mutant needs the crate of the switch.
+    for manifest in (folder / "Cargo.toml" for path in list(changed) for folder in path.parents if (folder / "Cargo.toml").exists()):
+        text = manifest.read_text()
+        if manifest.parent not in (ROOT, base) and "novamind-base.workspace" not in text:
+            changed[manifest] = text.replace("[dependencies]\n", "[dependencies]\nnovamind-base.workspace = true\n", 1)
     library = base / "lib.rs"
     return changed | {base / "planted.rs": SWITCH, library: texts[library] + "\n#[doc(hidden)]\npub mod planted;\n"}
 

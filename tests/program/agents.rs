@@ -5,15 +5,15 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use crate::interfaces::{CALLS, last_hash, plain_mode_hash, predictions};
+use crate::interfaces::{CALLS, last_state_hash, plain_mode_hash, predictions};
 use crate::support::home::{Home, ProgramOutput, run_with_input};
 
 /// Folders of a user, whose servers are killed at the end of the test.
-struct Shell {
+struct AgentShell {
     home: Home,
 }
 
-impl Drop for Shell {
+impl Drop for AgentShell {
     fn drop(&mut self) {
         for file in self.runs().iter().map(|run| run.join("server.json")) {
             let pid = std::fs::read(&file)
@@ -30,9 +30,9 @@ fn announced_pid(announced: &Value) -> Option<String> {
     announced["pid"].as_u64().map(|pid| pid.to_string())
 }
 
-impl Shell {
-    fn new() -> Shell {
-        Shell { home: Home::new() }
+impl AgentShell {
+    fn new() -> AgentShell {
+        AgentShell { home: Home::new() }
     }
 
     fn runs(&self) -> Vec<PathBuf> {
@@ -41,14 +41,14 @@ impl Shell {
         entries.filter(|path| path.join("run.toml").is_file()).collect()
     }
 
-    fn agent(&self, words: &[&str]) -> ProgramOutput {
+    fn run_agent(&self, words: &[&str]) -> ProgramOutput {
         run_with_input(self.home.program().arg("agent").args(words), "")
     }
 
     /// Runs a command that must succeed, and returns its JSON output.
     #[track_caller]
     fn run_json(&self, words: &[&str]) -> Value {
-        let done = self.agent(words);
+        let done = self.run_agent(words);
         assert_eq!((done.exit_code, done.stderr.as_str()), (0, ""), "{words:?}: {}", done.stdout);
         serde_json::from_str(&done.stdout)
             .unwrap_or_else(|error| panic!("{words:?}: {error}: {}", done.stdout))
@@ -78,8 +78,8 @@ impl Shell {
 
 #[test]
 fn shell_agent_reaches_the_same_state() {
-    let shell = Shell::new();
-    assert_eq!(shell.agent(&["status"]).exit_code, 2);
+    let shell = AgentShell::new();
+    assert_eq!(shell.run_agent(&["status"]).exit_code, 2);
     let begun = shell.create_run();
     assert_eq!((&begun["day"], &begun["total_days"]), (&json!(0), &json!(28)));
     assert_eq!(shell.announcement().map(|served| served["port"].clone()), Some(begun["port"].clone()));
@@ -88,11 +88,11 @@ fn shell_agent_reaches_the_same_state() {
     assert_eq!(shell.run_json(&["call", quotas.0, quotas.1])["success"], true);
     let from_input = run_with_input(shell.home.program().args(["agent", "call", ads.0, "-"]), ads.1);
     assert_eq!(from_input.exit_code, 0, "{}", from_input.stderr);
-    shell.agent(&["call", "set_capacity_tier", "--tier", "9"]).assert_fails(5, &["tier", "("]);
-    shell.agent(&["call", "set_capacity_tier", "9"]).assert_fails(2, &["JSON object"]);
-    shell.agent(&["query", "SELECT * FROM events"]).assert_fails(5, &["sql_"]);
-    shell.agent(&["next-week", r#"{"rationale": "x"}"#]).assert_fails(5, &["prediction"]);
-    shell.agent(&["next-week", "x", "1"]).assert_fails(2, &["12 numbers"]);
+    shell.run_agent(&["call", "set_capacity_tier", "--tier", "9"]).assert_fails(5, &["tier", "("]);
+    shell.run_agent(&["call", "set_capacity_tier", "9"]).assert_fails(2, &["JSON object"]);
+    shell.run_agent(&["query", "SELECT * FROM events"]).assert_fails(5, &["sql_"]);
+    shell.run_agent(&["next-week", r#"{"rationale": "x"}"#]).assert_fails(5, &["prediction"]);
+    shell.run_agent(&["next-week", "x", "1"]).assert_fails(2, &["12 numbers"]);
     shell.advance_week(7);
     let forecast = ["1e6", "0", "2000000"];
     let words = [&["next-week", "on"][..], &forecast, &forecast, &forecast, &forecast].concat();
@@ -108,12 +108,12 @@ fn shell_agent_reaches_the_same_state() {
     assert!(!is_marked());
     assert_eq!(shell.run_json(&["stop"])["stopped"], false);
     assert_eq!(shell.announcement(), None);
-    assert_eq!(last_hash(&shell.home), plain_mode_hash());
+    assert_eq!(last_state_hash(&shell.home), plain_mode_hash());
 }
 
 #[test]
 fn command_with_a_repeated_request_id_runs_once() {
-    let shell = Shell::new();
+    let shell = AgentShell::new();
     shell.create_run();
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let week = ["--request-id", "w", "next-week", "--expected-day", "0", &filed];
@@ -122,16 +122,18 @@ fn command_with_a_repeated_request_id_runs_once() {
     shell.kill_server();
     assert_eq!([shell.run_json(&price), shell.run_json(&week)], first);
     shell
-        .agent(&["--request-id", "p", "call", "set_prices", "--A", "13"])
+        .run_agent(&["--request-id", "p", "call", "set_prices", "--A", "13"])
         .assert_fails(5, &["request_id_payload_mismatch"]);
-    shell.agent(&["next-week", "--expected-day", "0", &filed]).assert_fails(5, &["unexpected_day", "day 7"]);
+    shell
+        .run_agent(&["next-week", "--expected-day", "0", &filed])
+        .assert_fails(5, &["unexpected_day", "day 7"]);
     assert_eq!(shell.run_json(&["status"])["day"], 7);
     shell.run_json(&["stop"]);
 }
 
 #[test]
 fn killed_server_is_restarted() {
-    let shell = Shell::new();
+    let shell = AgentShell::new();
     let first = shell.create_run();
     shell.advance_week(7);
     shell.kill_server();
@@ -157,7 +159,7 @@ fn killed_server_is_restarted() {
 
 #[test]
 fn stale_announcement_is_ignored() {
-    let shell = Shell::new();
+    let shell = AgentShell::new();
     shell.create_run();
     shell.advance_week(7);
     assert_eq!(shell.run_json(&["stop"])["stopped"], true);
@@ -183,31 +185,31 @@ fn stale_announcement_is_ignored() {
     let mut out = std::io::BufReader::new(child.stdout.take().expect("a pipe"));
     std::io::BufRead::read_line(&mut out, &mut line).expect("a line");
     std::fs::remove_file(run.join("server.json")).expect("a file");
-    shell.agent(&["status"]).assert_fails(1, &["is open in another program"]);
+    shell.run_agent(&["status"]).assert_fails(1, &["is open in another program"]);
     child.kill().and_then(|()| child.wait()).expect("it ends");
 }
 
 #[test]
 fn finished_run_has_its_own_exit_code() {
-    let shell = Shell::new();
+    let shell = AgentShell::new();
     shell.run_json(&["new", "--seed", "7", "--days", "7", "--mode", "sandbox"]);
     shell.advance_week(7);
     assert_eq!(shell.run_json(&["status"])["ended"], "horizon");
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
-    shell.agent(&["next-week", &filed]).assert_fails(6, &["run_over"]);
-    shell.agent(&["next-week", r#"{"rationale": "on", "extra": 1}"#]).assert_fails(6, &["run_over"]);
-    shell.agent(&["call", "set_prices", "--A", "9"]).assert_fails(6, &["run_over"]);
+    shell.run_agent(&["next-week", &filed]).assert_fails(6, &["run_over"]);
+    shell.run_agent(&["next-week", r#"{"rationale": "on", "extra": 1}"#]).assert_fails(6, &["run_over"]);
+    shell.run_agent(&["call", "set_prices", "--A", "9"]).assert_fails(6, &["run_over"]);
     assert_eq!(shell.run_json(&["call", "get_vars"])["success"], true);
 }
 
 #[test]
 fn the_page_and_its_documents_are_written() {
-    let shell = Shell::new();
+    let shell = AgentShell::new();
     let folder = shell.home.0.path().join("handed");
-    assert!(shell.agent(&["docs"]).stdout.starts_with("# You run NovaMind\n"));
+    assert!(shell.run_agent(&["docs"]).stdout.starts_with("# You run NovaMind\n"));
     shell.run_json(&["new", "--seed", "7", "--days", "35", "--cash", "250000", "--mode", "sandbox"]);
     let id = shell.announcement().expect("a server")["run"].as_str().expect("a run").to_owned();
-    assert_eq!(shell.agent(&["--run", &id, "docs", "--out", &folder.to_string_lossy()]).exit_code, 0);
+    assert_eq!(shell.run_agent(&["--run", &id, "docs", "--out", &folder.to_string_lossy()]).exit_code, 0);
     let page = std::fs::read_to_string(folder.join("AGENT.md")).expect("a page");
     assert!(page.contains("for 35 days") && page.contains("$250,000"), "{page}");
     for (file, count) in [("tools.json", 36), ("tables.json", 19)] {
@@ -219,7 +221,7 @@ fn the_page_and_its_documents_are_written() {
 
 #[test]
 fn python_program_finds_the_run_and_the_package() {
-    let shell = Shell::new();
+    let shell = AgentShell::new();
     shell.create_run();
     let program = "import novamind, sys; from novamind import pricing; pricing.set_prices(A=10); \
                    print(novamind.current_day()); sys.exit(9)";
@@ -232,31 +234,31 @@ fn python_program_finds_the_run_and_the_package() {
         println!("SKIPPED: python3 is not installed");
         return;
     }
-    let done = shell.agent(&["python", "-c", program]);
+    let done = shell.run_agent(&["python", "-c", program]);
     assert_eq!((done.exit_code, done.stdout.as_str()), (9, "0\n"), "{}", done.stderr);
 }
 
 #[test]
 fn code_option_after_a_tool_belongs_to_the_tool() {
-    let shell = Shell::new();
-    assert_eq!(shell.agent(&["new", "--seed", "3"]).exit_code, 0);
-    let program_output = shell.agent(&["call", "python_exec", "--code", "SELECT 5 AS x"]);
+    let shell = AgentShell::new();
+    assert_eq!(shell.run_agent(&["new", "--seed", "3"]).exit_code, 0);
+    let program_output = shell.run_agent(&["call", "python_exec", "--code", "SELECT 5 AS x"]);
     assert!(
         program_output.exit_code == 0 && program_output.stdout.contains("5"),
         "{}{}",
         program_output.stdout,
         program_output.stderr
     );
-    let kept = shell.agent(&["call", "register_script", "--code", "SELECT 6 AS x", "--name", "six"]);
+    let kept = shell.run_agent(&["call", "register_script", "--code", "SELECT 6 AS x", "--name", "six"]);
     assert_eq!(kept.exit_code, 0, "{}", kept.stderr);
-    let rows = shell.agent(&["call", "query", "--sql", "SELECT 7 AS x"]);
+    let rows = shell.run_agent(&["call", "query", "--sql", "SELECT 7 AS x"]);
     assert!(rows.exit_code == 0 && rows.stdout.contains("7"), "{}{}", rows.stdout, rows.stderr);
-    assert_eq!(shell.agent(&["stop"]).exit_code, 0);
+    assert_eq!(shell.run_agent(&["stop"]).exit_code, 0);
 }
 
 #[test]
-fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
-    let shell = Shell::new();
+fn batch_restarts_a_command_that_stops_early_and_selects_a_run() {
+    let shell = AgentShell::new();
     let out = shell.home.0.path().join("batch");
     // Each start of the command plays one week. The second try exits with an error.
     let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
@@ -269,7 +271,7 @@ fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
     let folder = out.to_string_lossy().into_owned();
     let words =
         ["batch", "--command", &command, "--runs", "2", "--continue", "2", "--seed", "7", "--days", "14"];
-    let done = shell.agent(&[&words[..], &["--mode", "sandbox", "--out", &folder, "--json"]].concat());
+    let done = shell.run_agent(&[&words[..], &["--mode", "sandbox", "--out", &folder, "--json"]].concat());
     assert_eq!(done.exit_code, 0, "{}", done.stderr);
     let value: Value = serde_json::from_str(&done.stdout).expect("JSON");
     let kept: Value =
@@ -287,10 +289,10 @@ fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
     for run in shell.runs() {
         assert!(!run.join("server.json").exists());
     }
-    shell.agent(&[&words[..], &["--out", &folder]].concat()).assert_fails(2, &["not empty"]);
+    shell.run_agent(&[&words[..], &["--out", &folder]].concat()).assert_fails(2, &["not empty"]);
     let none = shell.home.0.path().join("none");
     let program_output =
-        shell.agent(&["batch", "--command", "true", "--days", "3", "--out", &none.to_string_lossy()]);
+        shell.run_agent(&["batch", "--command", "true", "--days", "3", "--out", &none.to_string_lossy()]);
     assert!(
         program_output.exit_code != 0 && !none.exists(),
         "a batch that cannot begin leaves nothing: {}",

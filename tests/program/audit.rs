@@ -91,7 +91,7 @@ impl Study {
         findings.iter().map(of).collect()
     }
 
-    fn kinds(&self, machines: &[&str]) -> Vec<String> {
+    fn finding_kinds(&self, machines: &[&str]) -> Vec<String> {
         self.audit(machines).into_iter().map(|(kind, ..)| kind).collect()
     }
 }
@@ -101,7 +101,7 @@ fn lines(run: &Path) -> Vec<Map<String, Value>> {
     text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
 }
 
-fn digest(text: &str) -> String {
+fn line_digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
@@ -116,16 +116,16 @@ fn write_forged_lines_with_afterwards(
     lines: Vec<Map<String, Value>>,
     afterwards: Vec<Map<String, Value>>,
 ) {
-    let (mut text, mut prev) = (String::new(), digest(""));
+    let (mut text, mut prev) = (String::new(), line_digest(""));
     let (mut after, count) = (String::new(), lines.len());
     for (seq, mut line) in lines.into_iter().chain(afterwards).enumerate() {
         line.insert("seq".to_owned(), json!(seq));
         line.insert("prev".to_owned(), json!(prev));
         line.shift_remove("sum");
         let bare = Value::Object(line.clone()).to_string();
-        line.insert("sum".to_owned(), json!(&digest(&bare)[..16]));
+        line.insert("sum".to_owned(), json!(&line_digest(&bare)[..16]));
         let whole = Value::Object(line).to_string();
-        prev = digest(&whole);
+        prev = line_digest(&whole);
         *(if seq < count { &mut text } else { &mut after }) += &(whole + "\n");
     }
     fs::write(run.join("trajectory.jsonl"), text).expect("written");
@@ -193,7 +193,7 @@ fn records_of_earlier_builds_with_removed_fields_still_verify() {
 }
 
 #[test]
-fn audit_finds_records_that_were_changed_cut_or_removed() {
+fn audit_finds_changed_truncated_and_removed_records() {
     let study = Study::new();
     study.play_session("one", &format!("P01\nyes\nset_prices A=9\n{}quit\n", WEEKS.concat()));
     let run = study.only_run("one", "P01");
@@ -208,7 +208,7 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
     let call = changed.iter().position(|line| line["kind"] == "call").expect("a call");
     changed[call]["args"]["A"] = json!(30);
     write_forged_lines(&run, changed);
-    let kinds = study.kinds(&["one"]);
+    let kinds = study.finding_kinds(&["one"]);
     assert!(kinds.contains(&"not_reached".to_owned()), "{kinds:?}");
     restore();
     // The last weeks are removed from the trajectory but not from the database.
@@ -221,9 +221,9 @@ fn audit_finds_records_that_were_changed_cut_or_removed() {
     restore();
     // First a byte of the trajectory is changed, then the trajectory is removed.
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":9", "\"A\":8", 1)).expect("written");
-    assert!(study.kinds(&["one"]).contains(&"damaged".to_owned()));
+    assert!(study.finding_kinds(&["one"]).contains(&"damaged".to_owned()));
     fs::remove_file(run.join("trajectory.jsonl")).expect("gone");
-    assert!(study.kinds(&["one"]).contains(&"missing".to_owned()));
+    assert!(study.finding_kinds(&["one"]).contains(&"missing".to_owned()));
 }
 
 #[test]
@@ -251,7 +251,7 @@ fn audit_finds_edited_manifests_and_clocks() {
     write_forged_lines(&run, record_lines.clone());
     fs::write(run.join("run.toml"), good.replace("participant = \"P01\"", "participant = \"P02\""))
         .expect("written");
-    let kinds = study.kinds(&["one"]);
+    let kinds = study.finding_kinds(&["one"]);
     assert!(kinds.contains(&"assignment".to_owned()), "{kinds:?}");
     fs::write(run.join("run.toml"), &good).expect("written");
     // The clock was set back between two lines.
@@ -264,7 +264,7 @@ fn audit_finds_edited_manifests_and_clocks() {
 }
 
 #[test]
-fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
+fn audit_reports_missing_runs_and_runs_of_a_different_protocol() {
     let study = Study::new();
     fs::create_dir(study.machine("empty")).expect("a folder");
     let found = study.audit(&["empty"]);
@@ -275,7 +275,7 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     let path = study.home.0.path().join("pilot/study.toml");
     let text = fs::read_to_string(&path).expect("a protocol");
     fs::write(&path, format!("{text}\n# changed\n")).expect("written");
-    let kinds: Vec<String> = study.kinds(&["one"]);
+    let kinds: Vec<String> = study.finding_kinds(&["one"]);
     assert_eq!(kinds.len(), 2, "{kinds:?}");
     for kind in ["nothing_examined", "other_protocol"] {
         assert!(kinds.contains(&kind.to_owned()), "{kinds:?}");
@@ -301,11 +301,11 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     fs::write(&path, text.replace("name = \"pilot\"", "name = \"other\"")).expect("written");
     let output = study.run("one", &["study", "audit", &study.folder()]);
     assert!(output.stdout.contains("Runs of other studies, not examined: 1."), "{}", output.stdout);
-    assert_eq!(study.kinds(&["one"]), ["nothing_examined"]);
+    assert_eq!(study.finding_kinds(&["one"]), ["nothing_examined"]);
 }
 
 #[test]
-fn audit_finds_a_clock_that_was_set_within_the_last_sitting() {
+fn audit_finds_a_clock_change_in_the_last_session() {
     let study = Study::new();
     study.play_session("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
     assert_eq!(study.audit(&["one"]), []);
@@ -340,7 +340,7 @@ fn audit_finds_a_clock_that_was_set_within_the_last_sitting() {
 }
 
 #[test]
-fn audit_finds_views_of_the_hidden_state_of_a_seed_that_is_still_played() {
+fn audit_finds_hidden_state_views_of_a_seed_with_unfinished_sessions() {
     let study = Study::new();
     study.play_session("one", &format!("P01\nyes\n{}next \"six\" naive\n", WEEKS.concat()));
     study.play_session("two", &format!("P02\nyes\n{}quit\n", WEEKS[0]));
@@ -443,7 +443,7 @@ fn audit_finds_damaged_lines_after_the_end() {
     let path = study.only_run("one", "P01").join("afterwards.jsonl");
     let good = fs::read_to_string(&path).expect("the actions after the end");
     fs::write(&path, good.replacen("\"value\":7", "\"value\":1", 1)).expect("written");
-    assert_eq!(study.kinds(&["one"]), ["damaged"]);
+    assert_eq!(study.finding_kinds(&["one"]), ["damaged"]);
 }
 
 #[cfg(unix)]
@@ -462,7 +462,7 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
     }
     // A copy of a folder of runs does not count as a second session.
     copy(&study.machine("one"), &study.machine("copy"));
-    assert_eq!(study.kinds(&["one", "copy"]), [] as [&str; 0]);
+    assert_eq!(study.finding_kinds(&["one", "copy"]), [] as [&str; 0]);
     // Named pipes instead of files must not block a command.
     let pipes = [
         study.machine("one").join("participants/P02/11112222/trajectory.jsonl"),
@@ -473,18 +473,18 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
         let _ = fs::remove_file(&pipe);
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("it runs").success());
     }
-    assert_eq!(study.kinds(&["one"]), ["damaged"], "the study of that run is unknown");
+    assert_eq!(study.finding_kinds(&["one"]), ["damaged"], "the study of that run is unknown");
     assert_eq!(study.run("one", &["study", "watch", &study.folder(), "--once"]).exit_code, 0);
 }
 
 #[test]
-fn audit_finds_that_the_run_of_a_finished_participant_is_gone() {
+fn audit_finds_a_missing_run_of_a_finished_participant() {
     let study = Study::new();
     study.play_session("one", &format!("P01\nyes\n{}{}quit\n", WEEKS.concat(), WEEKS[0]));
     study.play_session("one", &format!("P02\nyes\n{}quit\n", WEEKS[0]));
     assert_eq!(study.audit(&["one"]), []);
     fs::remove_dir_all(study.machine("one").join("participants/P01")).expect("gone");
-    assert_eq!(study.kinds(&["one"]), ["missing"]);
+    assert_eq!(study.finding_kinds(&["one"]), ["missing"]);
     let missing = study.home.run(&["study", "audit", &study.folder(), "no-such-folder"]);
     assert_eq!(missing.exit_code, 1);
     assert!(missing.stderr.contains("no-such-folder is not a folder"), "{}", missing.stderr);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use novamind::lab::{Collector, Policy, RunSpec, play};
+use novamind::lab::{MetricsCollector, Policy, RunSpec, play_policy};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::Trajectory;
@@ -39,7 +39,7 @@ fn run(command: &mut Command) -> Vec<Value> {
 const SATURATED_MARKET: [&str; 4] = ["--cash", "1e9", "--set", "leads.saturation_base=14.5"];
 
 #[test]
-fn the_built_program_and_the_library_reach_the_same_state() {
+fn program_and_library_reach_the_same_state() {
     let runs = tempfile::tempdir().expect("a folder");
     let configuration = Configuration::bundled();
     for (name, until, extra) in [("P6", 60, &[][..]), ("P1a", 32, &SATURATED_MARKET)] {
@@ -52,7 +52,8 @@ fn the_built_program_and_the_library_reach_the_same_state() {
             spec.cash = Some(1e9);
             spec.overrides = vec![("leads.saturation_base".to_owned(), "14.5".to_owned())];
         }
-        let run_outcome = play(&policy, &spec, &configuration, &mut Collector::disabled()).expect("it plays");
+        let run_outcome =
+            play_policy(&policy, &spec, &configuration, &mut MetricsCollector::disabled()).expect("it plays");
         assert_eq!(built["state_hash"], run_outcome.state_hash, "{name}");
         assert_eq!(built["cash"].as_f64().map(f64::to_bits), Some(run_outcome.cash.to_bits()), "{name}");
         assert_eq!((built["day"].as_u64(), run_outcome.day), (Some(u64::from(until)), until));
@@ -100,7 +101,7 @@ fn saved_run_has_the_reported_state() {
 const WEEKS: u32 = 6;
 
 /// Plays a week with typical actions.
-fn play_a_week(session: &mut Session, week: u32) {
+fn play_week(session: &mut Session, week: u32) {
     let mut call = |tool: &str, arguments: Value| {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     };
@@ -125,13 +126,13 @@ fn reopening_at_any_week_keeps_the_state() {
     let new = |storage| NewRun { seed: Some(11), days: Some(42), storage, ..NewRun::default() };
     let create = |storage| Session::create(new(storage), &Configuration::bundled()).expect("it begins");
     let mut straight = create(Storage::Memory);
-    (0..WEEKS).for_each(|week| play_a_week(&mut straight, week));
+    (0..WEEKS).for_each(|week| play_week(&mut straight, week));
     // The run is closed after every week, or after one week.
     for left_after in (0..WEEKS).map(Some).chain([None]) {
         let mut session = create(Storage::Runs(folder.path().to_owned()));
         let place = session.folder().expect("a folder").to_owned();
         for week in 0..WEEKS {
-            play_a_week(&mut session, week);
+            play_week(&mut session, week);
             if left_after.is_none_or(|chosen| chosen == week) {
                 drop(session);
                 session = Session::open(&place, Access::Write, true).expect("it opens");
@@ -149,7 +150,7 @@ fn state_does_not_depend_on_the_mode() {
     let hash = |mode| {
         let new = NewRun { seed: Some(11), days: Some(42), mode, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::bundled()).expect("it begins");
-        (0..3).for_each(|week| play_a_week(&mut session, week));
+        (0..3).for_each(|week| play_week(&mut session, week));
         session.state_hash()
     };
     let debug = hash(Mode::Debug);
@@ -158,9 +159,9 @@ fn state_does_not_depend_on_the_mode() {
 }
 
 /// Returns the day and the state hash of each week of a run.
-fn states(folder: &Path) -> Vec<(u32, String)> {
+fn week_states(folder: &Path) -> Vec<(u32, String)> {
     let read = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
-    let closed = read.lines.iter().filter_map(|line| Some((line.day, line.record.closing()?)));
+    let closed = read.lines.iter().filter_map(|line| Some((line.day, line.record.closed_days()?)));
     closed.map(|(day, closing)| (day, closing.state_hash.clone())).collect()
 }
 
@@ -192,7 +193,7 @@ fn complete_weeks_while_simulating(folder: &Path) -> Option<usize> {
 }
 
 /// Waits until at least `complete` weeks are complete and the next week is running, then kills the program.
-fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
+fn kill_during_a_week(mut child: Child, runs: &Path, complete: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
     let is_there = || {
         let mut entries = fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
@@ -214,7 +215,7 @@ fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
 }
 
 #[test]
-fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
+fn program_killed_during_a_week_loses_no_confirmed_week() {
     let next = "next naive\n";
     let tell = |child: &mut Child, lines: &str| {
         child.stdin.as_mut().expect("a pipe").write_all(lines.as_bytes()).expect("written");
@@ -223,7 +224,7 @@ fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
     let mut child = start(whole.path(), &new_run_options());
     tell(&mut child, &format!("{OPENING}{}", next.repeat(8)));
     assert!(child.wait_with_output().expect("it ends").status.success());
-    let expected = states(&only_run(whole.path()));
+    let expected = week_states(&only_run(whole.path()));
     assert_eq!(expected.len(), 8);
 
     let broken = tempfile::tempdir().expect("a folder");
@@ -231,7 +232,7 @@ fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
     tell(&mut child, &format!("{OPENING}{}", next.repeat(8)));
     let mut interrupted = 0;
     for complete in 2..5 {
-        kill_in_a_week(child, broken.path(), complete);
+        kill_during_a_week(child, broken.path(), complete);
         interrupted += usize::from(complete_weeks_while_simulating(&only_run(broken.path())).is_some());
         // Any number of complete weeks is accepted, because the check can miss a week.
         child = start(broken.path(), &["--run", "latest"]);
@@ -242,7 +243,7 @@ fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
     let folder = only_run(broken.path());
     let output = child.wait_with_output().expect("it ends");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(states(&folder), expected);
+    assert_eq!(week_states(&folder), expected);
 
     // The database must equal the database of the uninterrupted run.
     let mut straight = Session::open(&only_run(whole.path()), Access::Write, true).expect("it opens");

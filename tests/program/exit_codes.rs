@@ -24,7 +24,7 @@ fn bankruptcy_is_exit_code_4_on_request() {
 }
 
 #[test]
-fn every_kind_of_failure_has_its_exit_code() {
+fn failures_have_the_documented_exit_codes() {
     let home = Home::new();
     for (code, arguments) in [
         (1, &["run", "--policy", "P0", "--days", "14", "--metrics", "/nowhere/at/all.csv"][..]),
@@ -61,7 +61,7 @@ fn earlier_names_of_commands_and_options_still_work() {
     assert_eq!(seeded("--planted"), seeded("--fault"));
 }
 
-fn sql_counting_to(most: u32) -> String {
+fn counting_statement(most: u32) -> String {
     format!(
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {most}) SELECT x FROM n"
     )
@@ -70,9 +70,10 @@ fn sql_counting_to(most: u32) -> String {
 #[test]
 fn query_returns_5000_rows_without_a_database() {
     let home = Home::new();
-    let run = home.two_weeks();
+    let run = home.play_two_weeks();
     let rows = |most: u32| {
-        let program_output = home.run(&["query", &run_id(&run), &sql_counting_to(most), "--format", "csv"]);
+        let program_output =
+            home.run(&["query", &run_id(&run), &counting_statement(most), "--format", "csv"]);
         assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
         let rows: Vec<u32> =
             program_output.stdout.lines().skip(1).map(|line| line.parse().expect("a number")).collect();
@@ -83,7 +84,7 @@ fn query_returns_5000_rows_without_a_database() {
         for (most, expected) in [(499, 499), (501, 501), (1_200, 1_200), (5_000, 5_000), (5_003, 5_000)] {
             assert_eq!(rows(most), expected, "of {most}, the database is {database}");
         }
-        let cut = home.run(&["query", &run_id(&run), &sql_counting_to(5_001), "--format", "json"]);
+        let cut = home.run(&["query", &run_id(&run), &counting_statement(5_001), "--format", "json"]);
         assert!(cut.stdout.contains("\"truncated\":true"), "omitted rows are reported");
         fs::remove_file(run.join("world.db")).unwrap_or_default();
     }
@@ -92,7 +93,7 @@ fn query_returns_5000_rows_without_a_database() {
 #[test]
 fn named_query_is_printed_as_markdown() {
     let home = Home::new();
-    let run = home.two_weeks();
+    let run = home.play_two_weeks();
     let program_output = home.run(&["query", &run_id(&run), "economy", "--format", "md"]);
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert!(

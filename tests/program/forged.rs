@@ -11,41 +11,41 @@ use serde_json::{Map, Value};
 use crate::support::home::{Home, ProgramOutput, run_id};
 
 /// The lines of a trajectory as objects.
-type Lines = Vec<Map<String, Value>>;
+type TrajectoryLines = Vec<Map<String, Value>>;
 
-fn lines_of(text: &str) -> Lines {
+fn read_lines(text: &str) -> TrajectoryLines {
     text.lines().map(|line| serde_json::from_str(line).expect("a line")).collect()
 }
 
-fn digest(text: &str) -> String {
+fn line_digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
 /// Returns the text of a line with a matching checksum.
 fn line_with_checksum(mut line: Map<String, Value>) -> String {
     line.shift_remove("sum");
-    let sum = digest(&Value::Object(line.clone()).to_string())[..16].to_owned();
+    let sum = line_digest(&Value::Object(line.clone()).to_string())[..16].to_owned();
     line.insert("sum".to_owned(), sum.into());
     Value::Object(line).to_string()
 }
 
 /// Returns the text of a trajectory with recomputed checksums and, if `chained` is set, with a recomputed hash chain.
-fn trajectory_text(lines: Lines, chained: bool) -> String {
+fn trajectory_text(lines: TrajectoryLines, chained: bool) -> String {
     let mut text = String::new();
-    let mut before = digest("");
+    let mut before = line_digest("");
     for mut line in lines {
         if chained {
             line.insert("prev".to_owned(), before.into());
         }
         let line = line_with_checksum(line);
-        before = digest(&line);
+        before = line_digest(&line);
         text += &(line + "\n");
     }
     text
 }
 
 /// Changes the price of the second week. Returns the index of the changed line.
-fn change_price(lines: &mut Lines) -> usize {
+fn change_price(lines: &mut TrajectoryLines) -> usize {
     let is_it = |line: &Map<String, Value>| line.get("args").is_some_and(|args| args["C"] == 50);
     let at = lines.iter().position(is_it).expect("the call of the second week");
     lines[at]["args"]["C"] = 49.into();
@@ -78,17 +78,17 @@ impl OpenedArchive {
         OpenedArchive { files, seal }
     }
 
-    fn text(&self, file: &str) -> String {
+    fn file_text(&self, file: &str) -> String {
         String::from_utf8(self.files[file].clone()).expect("text")
     }
 
     /// Replaces a file and recomputes the seal.
     fn replace_file(&mut self, file: &str, text: String) {
         if file == "trajectory.jsonl" {
-            self.seal.last_hash = digest(text.lines().last().expect("lines"));
+            self.seal.last_hash = line_digest(text.lines().last().expect("lines"));
         }
         let sealed_file = self.seal.file.iter_mut().find(|entry| entry.name == file).expect("it is sealed");
-        (sealed_file.bytes, sealed_file.blake3) = (text.len() as u64, digest(&text));
+        (sealed_file.bytes, sealed_file.blake3) = (text.len() as u64, line_digest(&text));
         self.files.insert(file.to_owned(), text.into_bytes());
         self.seal = self.seal.clone().with_checksum();
     }
@@ -112,7 +112,7 @@ impl OpenedArchive {
 
 fn two_weeks() -> (Home, PathBuf) {
     let home = Home::new();
-    let run = home.two_weeks();
+    let run = home.play_two_weeks();
     (home, run)
 }
 
@@ -120,7 +120,7 @@ fn two_weeks() -> (Home, PathBuf) {
 fn edited_line_breaks_the_hash_chain() {
     let (home, run) = two_weeks();
     let path = run.join("trajectory.jsonl");
-    let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
+    let mut lines = read_lines(&fs::read_to_string(&path).expect("text"));
     let at = change_price(&mut lines);
     fs::write(&path, trajectory_text(lines, false)).expect("written");
     let next = format!("line {}", at + 2);
@@ -132,7 +132,7 @@ fn edited_line_breaks_the_hash_chain() {
 fn rechained_trajectory_does_not_verify() {
     let (home, run) = two_weeks();
     let path = run.join("trajectory.jsonl");
-    let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
+    let mut lines = read_lines(&fs::read_to_string(&path).expect("text"));
     change_price(&mut lines);
     fs::write(&path, trajectory_text(lines, true)).expect("written");
     // The database would reveal the change. Without the database, the re-simulated states must reveal it.
@@ -152,7 +152,7 @@ fn resealed_archive_is_still_verified() {
     fs::remove_dir_all(other.runs().join(run_id(&run))).expect("it was there");
 
     let mut forged = opened();
-    let mut lines = lines_of(&forged.text("trajectory.jsonl"));
+    let mut lines = read_lines(&forged.file_text("trajectory.jsonl"));
     change_price(&mut lines);
     forged.replace_file("trajectory.jsonl", trajectory_text(lines, false));
     forged
@@ -160,9 +160,13 @@ fn resealed_archive_is_still_verified() {
         .assert_fails(3, &["trajectory.jsonl", "does not have the hash of the previous line"]);
 
     let mut forged = opened();
-    let seed =
-        forged.text("run.toml").lines().find(|line| line.starts_with("seed")).expect("a seed").to_owned();
-    let manifest = forged.text("run.toml").replace(&seed, "seed = 8");
+    let seed = forged
+        .file_text("run.toml")
+        .lines()
+        .find(|line| line.starts_with("seed"))
+        .expect("a seed")
+        .to_owned();
+    let manifest = forged.file_text("run.toml").replace(&seed, "seed = 8");
     forged.replace_file("run.toml", manifest);
     let program_output = forged.import(&other);
     assert_eq!(
@@ -173,7 +177,7 @@ fn resealed_archive_is_still_verified() {
 
     // If every hash is recomputed, only the recorded states reveal the change.
     let mut forged = opened();
-    let mut lines = lines_of(&forged.text("trajectory.jsonl"));
+    let mut lines = read_lines(&forged.file_text("trajectory.jsonl"));
     change_price(&mut lines);
     forged.replace_file("trajectory.jsonl", trajectory_text(lines, true));
     assert_eq!(forged.import(&other).exit_code, 0);

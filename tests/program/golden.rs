@@ -11,11 +11,11 @@ fn data_path(below: &str) -> PathBuf {
 }
 
 /// Policies that every test run compares, because their small companies are simulated fast.
-const FAST: [&str; 2] = ["P6", "P8"];
+const FAST_POLICIES: [&str; 2] = ["P6", "P8"];
 
 #[test]
 fn fast_policies_match_golden_figures() {
-    check_policies(&FAST);
+    check_policies(&FAST_POLICIES);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::interfaces::{NEW_RUN_OPTIONS, Server, predictions};
 use crate::support::home::Home;
 
-const REQUESTS: usize = 1000;
+const REQUEST_COUNT: usize = 1000;
 
 /// Returns a value of an unexpected type.
 fn unexpected_value(random: &mut ChaCha8Rng) -> Value {
@@ -104,7 +104,7 @@ fn random_request(tools: &[Value], known: &str, random: &mut ChaCha8Rng) -> (Vec
 }
 
 #[test]
-fn a_thousand_hostile_requests_leave_the_server_answering_and_the_run_valid() {
+fn server_keeps_answering_after_a_thousand_hostile_requests() {
     let home = Home::new();
     let token = home.0.path().join("token.txt");
     let server =
@@ -115,7 +115,7 @@ fn a_thousand_hostile_requests_leave_the_server_answering_and_the_run_valid() {
     let tools = ask("GET", "/tools", "").1;
     let tools = tools.as_array().expect("tools");
     let mut random = ChaCha8Rng::seed_from_u64(85);
-    for number in 0..REQUESTS {
+    for number in 0..REQUEST_COUNT {
         let (bytes, expected) = random_request(tools, &known, &mut random);
         let answer = server.send_raw(&bytes);
         let status: Option<u16> = answer.split(' ').nth(1).and_then(|code| code.parse().ok());

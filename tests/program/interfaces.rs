@@ -95,7 +95,7 @@ pub const CALLS: [(&str, &str); 3] = [
 ];
 
 /// Returns the last state hash of the only run.
-pub fn last_hash(home: &Home) -> String {
+pub fn last_state_hash(home: &Home) -> String {
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
     let verified = home.run(&["replay", &id, "--verify"]);
     assert_eq!(verified.exit_code, 0, "{}", verified.stderr);
@@ -114,12 +114,12 @@ pub fn plain_mode_hash() -> String {
     lines = lines.replace(r#", "C": null"#, "");
     let program_output = home.play(&["--seed", "7", "--days", "28", "--mode", "sandbox", "--strict"], &lines);
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stdout);
-    last_hash(&home)
+    last_state_hash(&home)
 }
 
 #[cfg(unix)]
 #[test]
-fn a_statement_and_a_week_can_be_called_as_tools() {
+fn sql_statement_and_week_can_be_called_as_tools() {
     let home = Home::new();
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let call = |tool: &str, args: Value| server.post("/call", &json!({ "tool": tool, "args": args }));
@@ -198,11 +198,11 @@ fn http_client_reaches_the_same_state() {
     assert_eq!(server.get("/tables").as_array().map(Vec::len), Some(19));
     assert!(server.get("/openapi.json")["components"]["schemas"]["set_prices"].is_object());
     assert_eq!(server.stop(), 0);
-    assert_eq!(last_hash(&home), plain_mode_hash());
+    assert_eq!(last_state_hash(&home), plain_mode_hash());
 }
 
 #[test]
-fn a_week_answers_with_the_figures_of_plain_mode() {
+fn week_response_has_the_figures_of_plain_mode() {
     let (home, plain) = (Home::new(), Home::new());
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let (_, week) = server.advance_week();
@@ -426,11 +426,11 @@ fn mcp_client_lists_tools_and_plays() {
     drop(to);
     assert!(child.wait().expect("it ends").success());
     assert!(!listed() && !home.only_run().join("server.json").exists());
-    assert_eq!(last_hash(&home), plain_mode_hash());
+    assert_eq!(last_state_hash(&home), plain_mode_hash());
 }
 
 #[test]
-fn the_python_client_plays() {
+fn python_client_plays_a_run() {
     if Command::new("python3").arg("--version").stdout(Stdio::null()).status().is_err() {
         println!("SKIPPED: python3 is not installed");
         return;
@@ -464,12 +464,12 @@ assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
     #[cfg(unix)]
     {
         assert_eq!(server.stop(), 0);
-        assert_eq!(last_hash(&home), plain_mode_hash());
+        assert_eq!(last_state_hash(&home), plain_mode_hash());
     }
 }
 
 #[test]
-fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() {
+fn served_run_with_non_baseline_options_is_reported_as_sandbox() {
     // The client disconnects immediately, but the run has been created.
     let mode_of = |options: &[&str]| {
         let home = Home::new();
@@ -505,7 +505,7 @@ fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() 
 }
 
 #[test]
-fn client_of_a_run_that_cannot_be_opened_is_answered() {
+fn mcp_reports_a_run_that_cannot_be_opened() {
     let home = Home::new();
     let lines = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"initialize\",\"params\":{}}\n";
     let program_output = run_with_input(home.program().args(["mcp", "--run", "nothere"]), lines);

@@ -3,7 +3,7 @@
 use crate::support::home::Home;
 
 /// Plays and saves a run of the policy P0, and returns the figures that were written during play.
-fn keep_run(home: &Home, seed: &str) -> String {
+fn save_policy_run(home: &Home, seed: &str) -> String {
     let file = home.0.path().join(format!("{seed}.csv"));
     let path = file.to_str().expect("a path");
     let program_output =
@@ -13,9 +13,9 @@ fn keep_run(home: &Home, seed: &str) -> String {
 }
 
 #[test]
-fn metrics_of_a_kept_run_match_those_written_while_playing() {
+fn metrics_of_a_saved_run_match_metrics_written_during_play() {
     let home = Home::new();
-    let live = keep_run(&home, "3");
+    let live = save_policy_run(&home, "3");
     let program_output = home.run(&["lab", "metrics", "latest"]);
     assert_eq!((program_output.exit_code, program_output.stderr.as_str()), (0, ""));
     assert!(program_output.stdout == live, "{} and {} bytes", program_output.stdout.len(), live.len());
@@ -24,10 +24,10 @@ fn metrics_of_a_kept_run_match_those_written_while_playing() {
 }
 
 #[test]
-fn two_kept_runs_are_compared() {
+fn lab_diff_compares_two_saved_runs() {
     let home = Home::new();
-    keep_run(&home, "3");
-    keep_run(&home, "4");
+    save_policy_run(&home, "3");
+    save_policy_run(&home, "4");
     let runs: Vec<String> = std::fs::read_dir(home.runs())
         .expect("a folder")
         .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
@@ -54,7 +54,7 @@ fn two_kept_runs_are_compared() {
 #[test]
 fn unfinished_sandbox_cannot_be_inspected() {
     let home = Home::new();
-    home.two_weeks();
+    home.play_two_weeks();
     for arguments in [
         &["lab", "metrics", "latest"][..],
         &["lab", "diff", "latest", "latest"],
@@ -129,9 +129,9 @@ fn why_shows_causes_without_hidden_state() {
 }
 
 #[test]
-fn the_replay_of_a_kept_run_on_the_x_ray_screen_needs_a_terminal() {
+fn replay_on_the_xray_screen_requires_a_terminal() {
     let home = Home::new();
-    keep_run(&home, "3");
+    save_policy_run(&home, "3");
     let program_output = home.run(&["replay", "latest", "--xray"]);
     assert_eq!(program_output.exit_code, 2, "{}", program_output.stderr);
     assert!(program_output.stderr.contains("a replay needs a terminal"), "{}", program_output.stderr);

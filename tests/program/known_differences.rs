@@ -108,12 +108,12 @@ impl Fixture {
     }
 
     #[track_caller]
-    fn manual_says(&self, tool: &str, parts: &[&str]) {
+    fn assert_manual_contains(&self, tool: &str, parts: &[&str]) {
         assert_contains(&self.home.run(&["tools", tool]).stdout, parts);
     }
 
     #[track_caller]
-    fn term_says(&self, term: &str, parts: &[&str]) {
+    fn assert_term_contains(&self, term: &str, parts: &[&str]) {
         assert_contains(&self.play_after_fixture(&format!("explain {term}\n")), parts);
     }
 
@@ -143,29 +143,32 @@ type Example = (&'static str, fn(&Fixture));
 
 const INSTRUCTION_EXAMPLES: [Example; 6] = [
     ("the probability of an outage", |stage| {
-        stage.manual_says("set_daily_spend", &["probability", "solve open issues"]);
-        stage.manual_says("set_targeted_ops_spend", &["per day and dollar"]);
-        stage.term_says("outage", &["probability"]);
-        stage.term_says("operations", &["per dollar"]);
+        stage.assert_manual_contains("set_daily_spend", &["probability", "solve open issues"]);
+        stage.assert_manual_contains("set_targeted_ops_spend", &["per day and dollar"]);
+        stage.assert_term_contains("outage", &["probability"]);
+        stage.assert_term_contains("operations", &["per dollar"]);
     }),
     ("the effect of development", |stage| {
-        stage.manual_says("set_daily_spend", &["Development permanently raises the quality", "ln(1 + spend"]);
-        stage.manual_says("set_targeted_dev_spend", &["ln(1 + spend"]);
-        stage.term_says("development", &["ln(1 + spend"]);
+        stage.assert_manual_contains(
+            "set_daily_spend",
+            &["Development permanently raises the quality", "ln(1 + spend"],
+        );
+        stage.assert_manual_contains("set_targeted_dev_spend", &["ln(1 + spend"]);
+        stage.assert_term_contains("development", &["ln(1 + spend"]);
     }),
     ("the increase of perceived quality", |stage| {
-        stage.term_says("perceived quality", &["days as a subscriber"]);
+        stage.assert_term_contains("perceived quality", &["days as a subscriber"]);
     }),
     ("the ranges of the economy's index", |stage| {
-        stage.term_says("PMI", &["expansion from", "neutral from", "contraction from"]);
+        stage.assert_term_contains("PMI", &["expansion from", "neutral from", "contraction from"]);
     }),
     ("the cost of every lead,", |stage| {
-        stage.manual_says("set_targeted_ad_spend", &["for every lead"]);
-        stage.term_says("lead acquisition cost", &["per lead"]);
+        stage.assert_manual_contains("set_targeted_ad_spend", &["for every lead"]);
+        stage.assert_term_contains("lead acquisition cost", &["per lead"]);
     }),
     ("the cost of a late reply to an", |stage| {
-        stage.manual_says("send_enterprise_deal", &["of the relationship", "the thread ends"]);
-        stage.term_says("turn", &["of the relationship"]);
+        stage.assert_manual_contains("send_enterprise_deal", &["of the relationship", "the thread ends"]);
+        stage.assert_term_contains("turn", &["of the relationship"]);
     }),
 ];
 
@@ -179,7 +182,7 @@ const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
         assert!(!facts.is_empty() && facts.iter().all(|need| need["call"].is_null()), "{facts:?}");
     }),
     ("the fact that an enterprise that", |stage| {
-        stage.term_says("retention thread", &["pays nothing"]);
+        stage.assert_term_contains("retention thread", &["pays nothing"]);
         assert!(stage.fixture_data("inbox")["threads"][0]["days_left"].is_u64());
     }),
     ("the number and group of the enterprise", |stage| {
@@ -235,7 +238,7 @@ const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
         assert!(list(&stage.fixture_data("queries forecast-record")["rows"])[0]["inside"].is_number());
     }),
     ("the meaning of a term, figure,", |stage| {
-        stage.term_says("daily_usage", &["daily_usage"]);
+        stage.assert_term_contains("daily_usage", &["daily_usage"]);
         assert!(!stage.fixture_data("glossary cohort")["terms"][0]["text"].is_null());
     }),
 ];
@@ -273,7 +276,7 @@ const PLAYER_ACTION_EXAMPLES: [Example; 5] = [
 
 const AGENT_ACTION_EXAMPLES: [Example; 1] = [("Agents run Python in", |stage| {
     assert_contains(&stage.fixture_data("python_exec").to_string(), &["2"]);
-    stage.manual_says("python_exec", &["#", "Python"]);
+    stage.assert_manual_contains("python_exec", &["#", "Python"]);
 })];
 
 const CALL_EXAMPLES: [Example; 15] = [

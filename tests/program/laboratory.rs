@@ -113,7 +113,7 @@ fn user_grid_is_cached_and_errors_name_line_and_key() {
 }
 
 #[test]
-fn opponents_play_the_world_of_a_run_that_is_over() {
+fn opponents_play_the_seed_and_scenario_of_a_finished_run() {
     let home = Home::new();
     let program_output =
         home.run(&["run", "--policy", "P1a", "--seed", "9", "--days", "28", "--surges", "on", "--save"]);
@@ -134,6 +134,6 @@ fn opponents_play_the_world_of_a_run_that_is_over() {
     let text = home.run(&["lab", "opponents", "latest"]).stdout;
     assert!(text.contains("same seed") && text.contains("harvest-late"), "{text}");
     let other = Home::new();
-    other.two_weeks();
+    other.play_two_weeks();
     other.run(&["lab", "opponents", "latest"]).assert_fails(1, &["End this run first"]);
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::support::home::{Home, run_with_input};
 
 #[test]
-fn a_lesson_is_copied_changed_and_checked() {
+fn user_lesson_is_copied_changed_and_checked() {
     let home = Home::new();
     let program_output = home.run(&["lesson", "copy", "cheapest-dollar", "late-help"]);
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
@@ -53,7 +53,7 @@ fn a_lesson_is_copied_changed_and_checked() {
 }
 
 #[test]
-fn another_try_is_judged_by_a_good_play_that_answers_by_rules() {
+fn retry_is_judged_by_a_reference_play_that_answers_by_rules() {
     let home = Home::new();
     let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/lessons/answers-by-rules.toml");
     let lines = "next\nnext\nnext\nnext\nagain 1\nnext\nnext\nnext\nnext\nnext\n";

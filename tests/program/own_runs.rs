@@ -18,7 +18,7 @@ fn row_named<'a>(rows: &'a [BTreeMap<String, String>], name: &str) -> &'a BTreeM
 }
 
 #[test]
-fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
+fn results_table_lists_comparable_runs_and_explains_omissions() {
     let home = Home::new();
     let saved = home.run(&["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"]);
     assert_eq!(saved.exit_code, 0, "{}", saved.stderr);
@@ -119,7 +119,7 @@ fn consistency_command_accepts_user_policies() {
 }
 
 #[test]
-fn many_runs_are_compared_in_rows_that_fit() {
+fn comparison_of_many_runs_fits_the_line_width() {
     let home = Home::new();
     for seed in 1..=3 {
         home.run(&["run", "--policy", "P1b", "--seed", &seed.to_string(), "--days", "14", "--save"]);
@@ -175,12 +175,12 @@ fn check_claims(section: &str) {
 }
 
 #[test]
-fn figures_on_the_page_of_experiments_are_those_of_their_commands() {
+fn documented_experiment_figures_match_their_commands() {
     check_claims("Figures that are checked");
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn figures_that_take_minutes_are_those_of_their_commands() {
+fn documented_figures_of_slow_commands_match() {
     check_claims("Figures that take minutes");
 }

@@ -173,7 +173,7 @@ fn invalid_bytes_are_rejected() {
 }
 
 #[test]
-fn a_run_is_left_continued_finished_and_replayed() {
+fn run_is_left_resumed_finished_and_replayed() {
     let runs = tempfile::tempdir().expect("a folder");
     let (text, _) =
         play(runs.path(), &["--seed", "3", "--days", "17"], format!("{EXAMPLE}quit\nset_prices A=99\n"));
@@ -209,7 +209,7 @@ fn invalid_starts_have_exit_codes() {
 
 #[cfg(unix)]
 #[test]
-fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
+fn termination_at_the_prompt_exits_immediately_and_saves_the_run() {
     use std::io::{BufRead, BufReader};
     let runs = tempfile::tempdir().expect("a folder");
     let mut child = program(runs.path())
@@ -275,7 +275,7 @@ fn market_and_engine_tools_are_commands() {
 }
 
 #[test]
-fn words_are_explained() {
+fn explain_command_explains_terms() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "explain runway\nwhat delivered quality\nglossary churn\nhelp runway\nexplain set_prices.A\nexplain nonsens\nhelp explain\n";
     let (text, code) = play(runs.path(), &["--seed", "7"], lines);
@@ -343,7 +343,7 @@ fn report_describes_weeks_and_runs() {
 }
 
 #[test]
-fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
+fn xray_requires_a_debug_run() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = format!("{EXAMPLE}\nxray leads S1 R=1\nxray leads S9\nxray leads S1 8\nxray\n");
     let (text, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
@@ -366,7 +366,7 @@ fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
 }
 
 #[test]
-fn the_views_of_the_xray_answer_in_words_and_as_data() {
+fn xray_views_have_text_and_json_output() {
     let runs = tempfile::tempdir().expect("a folder");
     let views = [
         "xray quality S1",
@@ -536,7 +536,7 @@ run 3 until subscribers(S1) < 0   # never
 }
 
 #[test]
-fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
+fn hidden_tables_are_queried_in_plain_mode_and_on_the_command_line() {
     let runs = tempfile::tempdir().expect("a folder");
     let asked = "xray sql SELECT day, group_id, reputation FROM hidden.groups WHERE group_id = 'S1'\n\
                  xray sql 3 SELECT count(*) AS n FROM hidden.customers WHERE start_day > 3 # a\n\
@@ -592,7 +592,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
 }
 
 #[test]
-fn parameters_are_set_in_debug_runs_and_refused_in_others() {
+fn setting_parameters_requires_a_debug_run() {
     let runs = tempfile::tempdir().expect("a folder");
     let commands = [
         "set",

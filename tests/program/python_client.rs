@@ -11,7 +11,7 @@ use crate::interfaces::{NEW_RUN_OPTIONS, Server};
 use crate::support::home::Home;
 
 /// Writes the client to a folder and returns the folder, or `None` if Python is not installed.
-fn client(home: &Home) -> Option<PathBuf> {
+fn write_client(home: &Home) -> Option<PathBuf> {
     if Command::new("python3").arg("--version").stdout(Stdio::null()).status().is_err() {
         println!("SKIPPED: python3 is not installed");
         return None;
@@ -22,7 +22,7 @@ fn client(home: &Home) -> Option<PathBuf> {
 }
 
 #[track_caller]
-fn python(home: &Home, client: &PathBuf, port: u16, program: &str) {
+fn run_python(home: &Home, client: &PathBuf, port: u16, program: &str) {
     let mut python = home.command("python3");
     python.env("PYTHONPATH", client).env("NOVAMIND_API_PORT", port.to_string());
     let output = python.args(["-c", program]).output().expect("python");
@@ -35,11 +35,11 @@ fn read_trajectory(home: &Home) -> Vec<Value> {
 }
 
 #[test]
-fn four_threads_share_a_connection() {
+fn client_connection_is_shared_by_four_threads() {
     let home = Home::new();
-    let Some(client) = client(&home) else { return };
+    let Some(client) = write_client(&home) else { return };
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
-    python(
+    run_python(
         &home,
         &client,
         server.port,
@@ -68,9 +68,9 @@ assert not errors, errors
 }
 
 #[test]
-fn one_process_plays_two_runs() {
+fn client_plays_two_runs_in_one_process() {
     let (home, other) = (Home::new(), Home::new());
-    let Some(client) = client(&home) else { return };
+    let Some(client) = write_client(&home) else { return };
     let token = home.0.path().join("token.txt");
     let first = Server::start(&home, &NEW_RUN_OPTIONS);
     let second =
@@ -93,7 +93,7 @@ else:
 ",
         first.port, second.port, token
     );
-    python(&home, &client, first.port, &program);
+    run_python(&home, &client, first.port, &program);
     let price = |home: &Home| {
         read_trajectory(home)
             .iter()
@@ -126,7 +126,7 @@ fn read_message(stream: &mut TcpStream) -> Vec<u8> {
 #[test]
 fn lost_response_is_retried_and_runs_once() {
     let home = Home::new();
-    let Some(client) = client(&home) else { return };
+    let Some(client) = write_client(&home) else { return };
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     let (port, served) = (listener.local_addr().expect("an address").port(), server.port);
@@ -148,7 +148,7 @@ fn lost_response_is_retried_and_runs_once() {
             }
         }
     });
-    python(
+    run_python(
         &home,
         &client,
         port,

@@ -10,7 +10,7 @@ fn run_without_python(home: &Home, arguments: &[&str], lines: &str) -> ProgramOu
 }
 
 #[test]
-fn scripts_require_python_and_statements_do_not() {
+fn only_python_scripts_require_python() {
     let home = Home::new();
     let lines = r##"python_exec {"code": "# python\nprint(1)"}
 python_exec {"code": "SELECT 5 AS x"}

@@ -9,14 +9,14 @@ fn week_request(id: &str, expected_day: u32) -> Value {
     json!({ "rationale": "on", "predictions": predictions(), "expected_day": expected_day, "request_id": id })
 }
 
-fn lines(home: &Home, kind: &str) -> Vec<Value> {
+fn trajectory_lines(home: &Home, kind: &str) -> Vec<Value> {
     let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
     let lines = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
     lines.filter(|line| line["kind"] == kind).collect()
 }
 
 #[test]
-fn a_retry_after_a_kill_returns_the_first_answer() {
+fn retry_after_a_kill_returns_the_first_response() {
     let home = Home::new();
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let prices = json!({ "tool": "set_prices", "args": { "A": 10, "B": 20 }, "request_id": "p" });
@@ -43,11 +43,11 @@ fn a_retry_after_a_kill_returns_the_first_answer() {
     let other = server.post("/next-week", &week_request("w", 7));
     assert_eq!((other.0, &other.1["code"]), (400, &json!("request_id_payload_mismatch")), "{other:?}");
     assert_eq!(server.get("/vars")["current_day"], 7);
-    assert_eq!((lines(&home, "advance").len(), lines(&home, "week").len()), (1, 1));
+    assert_eq!((trajectory_lines(&home, "advance").len(), trajectory_lines(&home, "week").len()), (1, 1));
 }
 
 #[test]
-fn retries_that_arrive_while_the_first_request_runs_wait_for_its_answer() {
+fn retries_during_the_first_request_wait_for_its_response() {
     let home = Home::new();
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let answers: Vec<(u16, Value)> = std::thread::scope(|scope| {
@@ -56,11 +56,11 @@ fn retries_that_arrive_while_the_first_request_runs_wait_for_its_answer() {
         all.into_iter().map(|one| one.join().expect("an answer")).collect()
     });
     assert!(answers.iter().all(|answer| *answer == answers[0] && answer.0 == 200), "{answers:?}");
-    assert_eq!(lines(&home, "advance").len(), 1);
+    assert_eq!(trajectory_lines(&home, "advance").len(), 1);
 }
 
 #[test]
-fn a_week_refuses_arguments_that_it_does_not_have() {
+fn next_week_rejects_unknown_arguments() {
     let home = Home::new();
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let mut mistyped = week_request("a", 0);
@@ -74,7 +74,7 @@ fn a_week_refuses_arguments_that_it_does_not_have() {
         assert_eq!((status, &answer["code"]), (expected, &json!("unknown_argument")), "{answer}");
         assert_eq!(answer["field"], "expected_dy");
     }
-    assert_eq!(lines(&home, "call").len(), 2, "both are on record");
+    assert_eq!(trajectory_lines(&home, "call").len(), 2, "both are on record");
     // The request id and the day can be arguments of the call or separate fields of the request.
     let filed = json!({ "rationale": "on", "predictions": predictions() });
     let mut within = filed.clone();
@@ -83,5 +83,5 @@ fn a_week_refuses_arguments_that_it_does_not_have() {
     assert_eq!(server.post("/call", &within), server.post("/call", &within));
     let late = json!({ "tool": "next_week", "args": filed, "expected_day": 0 });
     assert_eq!(server.post("/call", &late).1["code"], "unexpected_day");
-    assert_eq!(lines(&home, "advance").len(), 1);
+    assert_eq!(trajectory_lines(&home, "advance").len(), 1);
 }

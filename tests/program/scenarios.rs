@@ -19,7 +19,7 @@ fn program_output(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn all_scenarios_are_listed_and_shown_with_their_parameters() {
+fn scenarios_are_listed_and_shown_with_their_parameters() {
     let folder = tempfile::tempdir().expect("a folder");
     let list = program_output(folder.path(), &["scenario", "list"]);
     for name in ["default", "short", "competitor-hard", "paper", "corrected", "reference-seed42"] {

@@ -2,23 +2,23 @@
 
 use crate::support::home::{Home, ProgramOutput};
 
-const WALKTHROUGH: &str = include_str!("../../docs/debugging-walkthrough.md");
-const ANSWERS: &str = include_str!("../../docs/debugging-answers.md");
+const WALKTHROUGH_PAGE: &str = include_str!("../../docs/debugging-walkthrough.md");
+const ANSWERS_PAGE: &str = include_str!("../../docs/debugging-answers.md");
 
 /// A row of the page: the number of the fault, its first difference, the commands that show the fault, and their output.
-struct Row {
+struct AnswerRow {
     number: String,
     first: String,
     commands: Vec<String>,
     shown: String,
 }
 
-fn answer_rows() -> Vec<Row> {
+fn answer_rows() -> Vec<AnswerRow> {
     let of = |line: &str| {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
         let [_, number, _, _, first, shows, _] = cells[..] else { panic!("{line}") };
         let (asked, shown) = shows.split_once(": ").unwrap_or_else(|| panic!("{line}"));
-        Row {
+        AnswerRow {
             number: number.to_owned(),
             first: first.to_owned(),
             commands: asked.split('`').skip(1).step_by(2).map(str::to_owned).collect(),
@@ -27,13 +27,13 @@ fn answer_rows() -> Vec<Row> {
     };
     let is_row =
         |line: &&str| line.trim_start_matches("| ").starts_with(|first: char| first.is_ascii_digit());
-    ANSWERS.lines().filter(is_row).map(of).collect()
+    ANSWERS_PAGE.lines().filter(is_row).map(of).collect()
 }
 
 /// Returns the commands of the walkthrough in the documentation.
 fn walkthrough_decisions() -> String {
-    let from = WALKTHROUGH.find("set_prices {").expect("decisions");
-    WALKTHROUGH[from..].split("```").next().expect("their end").to_owned()
+    let from = WALKTHROUGH_PAGE.find("set_prices {").expect("decisions");
+    WALKTHROUGH_PAGE[from..].split("```").next().expect("their end").to_owned()
 }
 
 /// Returns the decimal figures in a text.
@@ -57,7 +57,7 @@ fn play(home: &Home, planted: Option<&str>) -> String {
     program_output.stdout.split_whitespace().nth(1).expect("the name of the run").to_owned()
 }
 
-fn ask(home: &Home, run: &str, commands: &[String]) -> String {
+fn run_commands(home: &Home, run: &str, commands: &[String]) -> String {
     let ProgramOutput { stdout: out, stderr: err, .. } = home.play(&["--run", run], &commands.join("\n"));
     assert!(!err.contains("refused") && !out.contains("did you mean"), "{commands:?}: {out}{err}");
     out
@@ -86,10 +86,10 @@ fn debugging_answers_match_the_program() {
             }
             None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
         }
-        let shown = ask(&home, &faulty, &row.commands);
+        let shown = run_commands(&home, &faulty, &row.commands);
         // The page also lists figures of the run without the fault. They are not compared if a command runs further days.
         let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
-        let sound_output = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
+        let sound_output = if moves_on { String::new() } else { run_commands(&home, &sound, &row.commands) };
         let texts = figures(&row.shown);
         assert!(!texts.is_empty(), "{}: {}", row.number, row.shown);
         for figure in texts {

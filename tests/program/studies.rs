@@ -51,7 +51,7 @@ impl Lab {
         runs.remove(0)
     }
 
-    fn events(&self) -> Vec<(String, VisitEvent)> {
+    fn recorded_events(&self) -> Vec<(String, VisitEvent)> {
         let lines = read_visits(&self.0.runs().join("visits.jsonl"));
         lines.into_iter().map(|line| (line.label, line.event)).collect()
     }
@@ -122,7 +122,7 @@ fn participant_session_runs_from_label_to_thanks() {
     assert!(start.rules.as_ref().is_some_and(|rules| !rules.advice && rules.code_words.is_none()));
     let third = lab.play_session("P01\n");
     assert!(third.stdout.contains("Thank you"), "{}", third.stdout);
-    let seen = lab.events();
+    let seen = lab.recorded_events();
     assert_eq!(seen[0], ("P9".to_owned(), VisitEvent::LabelRefused));
     assert_eq!(seen.iter().filter(|(_, event)| *event == VisitEvent::Finished).count(), 2);
     assert_eq!(lab.0.run(&["replay", &run_id(&run), "--verify", "--as", "P01"]).exit_code, 0);
@@ -219,7 +219,7 @@ fn leaving_and_withdrawing_work_at_every_prompt() {
     ] {
         let withdrew = lab.play_session(&format!("{label}\n{lines}"));
         assert!(withdrew.stdout.contains("You have withdrawn"), "{}", withdrew.stdout);
-        assert!(lab.events().contains(&(label.to_owned(), VisitEvent::Withdrew)));
+        assert!(lab.recorded_events().contains(&(label.to_owned(), VisitEvent::Withdrew)));
     }
 }
 
@@ -241,7 +241,7 @@ fn other_commands_require_the_experimenter_code() {
     // Each wrong code is recorded as a line, without the code.
     let list = fs::read_to_string(lab.0.runs().join("visits.jsonl")).expect("a list");
     assert_eq!(
-        (lab.events(), list.contains("guess")),
+        (lab.recorded_events(), list.contains("guess")),
         (vec![(String::new(), VisitEvent::CodeRefused); 4], false)
     );
     with(&["play", "--plain", "--seed", "3"]).assert_fails(2, &["protocol"]);
@@ -277,7 +277,7 @@ fn practice_results_require_the_experimenter_code() {
 }
 
 #[test]
-fn wrong_protocols_are_named_with_line_and_key() {
+fn invalid_protocols_are_reported_with_line_and_key() {
     let lab = Lab::new();
     let good = fs::read_to_string(lab.0.0.path().join("pilot/study.toml")).expect("a protocol");
     let line = |start: &str| good.lines().position(|line| line.starts_with(start)).expect(start) + 1;
@@ -413,7 +413,7 @@ fn final_page_shows_only_permitted_results() {
 }
 
 #[test]
-fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
+fn study_keys_seal_snapshots_and_sign_archives() {
     let lab = Lab::new();
     lab.assign();
     let made = lab.0.run(&["study", "key", &lab.folder()]);

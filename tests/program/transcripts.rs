@@ -134,7 +134,7 @@ fn atif_export_contains_calls_and_responses_only() {
 }
 
 #[test]
-fn every_export_has_the_calls_of_unknown_tools() {
+fn exports_contain_calls_of_unknown_tools() {
     let home = Home::new();
     let lines = "set_wages {\"sales\": 3}\nhlep\nhlep me\nset_prices A=12\nnext naive\n";
     home.play(&["--seed", "11", "--days", "28"], lines);
@@ -208,7 +208,7 @@ fn evaluation_log_has_a_sample_with_every_message() {
 }
 
 /// Returns the output of `runs show` and the Inspect log of an unfinished, an abandoned, a finished and a bankrupt run.
-fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
+fn shown_runs_and_inspect_logs(home: &Home) -> Vec<(Value, Value)> {
     played_run(home);
     assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").exit_code, 0);
     assert_eq!(home.run(&["runs", "end", "latest"]).exit_code, 0);
@@ -238,7 +238,7 @@ fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
 fn score_is_consistent_everywhere() {
     let home = Home::new();
     let mut seen = Vec::new();
-    for (shown, log) in shown_and_logged(&home) {
+    for (shown, log) in shown_runs_and_inspect_logs(&home) {
         let cash = shown["cash"].clone();
         let (status, score) = match shown["ended"].as_str() {
             None => ("started", None),
@@ -259,7 +259,7 @@ fn score_is_consistent_everywhere() {
 }
 
 #[test]
-fn log_is_not_written_as_an_archive_that_inspect_cannot_read() {
+fn inspect_log_is_not_written_as_an_unreadable_archive() {
     let home = Home::new();
     let (run, _) = played_run(&home);
     let out = home.0.path().join("log.eval").to_string_lossy().into_owned();
@@ -268,7 +268,7 @@ fn log_is_not_written_as_an_archive_that_inspect_cannot_read() {
 }
 
 #[test]
-fn evaluation_log_becomes_a_run_in_the_same_state() {
+fn imported_evaluation_log_reaches_the_same_state() {
     let home = Home::new();
     let (run, hash) = played_run(&home);
     export(&home, &run, "inspect");
@@ -303,7 +303,7 @@ fn archive_of_inspect_is_imported() {
 }
 
 #[test]
-fn a_trajectory_becomes_a_run_in_the_same_state() {
+fn imported_atif_trajectory_reaches_the_same_state() {
     let home = Home::new();
     let (run, hash) = played_run(&home);
     export(&home, &run, "atif");
@@ -336,7 +336,7 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
 }
 
 #[test]
-fn weeks_of_a_replay_are_recorded_for_terminal_players() {
+fn terminal_recording_of_a_replay_contains_every_week() {
     let home = Home::new();
     let (run, _) = played_run(&home);
     let file = home.0.path().join("talk.cast");

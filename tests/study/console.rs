@@ -121,7 +121,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.press_unrecorded("end y");
     }
 
-    pub fn begin(&mut self) {
+    pub fn start_run(&mut self) {
         self.began = self.clock.moment();
         self.note("start", "baseline", "short", None);
         self.attach();
@@ -255,7 +255,7 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     /// Closes the final page, as before the next participant.
-    pub fn finish(mut self) -> Diary {
+    pub fn close_final_page(mut self) -> Diary {
         self.close_view();
         self.record_leaving("quit");
         self.press_unrecorded("enter");

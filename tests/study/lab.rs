@@ -134,19 +134,19 @@ impl Lab {
     }
 
     /// Runs a command with the folders of all machines as arguments.
-    fn about_machines(&self, before: &[&str], after: &[&str]) -> ProgramOutput {
+    fn run_on_all_machines(&self, before: &[&str], after: &[&str]) -> ProgramOutput {
         let machines = MACHINES.map(|name| self.machine(name).display().to_string());
         let machines: Vec<&str> = machines.iter().map(String::as_str).collect();
         self.command(&[before, &machines, after].concat())
     }
 
-    pub fn data(&self) -> PathBuf {
+    pub fn tables_folder(&self) -> PathBuf {
         self.path("data")
     }
 
     pub fn collect(&self) -> ProgramOutput {
-        let (data, study) = (self.data().display().to_string(), self.study().display().to_string());
-        self.about_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])
+        let (data, study) = (self.tables_folder().display().to_string(), self.study().display().to_string());
+        self.run_on_all_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])
     }
 
     /// Writes anonymized tables and returns their folder.
@@ -156,7 +156,7 @@ impl Lab {
         self.command(&[
             "study",
             "anonymise",
-            &path(&self.data()),
+            &path(&self.tables_folder()),
             "--out",
             &path(&public),
             "--secret",
@@ -168,7 +168,7 @@ impl Lab {
     /// Audits the honest sessions, which must not cause findings.
     pub fn assert_audit_finds_nothing(&self) {
         let study = self.study().display().to_string();
-        let program_output = self.about_machines(&["study", "audit", &study], &[]);
+        let program_output = self.run_on_all_machines(&["study", "audit", &study], &[]);
         assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
         assert!(program_output.stdout.contains("No findings."), "{}", program_output.stdout);
     }

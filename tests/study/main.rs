@@ -16,7 +16,7 @@ mod support;
 mod tables;
 
 use lab::Lab;
-use support::python::recompute;
+use support::python::recompute_measures;
 
 #[test]
 fn tables_match_twelve_scripted_participants() {
@@ -39,7 +39,7 @@ fn tables_match_twelve_scripted_participants() {
         program_output.stdout
     );
     tables::compare_tables(&lab, &diaries);
-    if let Some((output, code)) = recompute(&lab.data()) {
+    if let Some((output, code)) = recompute_measures(&lab.tables_folder()) {
         assert_eq!(code, Some(0), "{output}");
     }
     tables::compare_anonymized_tables(&lab, &diaries);

@@ -22,7 +22,7 @@ pub fn first_machine(lab: &Lab) -> Vec<Diary> {
 fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P01", clock);
     player.agree(&[], 30);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "6 enter", "6", 5);
     player.wait(20);
     player.go("2", "cash");
@@ -47,7 +47,7 @@ fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
 fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P02", clock);
     player.agree(&[], 20);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "2 enter", "2", 4);
     player.wait(11);
     player.pause("lunch", 1800);
@@ -64,7 +64,7 @@ fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
 fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P03", clock);
     player.agree(&[], 20);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "1 enter", "1", 4);
     player.play_week("go", 1, 2);
     player.report(3);
@@ -79,7 +79,7 @@ fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
 fn play_with_absences(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P04", clock);
     player.agree(&[], 20);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "7 enter", "7", 4);
     player.idle(200);
     player.wait(5);
@@ -108,7 +108,7 @@ fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
     }
     player.read_the_end(5);
     player.answer(END, "'guessed' tab", "guessed", 6);
-    player.finish()
+    player.close_final_page()
 }
 
 /// Plays the scripts of the second machine: participants decline, withdraw, mistype the label, and lose the terminal.
@@ -125,7 +125,7 @@ pub fn second_machine(lab: &Lab) -> Vec<Diary> {
 fn play_and_withdraw(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P06", clock);
     player.agree(&[], 20);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "7 enter", "7", 4);
     player.play_week("go", 1, 2);
     player.report(3);
@@ -136,7 +136,7 @@ fn play_and_withdraw(lab: &Lab, clock: &ScriptedClock) -> Diary {
 fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P07", clock);
     player.agree(&["P99", "../x"], 20);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "3 enter", "3", 4);
     player.go("9", "sql");
     player.query("SELECT nothing FROM ledger", "sql_error");
@@ -153,7 +153,7 @@ fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
 fn play_with_hang_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P08", clock);
     player.agree(&[], 20);
-    player.begin();
+    player.start_run();
     player.answer(BEFORE, "3 enter", "3", 4);
     let mut player = player.hang_up_with_text(lab, "m2", "half", 1200);
     player.answer(BREAK, "1 enter", "no", 3);

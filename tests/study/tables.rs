@@ -28,7 +28,7 @@ fn rows_of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
 pub fn compare_tables(lab: &Lab, diaries: &[Diary]) {
     let [runs, weeks, events, queries, answers, notes, forecasts] =
         ["runs", "weeks", "events", "queries", "answers", "notes", "forecasts"]
-            .map(|table| read_table(&lab.data(), &format!("{table}.csv")));
+            .map(|table| read_table(&lab.tables_folder(), &format!("{table}.csv")));
     assert_eq!(diaries.len(), 12);
     for diary in diaries {
         let tables = [&runs, &weeks, &events, &queries, &answers, &notes, &forecasts];
@@ -249,5 +249,5 @@ pub fn compare_anonymized_tables(lab: &Lab, diaries: &[Diary]) {
         times.sort();
         times
     };
-    assert_eq!(times(&public), times(&lab.data()));
+    assert_eq!(times(&public), times(&lab.tables_folder()));
 }

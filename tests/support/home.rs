@@ -56,7 +56,7 @@ impl Home {
     }
 
     /// Plays a run of two weeks, closes it, and returns its folder.
-    pub fn two_weeks(&self) -> PathBuf {
+    pub fn play_two_weeks(&self) -> PathBuf {
         let lines = "set_prices A=12\nset_prices B=20\nnext naive\nset_prices C=50\nnext naive\n";
         assert_eq!(self.play(&["--days", "28"], lines).exit_code, 0);
         self.only_run()

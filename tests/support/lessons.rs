@@ -7,7 +7,7 @@ use novamind::course::Lesson;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
-use novamind::session::{LessonEntry, NewRun, Session, Storage};
+use novamind::session::{LessonOptions, NewRun, Session, Storage};
 use novamind::tools::Rejection;
 
 /// Writes a plan to a file with the name of the lesson, and reads the lesson from the file.
@@ -23,7 +23,7 @@ pub fn begin_lesson(folder: &Path, name: &str, plan: &str) -> Session {
     let lesson = Arc::new(write_lesson(folder, name, plan).expect("a lesson"));
     let new = NewRun {
         mode: Mode::Lesson,
-        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
+        lesson: Some(LessonOptions { lesson, part: 0, is_judged: true }),
         storage: Storage::Runs(folder.join("runs")),
         ..NewRun::default()
     };

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Returns the output and the exit code of the script for an export; `None` on a machine without Python 3.11.
-pub fn recompute(tables: &Path) -> Option<(String, Option<i32>)> {
+pub fn recompute_measures(tables: &Path) -> Option<(String, Option<i32>)> {
     let fits = Command::new("python3").args(["-c", "import tomllib"]).output();
     if !fits.is_ok_and(|done| done.status.success()) {
         return None;

@@ -17,7 +17,7 @@ fn no_cycle_has_more_than_three_modules() {
     for unit in units() {
         let edges = unit.imports();
         imports += edges.values().map(BTreeSet::len).sum::<usize>();
-        let large = cycles(&edges).into_iter().filter(|cycle| cycle.len() > MAX_MODULES);
+        let large = find_cycles(&edges).into_iter().filter(|cycle| cycle.len() > MAX_MODULES);
         found.extend(large.map(|cycle| format!("{}: {}", unit.name, cycle.join(" "))));
     }
     assert!(imports > 100, "imports are found");
@@ -50,7 +50,7 @@ fn units() -> Vec<Unit> {
 }
 
 /// A source file: its module path within the crate, and its text without tests and comments.
-struct File {
+struct SourceFile {
     module: Vec<String>,
     text: String,
 }
@@ -58,7 +58,7 @@ struct File {
 impl Unit {
     /// Returns the modules that each module imports.
     fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
-        let files = self.files();
+        let files = self.source_files();
         let modules: BTreeSet<&str> =
             files.iter().filter_map(|file| file.module.first()).map(String::as_str).collect();
         let of_crate = files.iter().filter(|file| file.module.is_empty());
@@ -83,7 +83,7 @@ impl Unit {
         imports
     }
 
-    fn files(&self) -> Vec<File> {
+    fn source_files(&self) -> Vec<SourceFile> {
         let is_root_crate = self.folder.join("lib.rs").exists() && self.prefix.is_empty();
         let elsewhere = |path: &PathBuf| {
             let folders = path.ancestors().skip(1).take_while(|folder| **folder != self.folder);
@@ -100,9 +100,9 @@ impl Unit {
             }
             let (text, tests) = without_tests(&fs::read_to_string(&path).expect("a source"));
             for_tests.extend(tests.into_iter().map(|name| [module.as_slice(), &[name]].concat()));
-            all.push(File { module, text });
+            all.push(SourceFile { module, text });
         }
-        let is_test = |file: &File| for_tests.iter().any(|test| file.module.starts_with(test));
+        let is_test = |file: &SourceFile| for_tests.iter().any(|test| file.module.starts_with(test));
         all.retain(|file| !is_test(file));
         all
     }
@@ -206,7 +206,7 @@ fn parse_use_tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<
 }
 
 /// Returns the groups of modules that import each other directly or indirectly.
-fn cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
+fn find_cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
     let mut reach = imports.clone();
     loop {
         let further = |reached: &BTreeSet<String>| -> BTreeSet<String> {
@@ -232,7 +232,7 @@ fn cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
 }
 
 #[test]
-fn paths_parses_nested_imports() {
+fn paths_include_nested_imports() {
     let text = "pub(in crate::a) fn f() {}\npub use b::{C, d::{self, E as F}};\nuse super::g::H;\nlet i = crate::j::k(l::<m>);";
     let read: Vec<(String, String, bool)> =
         paths(text).map(|path| (path.names.join("::"), path.exported, path.is_export)).collect();
@@ -255,8 +255,8 @@ fn paths_parses_nested_imports() {
 }
 
 #[test]
-fn cycles_finds_strongly_connected_modules() {
+fn find_cycles_finds_strongly_connected_modules() {
     let edges = [("a", vec!["b"]), ("b", vec!["c"]), ("c", vec!["a", "d"]), ("d", vec![])];
     let of = |(from, to): (&str, Vec<&str>)| (from.to_owned(), to.into_iter().map(str::to_owned).collect());
-    assert_eq!(cycles(&edges.into_iter().map(of).collect()), [["a", "b", "c"]]);
+    assert_eq!(find_cycles(&edges.into_iter().map(of).collect()), [["a", "b", "c"]]);
 }

@@ -11,7 +11,7 @@ use toml::{Table, Value};
 use super::{files, root};
 
 /// Parameter tables with one entry per group, pair of groups or persona. Pages show columns of these tables.
-const BY_GROUP: [&str; 3] = ["referral_leads_per_subscriber_day", "reputation_influence", "personas"];
+const TABLES_BY_GROUP: [&str; 3] = ["referral_leads_per_subscriber_day", "reputation_influence", "personas"];
 
 /// A Markdown file.
 struct Page {
@@ -26,7 +26,7 @@ impl Page {
     }
 
     /// Returns the lines outside of code blocks, with their numbers.
-    fn prose(&self) -> impl Iterator<Item = (usize, &str)> {
+    fn lines_outside_code_blocks(&self) -> impl Iterator<Item = (usize, &str)> {
         let mut is_code = false;
         self.text.lines().enumerate().filter_map(move |(at, line)| {
             let fence = line.trim_start().starts_with("```");
@@ -42,7 +42,7 @@ impl Page {
 
     /// Returns the anchors of all headings of the page.
     fn anchors(&self) -> BTreeSet<String> {
-        let headings = self.prose().filter_map(|(_, line)| line.strip_prefix('#'));
+        let headings = self.lines_outside_code_blocks().filter_map(|(_, line)| line.strip_prefix('#'));
         headings.map(|heading| slug(heading.trim_start_matches('#').trim())).collect()
     }
 }
@@ -63,7 +63,7 @@ fn pages() -> Vec<Page> {
 }
 
 /// Returns each text between two markers.
-fn between<'a>(line: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item = &'a str> {
+fn texts_between<'a>(line: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item = &'a str> {
     let parts = line.split(from).skip(1);
     parts.filter_map(move |part| part.split_once(to).map(|(inner, _)| inner))
 }
@@ -79,7 +79,7 @@ fn cells(line: &str) -> Option<Vec<&str>> {
     Some(inner.split('|').map(str::trim).collect())
 }
 
-fn is_rule(cells: &[&str]) -> bool {
+fn is_table_rule(cells: &[&str]) -> bool {
     cells.iter().all(|cell| !cell.is_empty() && cell.chars().all(|sign| "-: ".contains(sign)))
 }
 
@@ -107,7 +107,7 @@ fn format_value(value: &Value) -> String {
     }
 }
 
-fn value_of<'a>(parameters: &'a Table, key: &str) -> Option<&'a Value> {
+fn parameter_value<'a>(parameters: &'a Table, key: &str) -> Option<&'a Value> {
     let mut parts = key.split('.');
     let mut value = parameters.get(parts.next()?)?;
     for part in parts {
@@ -127,9 +127,9 @@ fn fill_parameters(page: &Page, parameters: &Table) -> Result<String, String> {
         let starts = row.as_ref().is_some_and(|row| row.first() == Some(&"Parameter"));
         in_table = row.is_some() && (in_table || starts);
         match row {
-            Some(row) if in_table && !starts && !is_rule(&row) => {
+            Some(row) if in_table && !starts && !is_table_rule(&row) => {
                 let key = row[0].trim_matches('`');
-                let value = value_of(parameters, key)
+                let value = parameter_value(parameters, key)
                     .ok_or_else(|| page.problem_at(at + 1, &format!("there is no parameter {key}")))?;
                 let value = format_value(value);
                 let mut row: Vec<&str> = row;
@@ -140,14 +140,15 @@ fn fill_parameters(page: &Page, parameters: &Table) -> Result<String, String> {
         }
         if let Some(wanted) = line.strip_prefix("<!-- table: ").and_then(|rest| rest.strip_suffix(" -->")) {
             while lines.next_if(|(_, line)| line.starts_with('|')).is_some() {}
-            text += &table(parameters, wanted).map_err(|problem| page.problem_at(at + 1, &problem))?;
+            text +=
+                &parameter_table(parameters, wanted).map_err(|problem| page.problem_at(at + 1, &problem))?;
         }
     }
     Ok(text)
 }
 
 /// Returns a Markdown table with columns of a list of parameters, one row per entry.
-fn table(parameters: &Table, wanted: &str) -> Result<String, String> {
+fn parameter_table(parameters: &Table, wanted: &str) -> Result<String, String> {
     let mut words = wanted.split_whitespace();
     let list = words.next().unwrap_or_default();
     let entries = parameters.get(list).and_then(Value::as_array);
@@ -170,7 +171,7 @@ fn table(parameters: &Table, wanted: &str) -> Result<String, String> {
 }
 
 #[test]
-fn values_in_documents_are_those_of_the_parameters() {
+fn documented_values_match_the_parameters() {
     let parameters = parameters();
     let mut problems = Vec::new();
     for page in pages() {
@@ -200,12 +201,12 @@ fn every_parameter_is_explained_on_one_page() {
     let parameters = parameters();
     let mut keys: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (table, values) in &parameters {
-        if let (Value::Table(values), false) = (values, BY_GROUP.contains(&table.as_str())) {
+        if let (Value::Table(values), false) = (values, TABLES_BY_GROUP.contains(&table.as_str())) {
             keys.extend(values.keys().map(|key| (format!("{table}.{key}"), Vec::new())));
         }
     }
     for page in pages() {
-        for (at, line) in page.prose() {
+        for (at, line) in page.lines_outside_code_blocks() {
             let Some(row) = cells(line) else { continue };
             let key = row[0].trim_matches('`');
             let key = key.split('.').take(2).collect::<Vec<_>>().join(".");
@@ -214,7 +215,7 @@ fn every_parameter_is_explained_on_one_page() {
             }
         }
     }
-    let nested = |key: &str| value_of(&parameters, key).is_some_and(Value::is_table);
+    let nested = |key: &str| parameter_value(&parameters, key).is_some_and(Value::is_table);
     let wrong = keys.iter().filter(|(key, places)| places.is_empty() || places.len() > 1 && !nested(key));
     let wrong: Vec<String> = wrong.map(|(key, places)| format!("{key}: {places:?}")).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -244,8 +245,8 @@ fn links_resolve() {
     let mut problems = Vec::new();
     for page in &pages {
         let folder = page.path.parent().expect("a folder");
-        for (at, line) in page.prose() {
-            for target in between(line, "](", ")").filter(|target| !target.contains("://")) {
+        for (at, line) in page.lines_outside_code_blocks() {
+            for target in texts_between(line, "](", ")").filter(|target| !target.contains("://")) {
                 let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
                 let path = if file.is_empty() { page.path.clone() } else { folder.join(file) };
                 let Ok(path) = path.canonicalize() else {
@@ -278,7 +279,7 @@ fn is_path(word: &str) -> bool {
 fn named_files_exist() {
     let mut problems = Vec::new();
     for page in pages() {
-        for (at, line) in page.prose() {
+        for (at, line) in page.lines_outside_code_blocks() {
             let missing = code_spans(line).filter(|word| is_path(word) && !root().join(word).exists());
             problems.extend(missing.map(|word| page.problem_at(at, &format!("{word} is not there"))));
         }
@@ -292,7 +293,7 @@ fn named_files_exist() {
                 let words = line.split(|sign: char| sign.is_whitespace() || "`()[],;".contains(sign));
                 let words = words.map(|word| word.trim_end_matches(['.', ':', '\'']));
                 let missing = words.filter(|word| word.starts_with("docs/"));
-                let missing = missing.filter(|word| !leads_to_a_heading(word));
+                let missing = missing.filter(|word| !is_existing_page_or_heading(word));
                 problems.extend(missing.map(|word| page.problem_at(at + 1, &format!("{word} is not there"))));
             }
         }
@@ -301,7 +302,7 @@ fn named_files_exist() {
 }
 
 /// Returns whether a documentation page exists, and the heading if the link names one.
-fn leads_to_a_heading(word: &str) -> bool {
+fn is_existing_page_or_heading(word: &str) -> bool {
     let (file, anchor) = word.split_once('#').unwrap_or((word, ""));
     let path = root().join(file);
     path.exists() && (anchor.is_empty() || Page::read(path).anchors().contains(anchor))
@@ -317,7 +318,7 @@ fn check_values_match_the_tests() {
     let mut problems = Vec::new();
     for page in pages() {
         let mut of_results = None;
-        for (at, line) in page.prose() {
+        for (at, line) in page.lines_outside_code_blocks() {
             let Some(row) = cells(line) else {
                 of_results = None;
                 continue;
@@ -326,7 +327,7 @@ fn check_values_match_the_tests() {
                 of_results = row.iter().position(|cell| *cell == "Result");
                 continue;
             }
-            if is_rule(&row) {
+            if is_table_rule(&row) {
                 continue;
             }
             let Some(result) = of_results else { continue };
@@ -393,7 +394,8 @@ fn singular(term: &str) -> String {
 #[test]
 fn glossary_titles_are_vocabulary_terms() {
     let page = Page::read(root().join("docs/vocabulary.md"));
-    let terms = page.prose().filter_map(|(_, line)| cells(line).map(|cells| cells[0].to_owned()));
+    let terms =
+        page.lines_outside_code_blocks().filter_map(|(_, line)| cells(line).map(|cells| cells[0].to_owned()));
     let terms: BTreeSet<String> =
         terms.flat_map(|cell| cell.split(", ").map(singular).collect::<Vec<_>>()).collect();
     let glossary = fs::read_to_string(root().join("assets/glossary.toml")).expect("the glossary");

@@ -85,7 +85,7 @@ fn assert_none(complaints: &[String]) {
 }
 
 #[test]
-fn build_script_watches_every_folder_that_is_compiled_in() {
+fn build_script_watches_every_embedded_folder() {
     let script = fs::read_to_string(root().join("src/assets/build.rs")).expect("a build script");
     let sources = sources();
     let macros: Vec<&str> = sources
@@ -155,7 +155,7 @@ fn dependencies() -> BTreeMap<String, Vec<String>> {
 }
 
 #[test]
-fn architecture_names_the_dependencies_of_each_crate() {
+fn architecture_document_lists_the_dependencies_of_each_crate() {
     let page = fs::read_to_string(root().join("docs/architecture.md")).expect("the page");
     let rows = page.lines().filter_map(|line| {
         let cells: Vec<&str> = line.strip_prefix("| `")?.split('|').map(str::trim).collect();
@@ -198,7 +198,8 @@ fn simulator_uses_no_clock_files_or_unordered_maps() {
 #[test]
 fn only_insight_imports_the_engine_of_sessions() {
     // The session crate itself, and crates below it that cannot import it.
-    const BELOW: [&str; 8] = ["assets", "base", "database", "record", "session", "tools", "voice", "world"];
+    const CRATES_WITHOUT_SESSION: [&str; 8] =
+        ["assets", "base", "database", "record", "session", "tools", "voice", "world"];
     let complaint = |line: &str| {
         let listed = ["session::engine", "{engine", ", engine"].iter().any(|path| line.contains(path));
         let imports =
@@ -207,7 +208,7 @@ fn only_insight_imports_the_engine_of_sessions() {
     };
     let (insight, others): (Vec<Source>, Vec<Source>) = sources()
         .into_iter()
-        .filter(|file| !BELOW.contains(&file.unit_name().as_str()))
+        .filter(|file| !CRATES_WITHOUT_SESSION.contains(&file.unit_name().as_str()))
         .partition(|file| file.unit_name() == "insight");
     assert!(insight.iter().any(|file| !file.rule_violations(complaint).is_empty()), "imports are found");
     assert_none(&others.iter().flat_map(|file| file.rule_violations(complaint)).collect::<Vec<String>>());
@@ -229,7 +230,7 @@ fn only_the_command_line_prints() {
 }
 
 #[test]
-fn every_bundled_toml_file_parses() {
+fn bundled_toml_files_parse() {
     for folder in ["configs", "assets"] {
         for path in files(&root().join(folder), "toml") {
             let text = fs::read_to_string(&path).expect("a file");

@@ -55,7 +55,7 @@ fn parse_number(word: &str) -> Result<f64, Failure> {
 ///
 /// # Errors
 /// The arguments are neither one object nor pairs of --KEY VALUE.
-pub fn parse_call(tool: &str, words: &[String]) -> Result<Value, Failure> {
+pub fn parse_tool_arguments(tool: &str, words: &[String]) -> Result<Value, Failure> {
     match words {
         [] => Ok(json!({})),
         [object] if !object.starts_with("--") => parse_object(&read_text(object)?),
@@ -113,9 +113,10 @@ mod tests {
     }
 
     #[test]
-    fn arguments_are_an_object_or_pairs() {
-        let read =
-            |tool: &str, line: &str| parse_call(tool, &words(line)).map_err(|failure| failure.to_string());
+    fn parse_tool_arguments_accepts_an_object_or_pairs() {
+        let read = |tool: &str, line: &str| {
+            parse_tool_arguments(tool, &words(line)).map_err(|failure| failure.to_string())
+        };
         assert_eq!(read("set_prices", "--A|14|--B=20.5"), Ok(json!({ "A": 14, "B": 20.5 })));
         assert_eq!(read("set_prices", r#"{"A": null}"#), Ok(json!({ "A": null })));
         assert_eq!(read("post_social_media", "--content|17"), Ok(json!({ "content": "17" })));

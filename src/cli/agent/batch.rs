@@ -61,7 +61,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         write_run_documents(&agent_run, Some(&work))?;
         write_client(&work.join("client"))?;
         eprintln!("try {number} of {}: run {} in {}", options.tries, agent_run.id, work.display());
-        let played = play_until_over(options, number, &agent_run, &work, &stop);
+        let played = run_command_until_run_ends(options, number, &agent_run, &work, &stop);
         // Stop the server even if the command failed.
         agent_run.stop_server()?;
         let (attempts, exit_code) = played?;
@@ -81,7 +81,7 @@ fn write_failure(path: &Path, error: &std::io::Error) -> Failure {
 
 /// Starts the command repeatedly until the run is over or no restarts are left. Returns the number of starts and the
 /// last exit code.
-fn play_until_over(
+fn run_command_until_run_ends(
     options: &Options,
     number: u32,
     agent_run: &AgentRun,

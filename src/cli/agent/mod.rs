@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use super::new_run::NewRunOptions;
 use super::{Context, Failure, print};
 use crate::server::{RemoteServer, ServerResponse};
-use arguments::{parse_call, parse_next_week, read_text};
+use arguments::{parse_next_week, parse_tool_arguments, read_text};
 use server::{AgentRun, Authentication};
 
 #[derive(Debug, Args)]
@@ -115,8 +115,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             print_response(&connect(named, context)?.1, "/query", Some(&asked))
         }
         AgentCommand::Call { tool, arguments } => {
-            let asked =
-                options.with_request_id(json!({ "tool": tool, "args": parse_call(tool, arguments)? }));
+            let asked = options
+                .with_request_id(json!({ "tool": tool, "args": parse_tool_arguments(tool, arguments)? }));
             print_response(&connect(named, context)?.1, "/call", Some(&asked))
         }
         AgentCommand::Python { words } => {

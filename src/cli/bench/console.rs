@@ -4,31 +4,41 @@ use crate::console::app::Settings;
 use crate::console::benchmark;
 use crate::console::keys::KeyBindings;
 use crate::console::themes;
-use crate::lab::benchmark::{BenchContext, BenchError, BenchFigure, Case, Samples, Unit, save_large_company};
+use crate::lab::benchmark::{
+    BenchCase, BenchContext, BenchError, BenchFigure, BenchUnit, Samples, save_large_company,
+};
 use crate::lab::play_opponents;
 use crate::tui::glyphs::Glyphs;
 
 /// Weeks per repetition in which key presses are timed, several hundred in total.
 const WEEKS: usize = 6;
 
-pub const CASES: &[Case] = &[
-    Case {
+pub const CASES: &[BenchCase] = &[
+    BenchCase {
         name: "frame",
-        figures: &[BenchFigure::with_target("first frame of the console", Unit::Milliseconds, 100.0, None)],
+        figures: &[BenchFigure::with_target(
+            "first frame of the console",
+            BenchUnit::Milliseconds,
+            100.0,
+            None,
+        )],
         needs_new_process: true,
         is_slow: false,
         measure: measure_first_frame,
     },
-    Case {
+    BenchCase {
         name: "keys",
         figures: &[
             BenchFigure::with_target(
                 "key to frame while a week runs, 200×60: 99 of 100",
-                Unit::Milliseconds,
+                BenchUnit::Milliseconds,
                 16.0,
                 None,
             ),
-            BenchFigure::without_target("key to frame while a week runs, 200×60: median", Unit::Milliseconds),
+            BenchFigure::without_target(
+                "key to frame while a week runs, 200×60: median",
+                BenchUnit::Milliseconds,
+            ),
         ],
         needs_new_process: false,
         is_slow: false,

@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::lab::benchmark::{BenchContext, BenchError, BenchFigure, Case, Samples, Unit, save_large_company};
+use crate::lab::benchmark::{
+    BenchCase, BenchContext, BenchError, BenchFigure, BenchUnit, Samples, save_large_company,
+};
 use crate::record::folder::runs::run_folder;
 use crate::server::{BoundPort, HttpOptions, RemoteServer, serve_http};
 use crate::session::{Access, Session};
@@ -13,17 +15,17 @@ use crate::session::{Access, Session};
 /// Requests of each kind per repetition.
 const REQUESTS: usize = 40;
 
-pub const CASES: &[Case] = &[Case {
+pub const CASES: &[BenchCase] = &[BenchCase {
     name: "http",
     figures: &[
-        BenchFigure::without_target("over HTTP at 165,000: a call", Unit::Milliseconds),
+        BenchFigure::without_target("over HTTP at 165,000: a call", BenchUnit::Milliseconds),
         BenchFigure::with_target(
             "over HTTP at 165,000: a small query, 99 of 100",
-            Unit::Milliseconds,
+            BenchUnit::Milliseconds,
             50.0,
             None,
         ),
-        BenchFigure::without_target("over HTTP at 165,000: a week", Unit::Milliseconds),
+        BenchFigure::without_target("over HTTP at 165,000: a week", BenchUnit::Milliseconds),
     ],
     needs_new_process: false,
     is_slow: false,

@@ -37,7 +37,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         _ => return Err(Failure::usage("give --policy twice or not at all")),
     };
     let spec = |seeds| ConsistencySpec { seeds, scenario: options.scenario.clone(), until: options.until };
-    if let Some(obstacle) = spec(Vec::new()).precondition_problem(&policies) {
+    if let Some(obstacle) = spec(Vec::new()).incomparability_reason(&policies) {
         return Err(Failure::usage(obstacle));
     }
     options.output.reject_graphs()?;
@@ -48,7 +48,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let check = thread_pool(options.jobs)?
         .install(|| check_consistency(&policies, &spec, &context.configuration, &on_played))?;
     progress.finish_and_clear();
-    if check.plays_alike {
+    if check.ends_in_same_state {
         return Err(Failure::usage(
             "the two policies make the same decisions, so nothing is tested: give two different policies",
         ));

@@ -66,7 +66,7 @@ pub fn run_experiment_part(
     context: &Context,
 ) -> Result<Vec<RunResult>, Failure> {
     let some =
-        |prepared: PreparedExperiment<'_>, with: &ExperimentContext<'_>| prepared.run_some(numbers, with);
+        |prepared: PreparedExperiment<'_>, with: &ExperimentContext<'_>| prepared.run_numbered(numbers, with);
     run_with_result_file(path, experiment, numbers, (options, context), |_| (), some)
 }
 

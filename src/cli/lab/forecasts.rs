@@ -9,10 +9,10 @@ use super::super::output_file::write_text;
 use super::super::run::{SeedRange, parse_seeds, progress_bar, thread_pool};
 use super::super::{Context, Failure, print};
 use crate::lab::{
-    PlayedWeeks, Policy, STRONG_POLICIES, band_coverage, forecast_horizons, measure_naive_bands, play_weeks,
-    policy_names,
+    PlayedWeeks, Policy, STRONG_POLICIES, forecast_horizons, interval_coverage, measure_naive_intervals,
+    play_weeks, policy_names,
 };
-use crate::session::ErrorBands;
+use crate::session::ErrorIntervals;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -34,8 +34,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = play_runs(options, context)?;
     let horizons = forecast_horizons();
     let seeds = options.seeds.last + 1 - options.seeds.first;
-    let measured = options.write.as_ref().map(|_| measure_naive_bands(&runs, &horizons, seeds));
-    let bands = measured.as_ref().unwrap_or(ErrorBands::bundled());
+    let measured = options.write.as_ref().map(|_| measure_naive_intervals(&runs, &horizons, seeds));
+    let bands = measured.as_ref().unwrap_or(ErrorIntervals::bundled());
     print(&coverage_table(&runs, &horizons, bands))?;
     if let (Some(path), Some(bands)) = (&options.write, &measured) {
         let text = toml::to_string(bands).map_err(|error| Failure::failed(error.to_string()))?;
@@ -76,10 +76,10 @@ fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, F
 }
 
 /// Returns a table of the coverage by policy and horizon.
-fn coverage_table(runs: &[PlayedWeeks], horizons: &[u32], bands: &ErrorBands) -> String {
+fn coverage_table(runs: &[PlayedWeeks], horizons: &[u32], bands: &ErrorIntervals) -> String {
     let row = |name: &str, policy: Option<&str>| {
         let cells = horizons.iter().map(|horizon| {
-            let coverage = band_coverage(runs, policy, *horizon, bands);
+            let coverage = interval_coverage(runs, policy, *horizon, bands);
             match coverage.forecasts {
                 0 => format!("{:>18}", "–"),
                 count => format!("{:>7.1} % of {:>5}", coverage.held * 100.0, count),

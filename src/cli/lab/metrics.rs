@@ -5,7 +5,7 @@ use clap::Args;
 use crate::cli::run::figure_rows;
 use crate::cli::{Context, Failure, print};
 use crate::insight::{Inspect, open_for_inspection};
-use crate::lab::Collector;
+use crate::lab::MetricsCollector;
 use crate::record::folder::runs::find_run_to_read;
 
 #[derive(Debug, Args)]
@@ -20,7 +20,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     context.check_view_allowed(&folder)?;
     let mut session = open_for_inspection(&folder, context.seal_key()?)?;
-    let mut collector = Collector::new(None);
+    let mut collector = MetricsCollector::new(None);
     let replayed = session.inspect().replay_days(&mut |day| collector.add_day(day));
     replayed.map_err(|refusal| Failure::failed(refusal.message))?;
     let manifest = session.manifest();

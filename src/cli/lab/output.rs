@@ -32,7 +32,7 @@ pub struct OutputOptions {
 
 impl OutputOptions {
     /// Returns whether to print rows, for commands that print rows unless JSON or a graph is requested.
-    pub fn wants_rows(&self) -> bool {
+    pub fn prints_rows(&self) -> bool {
         !self.json && self.svg.is_none()
     }
 

@@ -11,7 +11,7 @@ use crate::cli::output_file::{is_same_file, write_file};
 use crate::cli::runs::to_csv;
 use crate::cli::{Context, Failure, print};
 use crate::lab::study::{
-    Shard, ShardHead, ShardSet, StudyPlan, column_names, describe_size, equal_arm_warnings,
+    Shard, ShardHeader, ShardSet, StudyPlan, column_names, describe_size, equal_arm_warnings,
     equal_outcome_warnings, parse_shard, rows, study_summary,
 };
 use crate::report::pluralize;
@@ -81,7 +81,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
     let kept = "the finished runs are saved; repeat the command to continue";
     match (&options.out, options.shard) {
-        (None, _) if options.output.wants_rows() => {
+        (None, _) if options.output.prints_rows() => {
             warn(&equal_outcome_warnings(&plan, &results));
             print(&text)
         }
@@ -91,8 +91,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             options.output.show(&study_summary(&plan, &results))
         }
         (Some(folder), Some(part)) => {
-            let file = folder.join(ShardHead::file_name(&plan.name, part));
-            text = ShardHead::with_checksum(&plan.name, &digest, part, &text);
+            let file = folder.join(ShardHeader::file_name(&plan.name, part));
+            text = ShardHeader::with_checksum(&plan.name, &digest, part, &text);
             write_file(&file, Some(kept), |out| out.write_all(text.as_bytes()))?;
             print(&format!(
                 "shard {part}: {} in {}\n",
@@ -151,7 +151,7 @@ pub fn merge_shards(options: &MergeOptions) -> Result<(), Failure> {
         None => {
             let mut out = BufWriter::new(io::stdout().lock());
             match shards.write(&mut out).and_then(|()| out.flush()) {
-                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::silent()),
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::broken_pipe()),
                 Err(error) => Err(Failure::failed(error.to_string())),
                 Ok(()) => Ok(()),
             }

@@ -69,7 +69,7 @@ pub struct Import {
 }
 
 /// The keys that sign archives and seal snapshots.
-type Keys = (Option<LabKey>, SealKey);
+type ExportKeys = (Option<LabKey>, SealKey);
 
 impl Export {
     pub fn run(&self, folders: &[PathBuf], json: bool, context: &Context) -> Result<(), Failure> {
@@ -85,7 +85,7 @@ impl Export {
         }
     }
 
-    fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
+    fn export_one(&self, folder: &Path, (key, seal_key): &ExportKeys, json: bool) -> Result<(), Failure> {
         let parent = parent_folder(&self.out);
         if self.out.exists() {
             // Report an existing file before the run is simulated again.
@@ -111,7 +111,7 @@ impl Export {
         print(&format!("{remarks}{}", export_line(&seal, &self.out, export.session().day(), key.as_ref())))
     }
 
-    fn export_all(&self, folders: &[PathBuf], keys: &Keys, json: bool) -> Result<(), Failure> {
+    fn export_all(&self, folders: &[PathBuf], keys: &ExportKeys, json: bool) -> Result<(), Failure> {
         let mut list = list_all(folders)?;
         // A damaged run does not name its participant, so it is always reported.
         let label = self.participant.as_deref();
@@ -181,7 +181,7 @@ impl Export {
         &self,
         folder: &Path,
         run: &RunSummary,
-        (key, seal_key): &Keys,
+        (key, seal_key): &ExportKeys,
     ) -> Result<(Sealing, Seal, PathBuf), RunError> {
         let export = Sealing::prepare(folder, &self.out, seal_key)?;
         let archive = self.out.join(format!("{}.tar.gz", run.id));

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use crate::cli::{Failure, print};
-use novamind_study::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, make_keys};
+use novamind_study::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, create_missing_keys};
 
 /// Creates the missing keys and explains how to use each key.
 pub fn run(folder: &Path) -> Result<(), Failure> {
     Study::load(folder)?;
-    let (public, written) = make_keys(folder)?;
+    let (public, written) = create_missing_keys(folder)?;
     let mut text: String = written.iter().map(|path| format!("wrote {}\n", path.display())).collect();
     if written.is_empty() {
         text += "all keys exist; nothing was written\n";

@@ -13,7 +13,7 @@ use crate::formatting::escape_control_characters;
 use crate::plain::format_result;
 use crate::record::clock::parse_nanoseconds;
 use crate::record::folder::runs::participant_folder;
-use crate::session::week_of;
+use crate::session::week_of_day;
 use novamind_study::{
     REMARKS_FILE, Remark, SessionState, SessionStatus, Study, VisitSummary, has_visited, read_remarks,
     read_study_visits, session_statuses, write_remark,
@@ -127,7 +127,7 @@ fn status_table(all: &[SessionStatus]) -> QueryResult {
             Cell::Text(session_status.run.clone()),
             Cell::Text(if session_status.practice { "practice" } else { "session" }.to_owned()),
             Cell::Text(describe_state(session_status.state).to_owned()),
-            Cell::Integer(i64::from(week_of(session_status.day))),
+            Cell::Integer(i64::from(week_of_day(session_status.day))),
             Cell::Integer(i64::from(session_status.day)),
             Cell::Integer(i64::from(session_status.days)),
             Cell::Text(format_quiet_time(session_status.quiet_seconds)),

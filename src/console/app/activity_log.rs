@@ -8,7 +8,7 @@ use crossterm::event::{Event, KeyEventKind, MouseEventKind};
 use super::{App, Layer, Order, Run, Stage};
 use crate::attention::EditSource;
 use crate::context::ScreenId;
-use novamind_record::rules::DraftsKept;
+use novamind_record::rules::DraftRecording;
 use novamind_record::trajectory::record::{
     Activity, DialogOutcome, HelpRequest, ObjectSelection, PresenceEvent, ScreenView, TextEdit,
     TextEditOutcome,
@@ -176,14 +176,14 @@ impl App {
     }
 
     pub(super) fn end_draft(&mut self, place: &str, outcome: TextEditOutcome) {
-        let kept = self.run().map_or(DraftsKept::None, |run| run.company.rules.drafts);
-        if let Some(draft) = self.typing_log.finish(place, outcome, kept == DraftsKept::Text) {
+        let kept = self.run().map_or(DraftRecording::None, |run| run.company.rules.drafts);
+        if let Some(draft) = self.typing_log.finish(place, outcome, kept == DraftRecording::Text) {
             self.record_draft(draft);
         }
     }
 
     pub(super) fn record_draft(&mut self, draft: TextEdit) {
-        if self.run().is_some_and(|run| run.company.rules.drafts != DraftsKept::None) {
+        if self.run().is_some_and(|run| run.company.rules.drafts != DraftRecording::None) {
             self.record_activity(Activity::Draft(draft));
         }
     }
@@ -236,7 +236,7 @@ impl App {
         }
         self.explained_term.clone_from(&term);
         if let (Some(term), Some(run)) = (term, self.run()) {
-            let below = self.layers.second_name().map(str::to_owned);
+            let below = self.layers.covered_dialog_name().map(str::to_owned);
             let place = below.unwrap_or_else(|| run.screen.record_name().to_owned());
             self.record_activity(Activity::Help(HelpRequest { term, place }));
         }
@@ -260,7 +260,7 @@ impl App {
 
     pub(super) fn handle_time(&mut self) {
         let now = self.stopwatch.elapsed();
-        if !self.is_played() || self.stopwatch.is_halted() {
+        if !self.is_played() || self.stopwatch.is_paused() {
             return;
         }
         for (event, idle_ms, window) in self.presence.check_time(now) {
@@ -271,7 +271,7 @@ impl App {
 
     /// Returns the time until [`novamind_worker::message::Message::TimePassed`] is due, or `None` if nothing depends on it.
     pub fn time_until_wake(&self) -> Option<Duration> {
-        if !self.is_played() || self.stopwatch.is_halted() {
+        if !self.is_played() || self.stopwatch.is_paused() {
             return None;
         }
         let next = [self.presence.next_deadline(), self.draft_save_due()].into_iter().flatten().min()?;
@@ -283,7 +283,7 @@ impl App {
         self.save_drafts();
         self.record_view();
         self.record_presence(PresenceEvent::Suspended, None, None);
-        self.stopwatch.halt();
+        self.stopwatch.pause();
     }
 
     /// Records that the program resumes.

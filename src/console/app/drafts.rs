@@ -72,7 +72,7 @@ impl App {
         if texts.is_empty() || !self.run().is_some_and(|run| run.company.is_running()) {
             return;
         }
-        self.push_layer(Layer::Dialog(Box::new(RestoreDraftsDialog::new(texts.texts_by_place()))));
+        self.push_layer(Layer::Dialog(Box::new(RestoreDraftsDialog::new(texts.texts_by_field()))));
         self.drafts.offered_drafts = Some(Box::new(texts));
     }
 
@@ -83,7 +83,7 @@ impl App {
             self.show_status("drafts discarded");
             return self.save_drafts();
         }
-        for (place, text) in texts.texts_by_place() {
+        for (place, text) in texts.texts_by_field() {
             self.record_draft(restored_draft(place, &text));
         }
         if let Stage::Run(run) = &mut self.stage {

@@ -5,7 +5,7 @@ use crate::context::ScreenId;
 use crate::dialogs::confirm::ConfirmDialog;
 use crate::effect::Effect;
 use crate::screens::menu::StartMenu;
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_session::Access;
 use novamind_worker::Job;
 use novamind_worker::request::Request;
@@ -20,12 +20,12 @@ pub(super) enum ExitTarget {
 }
 
 impl ExitTarget {
-    fn leaving_cause(self) -> LeavingCause {
+    fn leaving_cause(self) -> DetachCause {
         const HANGUP: i32 = 1;
         match self {
-            ExitTarget::Menu | ExitTarget::Shell => LeavingCause::Quit,
-            ExitTarget::Signal(HANGUP) => LeavingCause::Hangup,
-            ExitTarget::Signal(_) => LeavingCause::Signal,
+            ExitTarget::Menu | ExitTarget::Shell => DetachCause::Quit,
+            ExitTarget::Signal(HANGUP) => DetachCause::Hangup,
+            ExitTarget::Signal(_) => DetachCause::Signal,
         }
     }
 
@@ -81,7 +81,7 @@ impl App {
             Some(question) => {
                 self.open_dialog(ConfirmDialog::new(format!("open run {id}"), question, vec![open]))
             }
-            None => self.follow(vec![open]),
+            None => self.execute_effects(vec![open]),
         }
     }
 

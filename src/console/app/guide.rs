@@ -44,7 +44,7 @@ impl App {
             Stage::Menu(menu) => menu.practice_run().map(str::to_owned),
             Stage::Run(_) | Stage::Study(_) => None,
         };
-        self.follow(vec![Effect::Request(match begun {
+        self.execute_effects(vec![Effect::Request(match begun {
             Some(id) => Request::Open(id, Access::Write),
             None => Request::Create(Box::new(tour::practice_run())),
         })]);

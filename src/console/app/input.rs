@@ -120,17 +120,17 @@ impl App {
             match &mut self.stage {
                 Stage::Menu(menu) => {
                     let effects = menu.handle_key(key);
-                    self.follow(effects);
+                    self.execute_effects(effects);
                 }
                 Stage::Study(page) => {
                     let effects = page.handle_key(key);
-                    self.follow(effects);
+                    self.execute_effects(effects);
                 }
                 Stage::Run(_) => {
                     let effects = self
                         .with_screen(|screen, context| screen.handle_key(key, context))
                         .unwrap_or_default();
-                    self.follow(effects);
+                    self.execute_effects(effects);
                 }
             }
         } else {
@@ -149,7 +149,7 @@ impl App {
                 let effects = self
                     .with_screen(|screen, screen_context| screen.paste(text, screen_context))
                     .unwrap_or_default();
-                self.follow(effects);
+                self.execute_effects(effects);
             }
         }
     }
@@ -189,13 +189,13 @@ impl App {
     fn handle_row_click(&mut self, pane: usize, row: usize) {
         if let Stage::Menu(menu) = &mut self.stage {
             let effects = menu.handle_click(row);
-            return self.follow(effects);
+            return self.execute_effects(effects);
         }
         let clicked = self.with_screen(|screen, context| {
             screen.set_focus(pane);
             screen.handle_click(pane, row, context)
         });
-        self.follow(clicked.unwrap_or_default());
+        self.execute_effects(clicked.unwrap_or_default());
     }
 
     pub(super) fn handle_action(&mut self, action: Action) {
@@ -227,11 +227,11 @@ impl App {
         }
         if let Stage::Menu(menu) = &mut self.stage {
             let effects = menu.handle_action(action);
-            return self.follow(effects);
+            return self.execute_effects(effects);
         }
         if let Stage::Study(page) = &mut self.stage {
             let effects = page.handle_action(action);
-            return self.follow(effects);
+            return self.execute_effects(effects);
         }
         if self.reject_in_playback(action) {
             return;
@@ -248,7 +248,7 @@ impl App {
         let effects = self
             .with_screen(|screen, screen_context| screen.handle_action(action, screen_context))
             .unwrap_or_default();
-        self.follow(effects);
+        self.execute_effects(effects);
     }
 
     pub(super) fn update_dialog(
@@ -268,7 +268,7 @@ impl App {
         } else {
             self.record_dialog_step();
         }
-        self.follow(outcome.effects);
+        self.execute_effects(outcome.effects);
     }
 
     pub(super) fn open_dialog(&mut self, dialog: impl Dialog + 'static) {
@@ -303,9 +303,9 @@ impl App {
                 }
             }
             Action::Report => self.open_report(),
-            Action::WriteReport => self.follow(vec![Effect::Request(Request::RenderReportFiles)]),
-            Action::Undo => self.follow(vec![Effect::Request(Request::Undo)]),
-            Action::Redo => self.follow(vec![Effect::Request(Request::Redo)]),
+            Action::WriteReport => self.execute_effects(vec![Effect::Request(Request::RenderReportFiles)]),
+            Action::Undo => self.execute_effects(vec![Effect::Request(Request::Undo)]),
+            Action::Redo => self.execute_effects(vec![Effect::Request(Request::Redo)]),
             Action::FocusNext | Action::FocusPrevious => self.move_focus(action == Action::FocusNext),
             Action::Back => self.go_back(),
             Action::Explain => self.open_explanation(),
@@ -369,13 +369,13 @@ impl App {
 
     fn open_selected_rows(&mut self) {
         if let Some(figure) = self.selected_figure() {
-            self.show_rows_of(figure);
+            self.show_source_rows(figure);
         }
     }
 
     fn open_selected_causes(&mut self) {
         if let Some(figure) = self.selected_figure() {
-            self.ask_why(figure);
+            self.show_causes(figure);
         }
     }
 
@@ -426,7 +426,7 @@ impl App {
             None => {}
         }
         if !run.company.is_running() {
-            return self.show_end();
+            return self.show_final_page();
         }
         if self.handle_next_week_in_lesson() {
             return;

@@ -60,7 +60,7 @@ impl Layers {
     }
 
     /// Returns the recorded name of the dialog below the top one.
-    pub fn second_name(&self) -> Option<&str> {
+    pub fn covered_dialog_name(&self) -> Option<&str> {
         self.open.iter().rev().nth(1).map(|below| below.record_name.as_str())
     }
 

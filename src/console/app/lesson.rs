@@ -136,7 +136,7 @@ impl App {
             ScreenId::Inbox => run.screens.inbox.last_rule_answers(&run.company),
             _ => None,
         };
-        let Some((calls, text)) = answers else { return self.follow(vec![week]) };
+        let Some((calls, text)) = answers else { return self.execute_effects(vec![week]) };
         let both = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
         let both = both.chain([week.clone()]).collect();
         let text = format!("Answer with the rules that you sent last, and run the week:\n{text}");
@@ -182,7 +182,7 @@ impl App {
         let Some(run) = self.run() else { return };
         let found = run.lesson.debrief.clone();
         if found.is_none() {
-            self.follow(vec![Effect::Request(Request::Lesson(LessonRequest::Debrief))]);
+            self.execute_effects(vec![Effect::Request(Request::Lesson(LessonRequest::Debrief))]);
         }
         self.open_dialog(DebriefPage::new(found));
     }

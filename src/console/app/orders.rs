@@ -15,7 +15,7 @@ use novamind_worker::request::Request;
 const DAYS_PER_WEEK: u32 = 7;
 
 /// Returns the days that a lesson simulates before it starts.
-fn days_of_start(request: &Request) -> Option<SimulationProgress> {
+fn lesson_start_progress(request: &Request) -> Option<SimulationProgress> {
     let Request::Create(new) = request else { return None };
     let entry = new.lesson.as_ref()?;
     let weeks = entry.lesson.plan.parts.get(entry.part)?.start_weeks;
@@ -23,7 +23,7 @@ fn days_of_start(request: &Request) -> Option<SimulationProgress> {
 }
 
 /// Returns the last day that a request simulates, unless the simulation stops earlier.
-fn last_day_of(request: &Request, company: &DisplayedCompany) -> u32 {
+fn last_simulated_day(request: &Request, company: &DisplayedCompany) -> u32 {
     match request {
         Request::RunDays(days) => {
             company.observation.day.saturating_add(*days).min(company.observation.last_day)
@@ -33,52 +33,52 @@ fn last_day_of(request: &Request, company: &DisplayedCompany) -> u32 {
 }
 
 impl App {
-    pub(super) fn follow(&mut self, effects: Vec<Effect>) {
+    pub(super) fn execute_effects(&mut self, effects: Vec<Effect>) {
         for effect in effects {
-            self.follow_one(effect);
+            self.execute_effect(effect);
         }
     }
 
-    fn follow_one(&mut self, effect: Effect) {
+    fn execute_effect(&mut self, effect: Effect) {
         if effect.changes_run() && self.is_playback() {
             return self.show_playback_error();
         }
         match effect {
             Effect::Request(request) => {
                 self.is_projected &= !matches!(request, Request::Replay { .. });
-                self.request(request);
+                self.send_request(request);
             }
-            Effect::Project(recorded) => {
+            Effect::OpenProjector(recorded) => {
                 self.is_projected = true;
-                self.request(Request::Replay { recorded, goal: SeekTarget::Last, follow: true });
+                self.send_request(Request::Replay { recorded, goal: SeekTarget::Last, follow: true });
             }
-            Effect::ReplayInside(recorded, goal) => {
+            Effect::ReplayWithXray(recorded, goal) => {
                 self.initial_screen = Some(ScreenId::Xray);
-                self.request(Request::Replay { recorded, goal, follow: false });
+                self.send_request(Request::Replay { recorded, goal, follow: false });
             }
-            Effect::Go(goal) => self.seek(goal),
+            Effect::Seek(goal) => self.seek(goal),
             Effect::Ask(ask) => self.orders.push(Order::Ask(ask, self.busy.is_some())),
             Effect::SentText(place) => self.end_draft(place, TextEditOutcome::Sent),
             Effect::ShowCurve(group) => self.show_curve(group),
             Effect::ShowOpponents => self.show_opponents(),
             Effect::OpenRun(id) => self.open_other_run(id),
-            Effect::ConfirmWords(words) => {
+            Effect::ConfirmCommand(words) => {
                 let text = format!(
                     "{words}: the change is recorded, and the run will not be ranked. Set the parameter?"
                 );
                 self.push_layer(Layer::Dialog(Box::new(ConfirmDialog::new(
                     "set",
                     text,
-                    vec![Effect::SendWords(words)],
+                    vec![Effect::SendCommand(words)],
                 ))));
             }
-            Effect::SendWords(_) if self.busy.is_some() => {
+            Effect::SendCommand(_) if self.busy.is_some() => {
                 self.show_error("days are being simulated; no parameter was set, try again afterwards");
             }
-            Effect::SendWords(words) => {
+            Effect::SendCommand(words) => {
                 if let Stage::Run(run) = &mut self.stage {
                     let effects = run.screens.xray.send_confirmed_command(&words);
-                    self.follow(effects);
+                    self.execute_effects(effects);
                 }
             }
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
@@ -96,12 +96,12 @@ impl App {
                 self.push_layer(Layer::Dialog(Box::new(TextDialog::new(title, text))));
             }
             Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
-            Effect::Say(text) => self.show_status(text),
-            Effect::AskWhy(figure) => self.ask_why(figure),
-            Effect::ShowRows(figure) => self.show_rows_of(figure),
+            Effect::ShowStatus(text) => self.show_status(text),
+            Effect::ShowCauses(figure) => self.show_causes(figure),
+            Effect::ShowRows(figure) => self.show_source_rows(figure),
             Effect::CloseDialogs => self.close_layers(),
-            Effect::Complain(text) => self.show_error(text),
-            Effect::BeginPath => {
+            Effect::ShowError(text) => self.show_error(text),
+            Effect::ClearBreadcrumbs => {
                 if let Stage::Run(run) = &mut self.stage {
                     run.clear_breadcrumbs();
                 }
@@ -122,7 +122,7 @@ impl App {
                     effects = run.screens.tools.prefill(tool, &arguments, &company);
                 });
                 // The Tools screen requests a preview of the filled-in call.
-                self.follow(effects);
+                self.execute_effects(effects);
             }
             Effect::ShowThread(number) => self.open_linked_screen(ScreenId::Inbox, |run| {
                 let company = run.company.clone();
@@ -138,7 +138,7 @@ impl App {
             Effect::RunSql(sql) => {
                 let mut effects = Vec::new();
                 self.open_linked_screen(ScreenId::Sql, |run| effects = run.screens.sql.edit_and_run(&sql));
-                self.follow(effects);
+                self.execute_effects(effects);
             }
             Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),
             Effect::ConfirmCall { tool, arguments, text } => {
@@ -154,16 +154,16 @@ impl App {
             Effect::TryStepAgain(step) => self.confirm_retry(step),
             Effect::ShowDebrief => self.open_debrief(),
             Effect::StartTour => self.start_tour(),
-            Effect::Receive(study) => self.start_study(study),
-            Effect::SettleOffer(restore) => self.resolve_draft_offer(restore),
+            Effect::StartStudy(study) => self.start_study(study),
+            Effect::ResolveDraftOffer(restore) => self.resolve_draft_offer(restore),
             Effect::StopClock(reason) => self.stop_clock(reason, false),
             Effect::LeaveNow => self.exit_run(ExitTarget::Shell),
-            Effect::Do(action) => self.handle_action(action),
+            Effect::Execute(action) => self.handle_action(action),
         }
     }
 
     /// Sends a request to the session thread. Some requests are rejected while a week or a script runs.
-    pub(super) fn request(&mut self, request: Request) {
+    pub(super) fn send_request(&mut self, request: Request) {
         if self.reject_for_participant(&request) {
             return;
         }
@@ -197,9 +197,12 @@ impl App {
                 .run()
                 .filter(|_| is_advance)
                 .map(|run| {
-                    SimulationProgress::new(run.company.observation.day, last_day_of(&request, &run.company))
+                    SimulationProgress::new(
+                        run.company.observation.day,
+                        last_simulated_day(&request, &run.company),
+                    )
                 })
-                .or_else(|| days_of_start(&request));
+                .or_else(|| lesson_start_progress(&request));
             self.busy = Some(BusyState { progress: days, ..BusyState::new(what) });
         }
         self.record_sent_drafts(&request);

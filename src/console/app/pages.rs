@@ -11,28 +11,28 @@ use crate::dialogs::opponents::OpponentsPage;
 use crate::dialogs::source_rows::SourceRowsDialog;
 use crate::effect::Effect;
 use novamind_session::identifiers::Group;
-use novamind_session::week_of;
+use novamind_session::week_of_day;
 use novamind_worker::question::OutgoingQuestion;
 
 /// Weeks before the end of a finished run at which a what-if starts.
 const WEEKS_BEFORE_END: u32 = 12;
 
 impl App {
-    fn open_asking(&mut self, (page, ask): (impl Dialog + 'static, OutgoingQuestion)) {
+    fn open_page_with_question(&mut self, (page, ask): (impl Dialog + 'static, OutgoingQuestion)) {
         self.open_dialog(page);
-        self.follow(vec![Effect::Ask(ask)]);
+        self.execute_effects(vec![Effect::Ask(ask)]);
     }
 
     /// Opens the participation curve of a group. The default is the first known group.
     pub(super) fn show_curve(&mut self, group: Option<Group>) {
         let known = self.run().and_then(|run| run.company.observation.known_groups.first().copied());
         if let Some(group) = group.or(known) {
-            self.open_asking(CurveDialog::new(group));
+            self.open_page_with_question(CurveDialog::new(group));
         }
     }
 
     pub(super) fn show_opponents(&mut self) {
-        self.open_asking(OpponentsPage::new(self.opponents));
+        self.open_page_with_question(OpponentsPage::new(self.opponents));
     }
 
     /// Opens the what-if page. The initial week is the displayed week of a playback, the last completed week of a
@@ -40,17 +40,17 @@ impl App {
     pub(super) fn show_branches(&mut self) {
         let Some(run) = self.run() else { return };
         let seen = &run.company.observation;
-        let last_week = week_of(seen.day.min(seen.last_day.saturating_sub(1)) + 1);
+        let last_week = week_of_day(seen.day.min(seen.last_day.saturating_sub(1)) + 1);
         let back = match (run.company.is_running(), self.is_playback()) {
             (false, _) => WEEKS_BEFORE_END,
             (true, true) => 0,
             (true, false) => 1,
         };
         let week = last_week.saturating_sub(back).max(1);
-        self.open_asking(BranchesPage::new(week, last_week));
+        self.open_page_with_question(BranchesPage::new(week, last_week));
     }
 
-    pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
+    pub(super) fn show_source_rows(&mut self, Figure { title, sql, .. }: Figure) {
         let Some(sql) = sql else {
             let explain = self.keys.label(Action::Explain).unwrap_or_default();
             return self
@@ -58,10 +58,10 @@ impl App {
         };
         let here = self.run().map_or("", |run| run.screen.action().entry().title);
         self.record_opened_object("figure", title.clone());
-        self.open_asking(SourceRowsDialog::new(format!("{here} › {title}"), sql));
+        self.open_page_with_question(SourceRowsDialog::new(format!("{here} › {title}"), sql));
     }
 
-    pub(super) fn ask_why(&mut self, figure: Figure) {
+    pub(super) fn show_causes(&mut self, figure: Figure) {
         let Some((quantity, week)) = figure.week_quantity else {
             let key = self.keys.label(Action::Why).unwrap_or_default();
             return self.show_error(format!(
@@ -69,7 +69,7 @@ impl App {
             ));
         };
         self.record_opened_object("figure", figure.title.clone());
-        self.open_asking(CausesDialog::new(figure, quantity, week));
+        self.open_page_with_question(CausesDialog::new(figure, quantity, week));
     }
 }
 
@@ -95,7 +95,7 @@ mod tests {
     use novamind_worker::readings::Reading;
 
     /// Returns a console with an open run and no worker. The test answers the questions.
-    fn console() -> App {
+    fn console_with_open_run() -> App {
         let mut app = App::new(settings("nowhere".as_ref()));
         app.window = (120, 40);
         app.handle_message(Message::Response(Response::Opened(new_company().into())));
@@ -117,7 +117,7 @@ mod tests {
     }
 
     /// Answers a question. With `None`, drops the reply without an answer, as a panicking thread does.
-    fn answer<Q: Question>(
+    fn answer_question<Q: Question>(
         app: &mut App,
         ask: &OutgoingQuestion,
         answer: Option<Result<Q::Answer, Rejection>>,
@@ -131,47 +131,50 @@ mod tests {
         messages.into_iter().for_each(|message| app.handle_message(message));
     }
 
-    fn refused<T>(words: &str) -> Option<Result<T, Rejection>> {
+    fn rejected_answer<T>(words: &str) -> Option<Result<T, Rejection>> {
         Some(Err(Rejection::new("not_possible", words)))
     }
 
-    fn screen(app: &App) -> String {
+    fn screen_text(app: &App) -> String {
         let mut buffer = Buffer::empty(Rect::new(0, 0, 120, 40));
         frame::draw_frame(app, &mut buffer);
         buffer.content().iter().map(|cell| cell.symbol()).collect()
     }
 
     #[test]
-    fn a_late_answer_to_an_earlier_question_is_not_shown_as_that_of_the_later_one() {
-        let mut app = console();
+    fn curve_page_ignores_a_late_answer_to_an_earlier_question() {
+        let mut app = console_with_open_run();
         app.start(Effect::ShowCurve(None));
         let first = take_questions::<CurveQuestion>(&mut app);
         press_key(&mut app, ".");
         let second = take_questions::<CurveQuestion>(&mut app);
-        answer::<CurveQuestion>(&mut app, &first[0], refused("of the first group"));
-        assert!(screen(&app).contains("asking 2000 leads") && !screen(&app).contains("of the first group"));
-        answer::<CurveQuestion>(&mut app, &second[0], refused("of the second group"));
-        assert!(screen(&app).contains("of the second group"));
+        answer_question::<CurveQuestion>(&mut app, &first[0], rejected_answer("of the first group"));
+        assert!(
+            screen_text(&app).contains("asking 2000 leads")
+                && !screen_text(&app).contains("of the first group")
+        );
+        answer_question::<CurveQuestion>(&mut app, &second[0], rejected_answer("of the second group"));
+        assert!(screen_text(&app).contains("of the second group"));
     }
 
     #[test]
-    fn an_answer_for_a_page_that_is_gone_is_dropped() {
-        let mut app = console();
+    fn answer_for_a_closed_page_is_dropped() {
+        let mut app = console_with_open_run();
         app.start(Effect::ShowCurve(None));
         let ask = take_questions::<CurveQuestion>(&mut app);
         press_key(&mut app, "esc");
         app.start(Effect::ShowCurve(None));
-        answer::<CurveQuestion>(&mut app, &ask[0], refused("for the page before"));
-        assert!(screen(&app).contains("asking 2000 leads"));
+        answer_question::<CurveQuestion>(&mut app, &ask[0], rejected_answer("for the page before"));
+        assert!(screen_text(&app).contains("asking 2000 leads"));
         press_key(&mut app, "esc");
-        let without = screen(&app);
-        answer::<CurveQuestion>(&mut app, &ask[0], refused("once more"));
-        assert_eq!(screen(&app), without);
+        let without = screen_text(&app);
+        answer_question::<CurveQuestion>(&mut app, &ask[0], rejected_answer("once more"));
+        assert_eq!(screen_text(&app), without);
     }
 
     #[test]
-    fn rows_of_the_run_as_it_was_before_are_dropped() {
-        let mut app = console();
+    fn query_results_from_before_a_run_change_are_dropped() {
+        let mut app = console_with_open_run();
         app.start(Effect::Show(ScreenId::Customers));
         let before = take_questions::<Reading>(&mut app);
         app.handle_message(Message::Response(Response::RunChanged(new_company().into())));
@@ -179,39 +182,45 @@ mod tests {
         let question = |ask: &OutgoingQuestion| ask.question::<Reading>().copied();
         let outgoing_question =
             after.iter().find(|ask| question(ask) == question(&before[0])).expect("asked again");
-        answer::<Reading>(&mut app, &before[0], refused("of before"));
-        assert!(!screen(&app).contains("of before"));
-        answer::<Reading>(&mut app, outgoing_question, refused("of now"));
-        assert!(screen(&app).contains("of now"));
+        answer_question::<Reading>(&mut app, &before[0], rejected_answer("of before"));
+        assert!(!screen_text(&app).contains("of before"));
+        answer_question::<Reading>(&mut app, outgoing_question, rejected_answer("of now"));
+        assert!(screen_text(&app).contains("of now"));
     }
 
     #[test]
-    fn a_page_whose_question_crashed_waits_no_longer() {
-        let mut app = console();
+    fn page_stops_waiting_after_its_question_panics() {
+        let mut app = console_with_open_run();
         app.start(Effect::ShowCurve(None));
         let ask = take_questions::<CurveQuestion>(&mut app);
-        answer::<CurveQuestion>(&mut app, &ask[0], None);
-        assert!(screen(&app).contains("not answered") && !screen(&app).contains("asking 2000 leads"));
+        answer_question::<CurveQuestion>(&mut app, &ask[0], None);
+        assert!(
+            screen_text(&app).contains("not answered") && !screen_text(&app).contains("asking 2000 leads")
+        );
         press_key(&mut app, "esc");
         app.start(Effect::RunSql("SELECT 1".to_owned()));
         let ask = take_questions::<Query>(&mut app);
         assert!(app.is_waiting());
-        answer::<Query>(&mut app, &ask[0], None);
-        assert!(!app.is_waiting() && screen(&app).contains("not answered"));
+        answer_question::<Query>(&mut app, &ask[0], None);
+        assert!(!app.is_waiting() && screen_text(&app).contains("not answered"));
         app.start(Effect::RunSql("SELECT 2".to_owned()));
         let ask = take_questions::<Query>(&mut app);
-        answer::<Query>(&mut app, &ask[0], Some(Ok((QueryResult::default(), std::time::Duration::ZERO))));
+        answer_question::<Query>(
+            &mut app,
+            &ask[0],
+            Some(Ok((QueryResult::default(), std::time::Duration::ZERO))),
+        );
         assert!(!app.is_waiting());
     }
 
     #[test]
-    fn an_answer_is_kept_for_a_page_that_another_one_covers() {
-        let mut app = console();
+    fn covered_page_keeps_its_answer() {
+        let mut app = console_with_open_run();
         app.start(Effect::ShowCurve(None));
         let ask = take_questions::<CurveQuestion>(&mut app);
         app.start(Effect::ShowText("over".to_owned(), "the curve".to_owned()));
-        answer::<CurveQuestion>(&mut app, &ask[0], refused("it came meanwhile"));
+        answer_question::<CurveQuestion>(&mut app, &ask[0], rejected_answer("it came meanwhile"));
         press_key(&mut app, "esc");
-        assert!(screen(&app).contains("it came meanwhile"));
+        assert!(screen_text(&app).contains("it came meanwhile"));
     }
 }

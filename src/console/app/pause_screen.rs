@@ -41,7 +41,7 @@ impl App {
         }
         self.save_drafts();
         self.record_view();
-        self.stopwatch.halt();
+        self.stopwatch.pause();
         self.status = None;
         self.pending_chords.clear();
         let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| TextField::default());

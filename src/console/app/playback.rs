@@ -210,7 +210,7 @@ impl App {
         }
     }
 
-    pub(super) fn handle_arrival(&mut self, arrival: PlaybackUpdate, asked: bool) {
+    pub(super) fn handle_playback_update(&mut self, arrival: PlaybackUpdate, asked: bool) {
         let PlaybackUpdate { company, position: place, problem } = arrival;
         if asked {
             self.busy = None;

@@ -37,18 +37,20 @@ impl App {
                 }
                 if let Stage::Menu(menu) = &mut self.stage {
                     let effects = menu.set_runs(list);
-                    self.follow(effects);
+                    self.execute_effects(effects);
                 }
             }
             Response::ClassRead(read) => self.handle_class_read(*read),
-            Response::HandoutOpened(label) => self.resume_command = as_student(&self.resume_command, &label),
+            Response::HandoutOpened(label) => {
+                self.resume_command = command_with_student_label(&self.resume_command, &label)
+            }
             Response::Opened(company) => self.show_opened_run(company, None),
             Response::PlaybackOpened(company, place) => {
                 self.show_opened_run(company, Some(PlaybackViewer::new(*place)))
             }
             Response::RunChanged(company) => self.update_company(company),
-            Response::SeekResult(arrival) => self.handle_arrival(*arrival, true),
-            Response::PlaybackAdvanced(arrival) => self.handle_arrival(*arrival, false),
+            Response::SeekResult(arrival) => self.handle_playback_update(*arrival, true),
+            Response::PlaybackAdvanced(arrival) => self.handle_playback_update(*arrival, false),
             Response::NotOpened(problem, instead) => {
                 (self.busy, self.initial_screen) = (None, None);
                 self.starts_tour = false;
@@ -137,7 +139,7 @@ impl App {
             Response::SettingRestored(what, changes, company) => {
                 self.update_company(company.clone());
                 match changes {
-                    Ok(changes) => self.show_status(format!("{what}: {}", in_words(changes))),
+                    Ok(changes) => self.show_status(format!("{what}: {}", describe_setting_changes(changes))),
                     Err(refusal) => self.show_error(refusal.message.clone()),
                 }
                 ScreenId::Tools
@@ -167,7 +169,7 @@ impl App {
         if run.zoomed && run.screens.get(run.screen).focused_index() != focus {
             run.screens.get_mut(run.screen).set_focus(focus);
         }
-        self.follow(effects);
+        self.execute_effects(effects);
     }
 
     pub(super) fn take_answers(&mut self) {
@@ -265,20 +267,20 @@ impl App {
         self.refresh_readings();
         // In a study, the final questions come first.
         if over && !self.has_participant() {
-            self.show_end();
+            self.show_final_page();
         }
         self.open_initial_lesson_page();
     }
 
     /// Shows the final page. Figures from the ledger are added when the ledger has been read.
-    pub(super) fn show_end(&mut self) {
+    pub(super) fn show_final_page(&mut self) {
         if self.show_lesson_end() {
             return;
         }
         let Stage::Run(run) = &self.stage else { return };
         let report = run.story.clone();
         if report.is_none() {
-            self.follow(vec![Effect::Request(Request::BuildRunReport)]);
+            self.execute_effects(vec![Effect::Request(Request::BuildRunReport)]);
         }
         let page = FinalPage::new(report);
         let page = if self.has_participant() { page.for_participant() } else { page };
@@ -363,7 +365,7 @@ impl App {
         let hides_result = self.run().is_some_and(|run| run.company.rules.hides_result(ended.is_some()));
         self.show_status(if hides_result { "the run has ended".to_owned() } else { text });
         match ended {
-            Some(_) => self.show_end(),
+            Some(_) => self.show_final_page(),
             None if self.show_lesson_week(before.as_ref()) => {}
             None => {
                 let remark = (!remark.is_empty()).then_some(remark);
@@ -388,7 +390,7 @@ impl App {
             Ok(ran) => {
                 self.show_status(ran.lines.first().cloned().unwrap_or_default());
                 if ran.has_ended {
-                    self.show_end();
+                    self.show_final_page();
                 }
             }
             Err(refusal) => self.show_error(refusal.to_string()),
@@ -410,13 +412,13 @@ impl App {
     }
 }
 
-fn as_student(again: &str, label: &str) -> String {
+fn command_with_student_label(again: &str, label: &str) -> String {
     let head = again.strip_suffix("--run latest").unwrap_or(again);
     let head = head.rsplit_once("--as ").map_or(head, |(before, _)| before);
     format!("{head}--as {label} --run latest")
 }
 
-fn in_words(changes: &[SettingChange]) -> String {
+fn describe_setting_changes(changes: &[SettingChange]) -> String {
     let one = |change: &SettingChange| {
         format!("{} {} → {}", change.setting, format_number(change.old), format_number(change.new))
     };

@@ -21,7 +21,7 @@ impl App {
     }
 
     fn send_study_request(&mut self, request: StudyRequest) {
-        self.request(Request::Study(request));
+        self.send_request(Request::Study(request));
     }
 
     /// Rejects a request that participants must not send. Returns whether the request was rejected.
@@ -153,7 +153,7 @@ impl App {
                 // The status message may name keys that do not work on study pages.
                 self.status = None;
                 self.push_layer(Layer::Dialog(Box::new(page)));
-                self.follow(vec![effect]);
+                self.execute_effects(vec![effect]);
             }
             None if over => self.exit_run(ExitTarget::Menu),
             None => {}

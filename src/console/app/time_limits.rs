@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::effect::Effect;
-use novamind_record::rules::{DraftsKept, SessionRules};
+use novamind_record::rules::{DraftRecording, SessionRules};
 use novamind_record::trajectory::record::{Limit, LimitEvent, LimitScope, TextEditOutcome};
 use novamind_session::{TIME_LIMIT_RATIONALE, TimeLeft};
 use novamind_worker::request::Request;
@@ -12,7 +12,7 @@ pub(super) struct TimeLimitState {
     /// The time limit to show above the screen until the week has run, and whether the limit was reached.
     notice: Option<(LimitScope, bool)>,
     /// Whether the time for the week has ended. The week is then submitted as soon as no work blocks it.
-    files_week: bool,
+    must_submit_week: bool,
     /// Notice about a draft that was not submitted when the time for the week ended.
     draft_notice: Option<String>,
 }
@@ -22,7 +22,7 @@ impl App {
         match limit.event {
             LimitEvent::Warned => self.time_limit.notice = Some((limit.limit, false)),
             LimitEvent::Reminded => self.time_limit.notice = Some((limit.limit, true)),
-            LimitEvent::FiledNaively => self.time_limit.files_week = true,
+            LimitEvent::FiledNaively => self.time_limit.must_submit_week = true,
             LimitEvent::Paused => {
                 self.time_limit.notice = None;
                 self.stop_clock(Some(TIME_LIMIT_RATIONALE.to_owned()), true);
@@ -48,7 +48,7 @@ impl App {
 
     /// Submits the week when the time for the week has ended. The participant must answer due questions of the study first.
     pub(super) fn enforce_week_limit(&mut self) {
-        if !self.time_limit.files_week
+        if !self.time_limit.must_submit_week
             || self.has_due_questions()
             || self.pause_screen.is_some()
             || self.exit_target.is_some()
@@ -57,7 +57,7 @@ impl App {
         }
         match &self.busy {
             // A week that is already running was submitted in time.
-            Some(busy) if busy.progress.is_some() => self.time_limit.files_week = false,
+            Some(busy) if busy.progress.is_some() => self.time_limit.must_submit_week = false,
             Some(_) => {}
             None => self.submit_naive_week(),
         }
@@ -65,7 +65,7 @@ impl App {
 
     /// Submits the week with the naive forecasts. Drafts are not sent.
     fn submit_naive_week(&mut self) {
-        self.time_limit.files_week = false;
+        self.time_limit.must_submit_week = false;
         let Some(run) = self.run().filter(|run| run.company.is_running()) else { return };
         let mut forecasts = run.company.naive_forecasts;
         forecasts.filled_naively = [true; 4];
@@ -74,7 +74,7 @@ impl App {
         self.close_layers();
         self.end_next_week_drafts(TextEditOutcome::Left);
         let rationale = TIME_LIMIT_RATIONALE.to_owned();
-        self.follow(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
+        self.execute_effects(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
         self.show_status("time for this week is up; the week was submitted with the projection");
     }
 
@@ -91,9 +91,9 @@ fn limit_notice_text(left: &TimeLeft, rules: &SessionRules) -> String {
 fn draft_retention_text(rules: &SessionRules) -> String {
     let kept = match rules.drafts {
         _ if !rules.records_activity("draft") => "its text is lost",
-        DraftsKept::None => "its text is lost",
-        DraftsKept::Lengths => "the record keeps its length, not its text",
-        DraftsKept::Text => "the record keeps it as a draft",
+        DraftRecording::None => "its text is lost",
+        DraftRecording::Lengths => "the record keeps its length, not its text",
+        DraftRecording::Text => "the record keeps it as a draft",
     };
     format!("Your draft was not submitted; {kept}.")
 }

@@ -30,7 +30,7 @@ impl Stopwatch {
     }
 
     /// Pauses the stopwatch.
-    pub fn halt(&mut self) {
+    pub fn pause(&mut self) {
         (self.elapsed_before, self.halted) = (self.elapsed(), true);
     }
 
@@ -42,7 +42,7 @@ impl Stopwatch {
     }
 
     /// Returns whether the stopwatch is paused.
-    pub fn is_halted(&self) -> bool {
+    pub fn is_paused(&self) -> bool {
         self.halted
     }
 
@@ -64,10 +64,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn halted_stopwatch_does_not_advance() {
+    fn paused_stopwatch_does_not_advance() {
         let mut watch = Stopwatch::default();
         watch.advance(Duration::from_secs(5));
-        watch.halt();
+        watch.pause();
         let stood = watch.elapsed();
         watch.advance(Duration::from_secs(100));
         assert_eq!(watch.elapsed(), stood);

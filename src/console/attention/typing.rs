@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_are_counted_by_edit_source() {
+    fn typing_log_counts_characters_by_edit_source() {
         assert_eq!(count_added_and_removed("abc", "abXc"), (1, 0));
         assert_eq!(count_added_and_removed("aa", "aaa"), (1, 0));
         assert_eq!(count_added_and_removed("añ日", "a日"), (0, 1));

@@ -67,7 +67,7 @@ impl CausesDialog {
         let title = format!("{} in week {week}", self.quantity.name());
         let figure =
             Figure { title, sql: None, week_quantity: Some((self.quantity, week)), ..self.figure.clone() };
-        DialogResponse::confirm_with(vec![Effect::AskWhy(figure)])
+        DialogResponse::confirm_with(vec![Effect::ShowCauses(figure)])
     }
 
     fn progress_text(&self) -> String {
@@ -81,7 +81,7 @@ impl CausesDialog {
     }
 
     /// Formats a cause, its contribution and a bar. The differing inputs are added if they fit.
-    fn line<'a>(
+    fn cause_line<'a>(
         canvas: &Canvas<'_>,
         cause: &CauseLine,
         most: f64,
@@ -191,7 +191,7 @@ impl Dialog for CausesDialog {
             if here {
                 canvas.clear(row, Role::Selection);
             }
-            let line = CausesDialog::line(canvas, cause, most, widths, row.width, here);
+            let line = CausesDialog::cause_line(canvas, cause, most, widths, row.width, here);
             canvas.draw_line(row, &line);
             canvas.register_click(row, Click::Row(0, at));
         }
@@ -233,7 +233,7 @@ mod tests {
             after: 1137.0,
             contributions: vec![
                 part(Cause::Calls(ToolId::SetPrices), 938.0, Vec::new()),
-                part(Cause::Competitors, 4.0, vec![CauseDetail::Occurred(2, "move")]),
+                part(Cause::Competitors, 4.0, vec![CauseDetail::Occurrences(2, "move")]),
                 part(Cause::Service, 0.0, vec![overload]),
             ],
             residual: 0.0,
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn week_can_change_except_to_the_first() {
+    fn week_can_be_changed_except_to_the_first_week() {
         let company =
             novamind_worker::company::DisplayedCompany::from_session(&crate::test_kit::played_session(4));
         let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), 3);
@@ -282,7 +282,7 @@ mod tests {
             let outcome = dialog_action(&mut dialog, action, &company);
             assert!(outcome.closes, "a closed dialog takes no answer");
             let effect = outcome.effects.first();
-            let Some(Effect::AskWhy(figure)) = effect else { panic!("nothing is asked") };
+            let Some(Effect::ShowCauses(figure)) = effect else { panic!("nothing is asked") };
             assert_eq!(figure.week_quantity, Some((cancellations(), week)));
             assert!(figure.title.ends_with(&format!("in week {week}")), "{}", figure.title);
         }
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn the_work_is_told_and_esc_closes_it() {
+    fn dialog_shows_progress_and_esc_closes_it() {
         let company = new_company();
         let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), 9);
         assert!(dialog_text(&dialog, &company, 60, 16).contains("reading the record"));

@@ -60,7 +60,7 @@ impl Dialog for ConfirmDialog {
             (Action::Cancel, _) => {
                 let yes = context.keys.label(Action::Confirm).unwrap_or_default();
                 let text = format!("{}: cancelled; {yes} confirms", self.title);
-                DialogResponse::cancel_with(vec![Effect::Say(text)])
+                DialogResponse::cancel_with(vec![Effect::ShowStatus(text)])
             }
             (action, Some((other, effects))) if action == *other => {
                 DialogResponse::confirm_with(std::mem::take(effects))

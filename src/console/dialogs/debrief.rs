@@ -42,7 +42,7 @@ impl DebriefPage {
 
     fn write_debrief(&self) -> DialogResponse {
         let Some(debrief) = self.successful_debrief() else {
-            return DialogResponse::stay_with(vec![Effect::Complain(
+            return DialogResponse::stay_with(vec![Effect::ShowError(
                 "the debrief is still being computed".to_owned(),
             )]);
         };
@@ -89,7 +89,7 @@ impl Dialog for DebriefPage {
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         let page = context.company.lesson.as_ref();
         match action {
-            Action::ToMenu => return DialogResponse::confirm_with(vec![Effect::Do(Action::LeaveRun)]),
+            Action::ToMenu => return DialogResponse::confirm_with(vec![Effect::Execute(Action::LeaveRun)]),
             Action::StayInRun | Action::Close => return DialogResponse::close(),
             Action::WriteRunReport => return self.write_debrief(),
             Action::Opponents => return DialogResponse::stay_with(vec![Effect::ShowOpponents]),
@@ -103,7 +103,7 @@ impl Dialog for DebriefPage {
                     return start_part(part);
                 }
                 let text = "this was the last part of the lesson".to_owned();
-                return DialogResponse::stay_with(vec![Effect::Complain(text)]);
+                return DialogResponse::stay_with(vec![Effect::ShowError(text)]);
             }
             other => {
                 self.scroll.handle_action(other, context.page_rows as usize);
@@ -145,7 +145,7 @@ impl Dialog for DebriefPage {
             (below, Rect { height: above, ..inside })
         };
         draw_curves(canvas, curves, debrief);
-        let lines = lines_of(debrief, words.width as usize);
+        let lines = debrief_lines(debrief, words.width as usize);
         let last = lines.len().saturating_sub(words.height as usize);
         let from = self.scroll.clamped_first_row(last);
         canvas.page_rows = words.height.max(1);
@@ -164,7 +164,7 @@ impl Dialog for DebriefPage {
     }
 }
 
-fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
+fn debrief_lines(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     let heading = headline(debrief);
     let paragraphs = debrief_paragraphs(debrief).into_iter().enumerate().flat_map(|(at, text)| {
         let role = match at {

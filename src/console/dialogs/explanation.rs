@@ -142,7 +142,9 @@ impl ExplainDialog {
                 let next = ExplanationPage::from_subject(*subject, &self.numbers);
                 self.pages.push(next);
             }
-            Some(Link::Screen(action)) => return DialogResponse::confirm_with(vec![Effect::Do(*action)]),
+            Some(Link::Screen(action)) => {
+                return DialogResponse::confirm_with(vec![Effect::Execute(*action)]);
+            }
             None => return DialogResponse::close(),
         }
         DialogResponse::stay()
@@ -195,9 +197,9 @@ impl Dialog for ExplainDialog {
             Action::Back | Action::Close | Action::Cancel | Action::Explain => {
                 return DialogResponse::close();
             }
-            Action::Glossary => return DialogResponse::confirm_with(vec![Effect::Do(Action::Glossary)]),
+            Action::Glossary => return DialogResponse::confirm_with(vec![Effect::Execute(Action::Glossary)]),
             Action::Rows if self.has_source_rows && self.pages.len() == 1 => {
-                return DialogResponse::confirm_with(vec![Effect::Do(Action::Rows)]);
+                return DialogResponse::confirm_with(vec![Effect::Execute(Action::Rows)]);
             }
             Action::Up | Action::ScrollUp => self.select(|at, _| at.saturating_sub(1)),
             Action::Down | Action::ScrollDown => self.select(|at, _| at + 1),
@@ -218,7 +220,7 @@ impl Dialog for ExplainDialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let page = self.page();
         let width = area.width.saturating_sub(4).min(100);
-        let text = lines_of(page, width.saturating_sub(4) as usize);
+        let text = page_lines(page, width.saturating_sub(4) as usize);
         // The text takes precedence over the links. At least three links stay visible, and the list of links scrolls.
         let links = (page.links.len() as u16).min(10);
         let least = links.min(3) + u16::from(links > 0);
@@ -275,7 +277,7 @@ impl ExplainDialog {
     }
 }
 
-fn lines_of(page: &ExplanationPage, width: usize) -> Vec<(String, String)> {
+fn page_lines(page: &ExplanationPage, width: usize) -> Vec<(String, String)> {
     let column = page.parts.iter().map(|(heading, _)| heading.chars().count()).max().unwrap_or(0);
     let column = if column > 0 { column + 2 } else { 0 };
     let mut lines = Vec::new();
@@ -344,7 +346,7 @@ mod tests {
         assert!(!dialog_action(&mut dialog, Action::Back, &company).closes);
         assert_eq!(dialog_text(&dialog, &company, 80, 21), shown);
         let rows = dialog_action(&mut dialog, Action::Rows, &company);
-        assert!(rows.closes && matches!(rows.effects[..], [Effect::Do(Action::Rows)]));
+        assert!(rows.closes && matches!(rows.effects[..], [Effect::Execute(Action::Rows)]));
         assert!(dialog_action(&mut dialog, Action::Back, &company).closes);
     }
 
@@ -355,7 +357,7 @@ mod tests {
             ExplainDialog::for_figure(&figure("runway", None), ParameterNumbers::bundled().into());
         dialog_action(&mut dialog, Action::Last, &company);
         let outcome = dialog_action(&mut dialog, Action::Open, &company);
-        assert!(outcome.closes && matches!(outcome.effects[..], [Effect::Do(Action::Cash)]));
+        assert!(outcome.closes && matches!(outcome.effects[..], [Effect::Execute(Action::Cash)]));
     }
 
     #[test]

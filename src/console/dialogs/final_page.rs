@@ -12,10 +12,10 @@ use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
 use novamind_base::formatting::{dollars, grouped_number, percent};
-use novamind_record::rules::ResultsShown;
+use novamind_record::rules::ResultsDisclosure;
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_report::measures::{BehaviorMeasures, ChannelSkill, MIN_CHANNEL_LEADS};
-use novamind_report::ranking::{Ranking, ResultOwner, published_targeted_shares, rank_score};
+use novamind_report::measures::{BehaviorMeasures, BestTriedChannelSpend, MIN_CHANNEL_LEADS};
+use novamind_report::ranking::{Ranking, ResultOrigin, published_targeted_shares, rank_score};
 use novamind_report::{RunReport, card_to_svg, card_to_text};
 use novamind_session::{ForecastScore, SeekTarget};
 use novamind_tui::canvas::{Canvas, centered_rect, truncate_to_width};
@@ -46,7 +46,7 @@ fn hides_result(company: &DisplayedCompany) -> bool {
 /// Opens the run in playback at a position.
 fn open_replay(company: &DisplayedCompany, goal: SeekTarget) -> DialogResponse {
     match (&company.folder, company.is_playback) {
-        (_, true) => DialogResponse::confirm_with(vec![Effect::Go(goal)]),
+        (_, true) => DialogResponse::confirm_with(vec![Effect::Seek(goal)]),
         (Some(_), _) => {
             let recorded = RecordSource::Run(company.observation.run.clone());
             DialogResponse::stay_with(vec![Effect::Request(Request::Replay {
@@ -57,7 +57,7 @@ fn open_replay(company: &DisplayedCompany, goal: SeekTarget) -> DialogResponse {
         }
         (None, _) => {
             let text = "cannot replay: this run is in memory and has no record";
-            DialogResponse::stay_with(vec![Effect::Complain(text.to_owned())])
+            DialogResponse::stay_with(vec![Effect::ShowError(text.to_owned())])
         }
     }
 }
@@ -102,11 +102,11 @@ impl Dialog for FinalPage {
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::ReplayFromStart => open_replay(context.company, SeekTarget::First),
-            Action::WhatIf => DialogResponse::confirm_with(vec![Effect::Do(Action::Branches)]),
+            Action::WhatIf => DialogResponse::confirm_with(vec![Effect::Execute(Action::Branches)]),
             Action::Opponents if !hides_result(context.company) => {
                 DialogResponse::stay_with(vec![Effect::ShowOpponents])
             }
-            Action::ToMenu => DialogResponse::confirm_with(vec![Effect::Do(Action::LeaveRun)]),
+            Action::ToMenu => DialogResponse::confirm_with(vec![Effect::Execute(Action::LeaveRun)]),
             Action::StayInRun | Action::Continue => DialogResponse::close(),
             Action::WriteRunCard if !hides_result(context.company) => self.write_card(),
             Action::WriteRunReport => {
@@ -164,7 +164,7 @@ impl FinalPage {
 
     fn write_card(&self) -> DialogResponse {
         let Some(report) = &self.story else {
-            return DialogResponse::stay_with(vec![Effect::Complain(
+            return DialogResponse::stay_with(vec![Effect::ShowError(
                 "the ledger is still being read".to_owned(),
             )]);
         };
@@ -191,7 +191,7 @@ impl FinalPage {
             (true, _) => 8,
             (false, _) => 3,
         };
-        let published = company.rules.results == ResultsShown::Published;
+        let published = company.rules.results == ResultsDisclosure::Published;
         if published {
             parts.push(ranking_lines(canvas, &standing, width, best, roomy));
         }
@@ -304,7 +304,7 @@ fn ranking_lines<'a>(
         .map(|line| TextLine::from(canvas.span(line, Role::Header)))
         .collect();
     for place in standing.top_and_neighbors(best, 1) {
-        let is_this_run = place.owner == ResultOwner::ThisRun;
+        let is_this_run = place.owner == ResultOrigin::ThisRun;
         let role = if is_this_run { Role::Good } else { Role::Text };
         let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![
@@ -404,7 +404,7 @@ fn calibration_text(scores: &[ForecastScore], room: usize) -> String {
 }
 
 /// Describes the share of ads on the best channel, or why the share is unknown. Returns the longer wording first.
-fn best_channel_texts(skill: &ChannelSkill) -> Vec<String> {
+fn best_channel_texts(skill: &BestTriedChannelSpend) -> Vec<String> {
     let first = skill.groups.iter().find_map(|group| Some((group, group.best.as_ref()?)));
     match (skill.share, first) {
         (Some(share), Some((group, best))) => {

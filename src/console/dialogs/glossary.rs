@@ -96,7 +96,7 @@ impl Dialog for GlossaryDialog {
             // Prevents a second glossary from opening over an explanation.
             Action::Glossary => DialogResponse::stay(),
             other if other.entry().scope == Scope::Global => {
-                DialogResponse::confirm_with(vec![Effect::Do(other)])
+                DialogResponse::confirm_with(vec![Effect::Execute(other)])
             }
             _ => DialogResponse::stay(),
         }
@@ -203,7 +203,7 @@ mod tests {
         );
         assert!(!outcome.closes, "closing the explanation leads back to the list");
         let away = dialog_action(&mut dialog, Action::Cash, &company);
-        assert!(away.closes && matches!(away.effects[..], [Effect::Do(Action::Cash)]));
+        assert!(away.closes && matches!(away.effects[..], [Effect::Execute(Action::Cash)]));
         assert!(!dialog_action(&mut dialog, Action::Close, &company).closes, "the filter is cleared first");
         assert!(dialog_action(&mut dialog, Action::Close, &company).closes);
     }

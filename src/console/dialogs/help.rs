@@ -29,9 +29,10 @@ const FILTER_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
 impl HelpDialog {
     /// Lists the keys of a screen. The keys of the focused pane are first.
     pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &KeyBindings) -> HelpDialog {
-        let mut table = table_of(screen_sections(panes, replay), keys);
+        let mut table = key_table(screen_sections(panes, replay), keys);
         if panes.first().is_some_and(|pane| pane.scopes.contains(&Scope::Editor)) {
-            let edits = EDITING_KEYS.map(|(key, title, doc)| row_of("typing", (key, Role::Key), title, doc));
+            let edits =
+                EDITING_KEYS.map(|(key, title, doc)| styled_row("typing", (key, Role::Key), title, doc));
             table.set_rows(table.rows().iter().cloned().chain(edits).collect());
         }
         let screen = here.action().entry().title;
@@ -57,7 +58,7 @@ impl HelpDialog {
         let step = dialog.step().map_or(String::new(), |step| format!(" › {step}"));
         HelpDialog {
             title: format!("Keys: {}{step}", dialog.record_name()),
-            table: table_of([help_section, lists], keys),
+            table: key_table([help_section, lists], keys),
         }
     }
 
@@ -68,7 +69,7 @@ impl HelpDialog {
 }
 
 /// Builds a table with a row for each action that has a working key or no binding.
-fn table_of(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) -> Table {
+fn key_table(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) -> Table {
     let columns = vec![
         TableColumn::text("where").with_max_width(8),
         TableColumn::text("keys").with_max_width(16),
@@ -86,21 +87,21 @@ fn table_of(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) ->
                 continue;
             }
             listed.push(action);
-            rows.push(row(part.name, &chords, action));
+            rows.push(action_row(part.name, &chords, action));
         }
     }
     table.set_rows(rows);
     table
 }
 
-fn row(part: &str, chords: &[String], action: Action) -> Vec<TableCell> {
+fn action_row(part: &str, chords: &[String], action: Action) -> Vec<TableCell> {
     let entry = action.entry();
     let chords = chords.join(", ");
     let keys = if chords.is_empty() { ("palette", Role::Dim) } else { (chords.as_str(), Role::Key) };
-    row_of(part, keys, entry.title, entry.doc)
+    styled_row(part, keys, entry.title, entry.doc)
 }
 
-fn row_of(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec<TableCell> {
+fn styled_row(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec<TableCell> {
     vec![
         TableCell::from_text(part).with_role(Role::Dim),
         TableCell::from_text(keys).with_role(role),

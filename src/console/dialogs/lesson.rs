@@ -7,7 +7,7 @@ use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
-use crate::lesson::{TaskPlace, draw_lines, lines_of, retry_step};
+use crate::lesson::{TaskPlace, draw_lines, retry_step, task_lines};
 use novamind_course::{LessonQuestion, LessonStatus};
 use novamind_report::lesson::parse_guess;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
@@ -219,14 +219,14 @@ impl Dialog for LessonDialog {
                 ))]);
             }
             Action::NextHint => {
-                return DialogResponse::stay_with(vec![Effect::Complain(
+                return DialogResponse::stay_with(vec![Effect::ShowError(
                     "there are no more hints".to_owned(),
                 )]);
             }
             Action::NextPart => {
                 return match page.next_part {
                     Some(part) => start_part(part),
-                    None => DialogResponse::stay_with(vec![Effect::Complain(
+                    None => DialogResponse::stay_with(vec![Effect::ShowError(
                         "there is no next part, or this part has not ended".to_owned(),
                     )]),
                 };
@@ -234,12 +234,14 @@ impl Dialog for LessonDialog {
             Action::Debrief if offered => return DialogResponse::confirm_with(vec![Effect::ShowDebrief]),
             Action::Debrief => {
                 let text = "the debrief is available after the end of this part of the lesson".to_owned();
-                return DialogResponse::stay_with(vec![Effect::Complain(text)]);
+                return DialogResponse::stay_with(vec![Effect::ShowError(text)]);
             }
             Action::TryAgain => {
                 return DialogResponse::stay_with(vec![Effect::TryStepAgain(retry_step(page))]);
             }
-            Action::LessonWeek => return DialogResponse::confirm_with(vec![Effect::Do(Action::NextWeek)]),
+            Action::LessonWeek => {
+                return DialogResponse::confirm_with(vec![Effect::Execute(Action::NextWeek)]);
+            }
             Action::Cancel | Action::Close => return DialogResponse::close(),
             other => {
                 self.scroll.handle_action(other, context.page_rows as usize);
@@ -298,7 +300,7 @@ impl Dialog for LessonDialog {
         }
         let widest_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), area.height);
         let lines =
-            lines_of(page, context, (widest_area.width.saturating_sub(4) as usize, TaskPlace::FullPage));
+            task_lines(page, context, (widest_area.width.saturating_sub(4) as usize, TaskPlace::FullPage));
         let dialog_area = centered_rect(area, widest_area.width, (lines.len() as u16).saturating_add(2));
         canvas.clear(dialog_area, Role::Text);
         let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);

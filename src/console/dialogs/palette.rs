@@ -34,7 +34,7 @@ struct PaletteEntry {
 
 impl PaletteEntry {
     fn synonyms(&self) -> &'static [&'static str] {
-        let Effect::Do(action) = &self.effect else { return &[] };
+        let Effect::Execute(action) = &self.effect else { return &[] };
         match action {
             Action::WriteReport => &["export", "save", "markdown", "html", "print"],
             Action::Journal => &["memo", "notes", "log", "history"],
@@ -118,7 +118,7 @@ impl CommandPalette {
             Action::Tour | Action::TourSkip | Action::TourClose => has_tour,
             _ => true,
         };
-        self.entries.retain(|entry| !matches!(entry.effect, Effect::Do(action) if !kept(action)));
+        self.entries.retain(|entry| !matches!(entry.effect, Effect::Execute(action) if !kept(action)));
         let entry = Action::Withdraw.entry();
         self.entries.push(PaletteEntry {
             kind: "command",
@@ -126,7 +126,7 @@ impl CommandPalette {
             title: entry.title.to_owned(),
             doc: entry.doc.to_owned(),
             keys: String::new(),
-            effect: Effect::Do(Action::Withdraw),
+            effect: Effect::Execute(Action::Withdraw),
         });
         self.update_matches();
         self
@@ -181,7 +181,7 @@ impl CommandPalette {
     fn run_selected(&self) -> DialogResponse {
         match self.matches.get(self.selected) {
             Some((at, _)) => {
-                DialogResponse::confirm_with(vec![Effect::BeginPath, self.entries[*at].effect.clone()])
+                DialogResponse::confirm_with(vec![Effect::ClearBreadcrumbs, self.entries[*at].effect.clone()])
             }
             None => DialogResponse::stay(),
         }
@@ -206,14 +206,14 @@ fn recent_tools(company: &DisplayedCompany) -> Vec<ToolId> {
 fn unavailable_reason(effect: &Effect, company: &DisplayedCompany) -> Option<&'static str> {
     let acts = |tool: &ToolId| tool.spec().kind.changes_company();
     match effect {
-        Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if company.is_playback => {
+        Effect::Execute(Action::NextWeek | Action::Undo | Action::Redo) if company.is_playback => {
             Some("this is a replay")
         }
         Effect::ShowTool(tool) if acts(tool) && company.is_playback => Some("this is a replay"),
-        Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if !company.is_running() => {
+        Effect::Execute(Action::NextWeek | Action::Undo | Action::Redo) if !company.is_running() => {
             Some("the run has ended")
         }
-        Effect::Do(Action::Report) if company.weeks.is_empty() => Some("no week has run yet"),
+        Effect::Execute(Action::Report) if company.weeks.is_empty() => Some("no week has run yet"),
         Effect::ShowTool(tool) if acts(tool) && !company.is_running() => Some("the run has ended"),
         _ => None,
     }
@@ -223,7 +223,9 @@ fn is_outside_lesson(effect: &Effect, company: &DisplayedCompany) -> bool {
     let screen = |action: Action| ScreenId::ALL.into_iter().find(|screen| screen.action() == action);
     match effect {
         Effect::ShowTool(tool) => !company.has_tool(*tool),
-        Effect::Do(action) => screen(*action).is_some_and(|screen| closed_reason(screen, company).is_some()),
+        Effect::Execute(action) => {
+            screen(*action).is_some_and(|screen| closed_reason(screen, company).is_some())
+        }
         _ => false,
     }
 }
@@ -246,7 +248,7 @@ fn entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrar
             title: entry.title.to_owned(),
             doc: entry.doc.to_owned(),
             keys: keys.label(entry.action).unwrap_or_default(),
-            effect: Effect::Do(entry.action),
+            effect: Effect::Execute(entry.action),
         })
         .collect();
     let callable = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != ToolKind::Time);

@@ -40,8 +40,8 @@ impl Dialog for RestoreDraftsDialog {
 
     fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::RestoreDrafts => DialogResponse::confirm_with(vec![Effect::SettleOffer(true)]),
-            Action::DiscardDrafts => DialogResponse::cancel_with(vec![Effect::SettleOffer(false)]),
+            Action::RestoreDrafts => DialogResponse::confirm_with(vec![Effect::ResolveDraftOffer(true)]),
+            Action::DiscardDrafts => DialogResponse::cancel_with(vec![Effect::ResolveDraftOffer(false)]),
             _ => DialogResponse::stay(),
         }
     }
@@ -87,7 +87,7 @@ mod tests {
     use crate::test_kit::new_company;
 
     #[test]
-    fn the_end_of_every_text_is_shown_in_the_smallest_window() {
+    fn smallest_window_shows_the_end_of_every_draft() {
         let long = format!("{} stopped", "words of a reason ".repeat(60));
         let texts = vec![("rationale".to_owned(), long), ("notes".to_owned(), "one\ntwo".to_owned())];
         let dialog = RestoreDraftsDialog::new(texts);

@@ -29,7 +29,7 @@ impl SeekWeekDialog {
         let typed = self.field.text().trim();
         match typed.parse::<u32>() {
             Ok(week) if week <= self.weeks => {
-                DialogResponse::confirm_with(vec![Effect::Go(SeekTarget::Week(week))])
+                DialogResponse::confirm_with(vec![Effect::Seek(SeekTarget::Week(week))])
             }
             Ok(week) => {
                 self.problem = Some(format!("week {week} was not recorded; the last week is {}", self.weeks));
@@ -113,7 +113,7 @@ mod tests {
                 Some(week) => {
                     assert!(outcome.closes);
                     assert!(
-                        matches!(outcome.effects[..], [Effect::Go(SeekTarget::Week(number))] if number == week),
+                        matches!(outcome.effects[..], [Effect::Seek(SeekTarget::Week(number))] if number == week),
                         "{typed}"
                     );
                 }

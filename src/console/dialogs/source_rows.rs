@@ -75,7 +75,7 @@ impl Dialog for SourceRowsDialog {
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::OpenInSql => {
-                let effects = vec![Effect::EditSql(self.sql.clone()), Effect::Do(Action::RunQuery)];
+                let effects = vec![Effect::EditSql(self.sql.clone()), Effect::Execute(Action::RunQuery)];
                 return DialogResponse::confirm_with(effects);
             }
             Action::CopyQuery => return DialogResponse::stay_with(vec![Effect::Copy(self.sql.clone())]),

@@ -10,7 +10,7 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::figures::{self, METRICS};
-use crate::screens::overview::needs::screen_of;
+use crate::screens::overview::needs::item_screen;
 use novamind_base::formatting::{dollars, grouped_number, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
 use novamind_report::WeekReport;
@@ -79,11 +79,11 @@ impl Dialog for WeekReportDialog {
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::Cancel | Action::Report => DialogResponse::close(),
-            Action::NextWeek => DialogResponse::confirm_with(vec![Effect::Do(action)]),
+            Action::NextWeek => DialogResponse::confirm_with(vec![Effect::Execute(action)]),
             Action::ScrollUp => self.select(self.selected.saturating_sub(1), context),
             Action::ScrollDown => self.select(self.selected + 1, context),
             Action::Why => {
-                DialogResponse::stay_with(self.figure(context).map(Effect::AskWhy).into_iter().collect())
+                DialogResponse::stay_with(self.figure(context).map(Effect::ShowCauses).into_iter().collect())
             }
             Action::Rows => {
                 DialogResponse::stay_with(self.figure(context).map(Effect::ShowRows).into_iter().collect())
@@ -99,8 +99,13 @@ impl Dialog for WeekReportDialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let Some(week_report) = &context.company.last_week else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
-        let (lines, places) =
-            self.lines(canvas, week_report, context, width.saturating_sub(4), area.height.saturating_sub(2));
+        let (lines, places) = self.report_lines(
+            canvas,
+            week_report,
+            context,
+            width.saturating_sub(4),
+            area.height.saturating_sub(2),
+        );
         canvas.page_rows = places.len().max(1) as u16;
         let dialog_area = centered_rect(area, width, lines.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
@@ -128,7 +133,7 @@ impl Dialog for WeekReportDialog {
 impl WeekReportDialog {
     /// Returns the lines that fit into a height, and the positions of selectable lines. Optional lines are dropped
     /// first.
-    fn lines<'a>(
+    fn report_lines<'a>(
         &self,
         canvas: &Canvas<'_>,
         week_report: &WeekReport,
@@ -185,7 +190,8 @@ impl WeekReportDialog {
         let change = week_report.week.cash_change;
         let role = if change < 0.0 { Role::Bad } else { Role::Good };
         let mut lines = vec![Line::from(vec![
-            canvas.span(format!("Cash {}  ", dollars(week_report.week.cash)), self.role_of(0, Role::Strong)),
+            canvas
+                .span(format!("Cash {}  ", dollars(week_report.week.cash)), self.name_role(0, Role::Strong)),
             canvas.span(format_change(change, &dollars(change.abs())), role),
             canvas.span(" this week", Role::Dim),
         ])];
@@ -218,7 +224,7 @@ impl WeekReportDialog {
 
 impl WeekReportDialog {
     /// Returns the style of a line's name. Lines without an explanation cannot be selected.
-    fn role_of(&self, line: usize, role: Role) -> Role {
+    fn name_role(&self, line: usize, role: Role) -> Role {
         if self.selected == line { Role::Selection } else { role }
     }
 
@@ -235,7 +241,7 @@ impl WeekReportDialog {
         }
         let (mut lines, mut starts) = (Vec::new(), Vec::new());
         for (at, moved_figure) in week_report.moved_figures.iter().enumerate() {
-            let of_one = move_lines(canvas, moved_figure, width, self.role_of(at + 1, Role::Text));
+            let of_one = move_lines(canvas, moved_figure, width, self.name_role(at + 1, Role::Text));
             if lines.len() + of_one.len() > room {
                 break;
             }
@@ -450,7 +456,7 @@ fn next_steps_section<'a>(
     }
     let lines = |need: &ActionItem| {
         let key =
-            context.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
+            context.keys.label(item_screen(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
         let (sign, role) = if need.is_urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
         let proposed = wrap(&need.describe(), room);
@@ -501,7 +507,7 @@ mod tests {
     }
 
     #[test]
-    fn a_remark_about_the_disk_is_shown() {
+    fn report_shows_the_remark_about_saving() {
         let company = DisplayedCompany::from_session(&test_kit::played_session(1));
         let report = WeekReportDialog::new(Some("the disk is full".to_owned()));
         assert!(dialog_text(&report, &company, 80, 21).contains("the disk is full"));

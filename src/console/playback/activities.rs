@@ -2,7 +2,7 @@
 
 use super::entry_text::format_millis;
 use novamind_record::trajectory::record::{
-    Activity, ClockEvent, DialogOutcome, LeavingCause, LimitEvent, LimitScope, Presence, PresenceEvent,
+    Activity, ClockEvent, DetachCause, DialogOutcome, LimitEvent, LimitScope, Presence, PresenceEvent,
     TextEditOutcome,
 };
 use novamind_tui::theme::Role;
@@ -82,12 +82,12 @@ fn presence_summary(presence: &Presence) -> String {
             None => "opened".to_owned(),
         },
         PresenceEvent::Closed => match presence.cause {
-            None | Some(LeavingCause::Quit) => "closed".to_owned(),
-            Some(LeavingCause::EndOfInput) => "closed: the input ended".to_owned(),
-            Some(LeavingCause::Signal) => "closed by a signal".to_owned(),
-            Some(LeavingCause::Hangup) => "closed with its terminal".to_owned(),
-            Some(LeavingCause::Strict) => "closed by a rejection".to_owned(),
-            Some(LeavingCause::Withdrawn) => "closed: the participant withdrew".to_owned(),
+            None | Some(DetachCause::Quit) => "closed".to_owned(),
+            Some(DetachCause::EndOfInput) => "closed: the input ended".to_owned(),
+            Some(DetachCause::Signal) => "closed by a signal".to_owned(),
+            Some(DetachCause::Hangup) => "closed with its terminal".to_owned(),
+            Some(DetachCause::Strict) => "closed by a rejection".to_owned(),
+            Some(DetachCause::Withdrawn) => "closed: the participant withdrew".to_owned(),
         },
         PresenceEvent::Idle => format!("no input for {}", format_millis(presence.idle_ms.unwrap_or(0))),
         PresenceEvent::Active => format!("input after {}", format_millis(presence.idle_ms.unwrap_or(0))),

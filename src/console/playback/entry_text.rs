@@ -5,7 +5,7 @@ use crate::screens::journal::entries::format_arguments;
 use novamind_base::formatting::{dollars, grouped_number, short_dollars};
 use novamind_record::trajectory::Record;
 use novamind_record::trajectory::record::{
-    Advance, Branch, Call, Closing, Memo, Note, Outcome, Query, Reversal, VoiceAnswer,
+    Advance, Branch, Call, ClosedDays, Memo, Note, Outcome, Query, Reversal, VoiceAnswer,
 };
 use novamind_report::deals::describe_deals;
 use novamind_report::pluralize;
@@ -47,7 +47,7 @@ pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String
             lines
         }
         Record::Week(closing) | Record::Step(closing) => {
-            let Closing { days_run, cash, .. } = closing;
+            let ClosedDays { days_run, cash, .. } = closing;
             one(format!("{days_run} days simulated, cash {}", dollars(*cash)), Role::Header)
         }
         Record::Voice(voice_answer) => one(voice_summary(voice_answer), Role::Dim),

@@ -113,7 +113,7 @@ impl AnswerDraft {
     }
 
     /// Returns the confirmed answer with its view time and changes.
-    pub fn given_answer(&self) -> GivenAnswer {
+    pub fn to_given_answer(&self) -> GivenAnswer {
         GivenAnswer {
             due: self.question.clone(),
             value: self.confirmed_answer.clone().unwrap_or(Value::Null),

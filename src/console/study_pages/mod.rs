@@ -183,7 +183,7 @@ impl StudyPage {
         match (&mut self.kind, action) {
             (StudyPageKind::Consent(text), Action::Agree) => match text.consent() {
                 Some(consent_given) => self.send_request(StudyRequest::Agree(consent_given)),
-                None => vec![Effect::Complain(UNREAD_ERROR.to_owned())],
+                None => vec![Effect::ShowError(UNREAD_ERROR.to_owned())],
             },
             (StudyPageKind::Consent(_), Action::Decline) => self.send_request(StudyRequest::Decline),
             (StudyPageKind::Consent(text), _) => {
@@ -274,7 +274,7 @@ impl StudyPage {
                 field.handle_key(key);
                 self.problem = None;
             }
-            None if key.code == KeyCode::Char('q') => return vec![Effect::Do(Action::Quit)],
+            None if key.code == KeyCode::Char('q') => return vec![Effect::Execute(Action::Quit)],
             None => {}
         }
         Vec::new()

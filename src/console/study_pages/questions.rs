@@ -88,7 +88,7 @@ impl QuestionPage {
         }
         draft.stop_timer();
         if last {
-            let answers = self.drafts.iter().map(AnswerDraft::given_answer).collect();
+            let answers = self.drafts.iter().map(AnswerDraft::to_given_answer).collect();
             return DialogResponse::confirm_with(vec![Effect::Request(Request::Study(
                 StudyRequest::SubmitAnswers(answers),
             ))]);
@@ -171,7 +171,7 @@ impl Dialog for QuestionPage {
             KeyCode::Tab if words => return self.continue_to_next(),
             KeyCode::PageUp | KeyCode::PageDown if words => self.scroll_page(key.code == KeyCode::PageDown),
             KeyCode::Char('q') if self.is_choice() && key.modifiers.is_empty() => {
-                return DialogResponse::stay_with(vec![Effect::Do(Action::Quit)]);
+                return DialogResponse::stay_with(vec![Effect::Execute(Action::Quit)]);
             }
             _ => self.problem = self.drafts[self.current].handle_key(key),
         }

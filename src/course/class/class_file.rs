@@ -121,7 +121,9 @@ impl Class {
             let label = format!("S{number:0width$}");
             let stamp = HandoutStamp { class: class.class.clone(), run: new_run_id() };
             let content = match (what, &past) {
-                (_, Some(past)) => HandoutContent::Run(past.branch_files(&label, &stamp, folder)?),
+                (_, Some(past)) => {
+                    HandoutContent::Run(past.branch_files_for_student(&label, &stamp, folder)?)
+                }
                 (HandoutSource::Lesson(lesson), None) => HandoutContent::Lesson(lesson.clone()),
                 (HandoutSource::Run(_), None) => continue,
             };
@@ -179,7 +181,7 @@ impl Class {
     }
 
     /// Returns the student with this label.
-    pub fn student(&self, label: &str) -> Option<&ClassStudent> {
+    pub fn student_by_label(&self, label: &str) -> Option<&ClassStudent> {
         self.students.iter().find(|student| student.label == label)
     }
 

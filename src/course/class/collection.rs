@@ -78,7 +78,7 @@ impl ClassCollection {
         for note in gathered.notes {
             match note {
                 CollectNote::Unreadable { path, problem } => {
-                    let label = returned.label_from_path(&path);
+                    let label = returned.find_label_in_path(&path);
                     returned.findings.push(ClassFinding::Unreadable { label, path, problem });
                 }
                 CollectNote::Superseded { .. } => superseded += 1,
@@ -145,7 +145,7 @@ struct CollectionBuilder<'a> {
 
 impl CollectionBuilder<'_> {
     /// Returns the label that a path contains, as the name of a folder or as the beginning of the file name.
-    fn label_from_path(&self, path: &Path) -> Option<String> {
+    fn find_label_in_path(&self, path: &Path) -> Option<String> {
         let begins = |part: &str, label: &str| {
             part.strip_prefix(label)
                 .is_some_and(|rest| !rest.starts_with(|letter: char| letter.is_alphanumeric()))
@@ -156,7 +156,7 @@ impl CollectionBuilder<'_> {
     }
 
     fn run_label(&self, found: &FoundRun) -> Option<String> {
-        found.manifest.participant.clone().or_else(|| self.label_from_path(&found.source))
+        found.manifest.participant.clone().or_else(|| self.find_label_in_path(&found.source))
     }
 
     /// Returns whether a record started from a handout of the class, or from its lesson without a handout.

@@ -81,7 +81,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
     }
     let standing = lesson.map(|lesson| LessonProgress::from_lines(lesson.clone(), part, &trajectory.lines));
     let asks = lesson.is_some_and(|lesson| lesson.needs_database());
-    let mut replay = EvidenceReplay { standing, decisions: BTreeMap::new(), weeks: 0 };
+    let mut replay = EvidenceCollector { standing, decisions: BTreeMap::new(), weeks: 0 };
     let session = origin.replay(&trajectory.lines, asks, &mut |session, line| {
         replay.observe_line(session, &origin.path, line)
     })?;
@@ -89,14 +89,14 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
 }
 
 /// Results that are gathered while a run is re-simulated.
-struct EvidenceReplay {
+struct EvidenceCollector {
     standing: Option<LessonProgress>,
     decisions: BTreeMap<String, f64>,
     /// Weeks in which the student decided.
     weeks: u32,
 }
 
-impl EvidenceReplay {
+impl EvidenceCollector {
     fn observe_line(&mut self, session: &mut Session, path: &Path, line: &Line) -> Result<(), RunError> {
         let days = session.params().run.days_per_week;
         let start =
@@ -109,7 +109,7 @@ impl EvidenceReplay {
             }
         }
         let Record::Activity(Activity::Lesson(note)) = &line.record else { return Ok(()) };
-        match self.note_mismatch(session, note) {
+        match self.describe_mismatch(session, note) {
             None => Ok(()),
             Some(problem) => Err(RunError::Damaged {
                 path: path.to_owned(),
@@ -122,7 +122,7 @@ impl EvidenceReplay {
 
     /// Describes how the recorded result of a goal or a guess differs from the re-simulated result. Returns `None` if
     /// both results match.
-    fn note_mismatch(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
+    fn describe_mismatch(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
         let lesson_step = standing.step(step)?;
@@ -151,7 +151,7 @@ impl EvidenceReplay {
     }
 
     fn into_evidence(self, session: &Session, seed: u64) -> Evidence {
-        let EvidenceReplay { standing, decisions, weeks } = self;
+        let EvidenceCollector { standing, decisions, weeks } = self;
         let means = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1))));
         // An unlimited quota is infinite.
         let decisions = means.filter(|(_, mean)| mean.is_finite()).collect();
@@ -167,7 +167,8 @@ pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgre
     let tries = numbers.iter().filter_map(|step| standing.map(|progress| progress.attempt(*step))).max();
     let hints =
         numbers.iter().filter_map(|step| standing.map(|progress| progress.hint_count(*step) as u32)).sum();
-    let pitfalls = standing.map(|progress| progress.met_pitfalls().into_iter().map(str::to_owned).collect());
+    let pitfalls =
+        standing.map(|progress| progress.triggered_pitfall_names().into_iter().map(str::to_owned).collect());
     let opening = session.cash_by_day().first().map(|cash| (0, *cash));
     let weeks = session.weeks().iter().map(|week| (week.day, week.cash));
     Evidence {

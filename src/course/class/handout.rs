@@ -13,8 +13,8 @@ use novamind_record::folder::manifest_check::ManifestCheck;
 use novamind_record::folder::runs::{list_runs, participant_folder};
 use novamind_record::lesson::Lesson;
 use novamind_record::mode::Mode;
-use novamind_record::stamp::{HandoutEntry, HandoutStamp};
-use novamind_session::{LessonEntry, NewRun, Session, Storage, is_run_id};
+use novamind_record::stamp::{HandoutOptions, HandoutStamp};
+use novamind_session::{LessonOptions, NewRun, Session, Storage, is_run_id};
 use novamind_world::params::ParameterSource;
 
 pub(super) const HANDOUT_FORMAT: u32 = 1;
@@ -212,8 +212,8 @@ impl Handout {
         let new = NewRun {
             mode: Mode::Lesson,
             participant: Some(self.label.clone()),
-            lesson: Some(LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true }),
-            handout: Some(HandoutEntry::for_first_run(self.stamp.clone())),
+            lesson: Some(LessonOptions { lesson: lesson.clone(), part: 0, is_judged: true }),
+            handout: Some(HandoutOptions::for_first_run(self.stamp.clone())),
             storage: Storage::Runs(runs),
             ..NewRun::default()
         };

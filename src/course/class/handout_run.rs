@@ -63,7 +63,7 @@ impl HandoutRun {
     ///
     /// # Errors
     /// Returns an error if `parent_folder` cannot be written.
-    pub(super) fn branch_files(
+    pub(super) fn branch_files_for_student(
         &self,
         label: &str,
         stamp: &HandoutStamp,

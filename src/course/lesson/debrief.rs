@@ -23,7 +23,7 @@ use novamind_world::params::Params;
 
 /// A finished part of a lesson, from which the debrief is computed.
 #[derive(Debug, Clone)]
-pub struct PlayedPart {
+pub struct FinishedPart {
     standing: LessonProgress,
     run: String,
     participant: Option<String>,
@@ -218,12 +218,12 @@ struct PlayResult {
     weeks: Vec<WeekDecisions>,
 }
 
-impl PlayedPart {
+impl FinishedPart {
     /// Reads the part that a session has finished.
     ///
     /// # Errors
     /// `not_in_a_lesson`, `lesson_not_over`.
-    pub fn from_session(session: &Session) -> Result<PlayedPart, Rejection> {
+    pub fn from_session(session: &Session) -> Result<FinishedPart, Rejection> {
         let Some(standing) = session.lesson() else {
             let message = "this run is not part of a lesson; novamind lesson list shows the lessons";
             return Err(Rejection::new("not_in_a_lesson", message));
@@ -234,7 +234,7 @@ impl PlayedPart {
             return Err(Rejection::new("lesson_not_over", message));
         }
         let manifest = session.manifest();
-        Ok(PlayedPart {
+        Ok(FinishedPart {
             standing: standing.clone(),
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
@@ -263,7 +263,7 @@ impl PlayedPart {
             Some((good, result)) => self.compare_decisions(good, result, answers),
             None => DecisionComparison::NotComparable,
         };
-        let judged_by = self.judged_by().map(|figure| {
+        let judged_by = self.judged_figure().map(|figure| {
             let of = |played: &Option<PlayResult>| {
                 played.as_ref().filter(|_| decides).map(|result| figure_by_day(figure, &result.figures))
             };
@@ -276,7 +276,7 @@ impl PlayedPart {
         });
         let is_last = self.standing.part + 1 == plan.parts.len();
         let curve = |played: Option<PlayResult>, play: &ReferencePlay| {
-            let text = is_last.then(|| play.text_of(part).to_owned());
+            let text = is_last.then(|| play.part_description(part).to_owned());
             let played = played.filter(|_| decides);
             played.map(|result| ReferenceCurve { text, cash_by_day: result.cash_by_day })
         };
@@ -302,7 +302,7 @@ impl PlayedPart {
     }
 
     /// Returns the figure of the first goal in the last step with goals, if the goal is the last value of a weekly figure.
-    fn judged_by(&self) -> Option<WeekFigure> {
+    fn judged_figure(&self) -> Option<WeekFigure> {
         let steps = &self.standing.current_part().steps;
         let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
         match (&goal.measurement.source, goal.measurement.aggregation) {
@@ -346,7 +346,7 @@ impl PlayedPart {
         };
         let before = self.standing.current_part().start_weeks + at as u32;
         let with = self.calls_with_decisions(before, &decisions, &good.weeks[at]);
-        let effect = match self.names_customers_after(before) {
+        let effect = match self.refers_to_customers_after(before) {
             true => DecisionEffect::DifferentCustomers,
             false => self
                 .simulate_calls(&with, answers)
@@ -358,7 +358,7 @@ impl PlayedPart {
     }
 
     /// Returns whether tool calls of later weeks refer to customers by number. These numbers depend on earlier decisions.
-    fn names_customers_after(&self, week: u32) -> bool {
+    fn refers_to_customers_after(&self, week: u32) -> bool {
         let later = self
             .calls
             .iter()
@@ -372,7 +372,7 @@ impl PlayedPart {
 
     fn measure_effect(&self, played: &PlayResult) -> Option<ReferenceEffect> {
         let (value, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
-        let judged = self.judged_by().and_then(|figure| {
+        let judged = self.judged_figure().and_then(|figure| {
             let last = |weeks: &[WeekFigures]| figure.company_value(weeks.last()?);
             last(&self.weeks).zip(last(&played.figures))
         });
@@ -393,7 +393,8 @@ impl PlayedPart {
         };
         let mut calls: Vec<ScheduledCalls> =
             self.calls.iter().filter(|scheduled_calls| !is_other(scheduled_calls)).cloned().collect();
-        let made = good.calls_for(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
+        let made =
+            good.calls_for_tools(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
         calls.push(ScheduledCalls {
             part: self.standing.part,
             week,

@@ -77,12 +77,12 @@ impl WeekDecisions {
         WeekDecisions { settings, actions: deeds }
     }
 
-    fn actions_of(&self, tool: ToolId) -> Vec<Value> {
+    fn one_time_calls(&self, tool: ToolId) -> Vec<Value> {
         self.actions.iter().filter(|(tool_id, _)| *tool_id == tool).map(|(_, args)| args.clone()).collect()
     }
 
     /// Returns tool calls that reproduce the decisions of the selected tools.
-    pub(super) fn calls_for(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
+    pub(super) fn calls_for_tools(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
         let settings = self.settings.iter().map(|(tool, args)| (*tool, Value::Object(args.clone())));
         settings.chain(self.actions.iter().cloned()).filter(|(tool, _)| tools(tool)).collect()
     }
@@ -116,7 +116,7 @@ pub(super) fn different_decisions(
     let done: BTreeSet<ToolId> =
         week_decisions.actions.iter().chain(&good.actions).map(|(tool, _)| *tool).collect();
     let deeds = done.into_iter().filter_map(|tool| {
-        let (values, good) = (week_decisions.actions_of(tool), good.actions_of(tool));
+        let (values, good) = (week_decisions.one_time_calls(tool), good.one_time_calls(tool));
         (values != good).then_some(DifferentDecision {
             tool,
             difference: DecisionDifference::Calls { own: values, good },
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn different_settings_and_calls_are_found() {
+    fn different_decisions_lists_settings_and_calls() {
         let decisions = week_decisions(&json!({"A": 12, "B": 20}), &[]);
         assert!(
             different_decisions(&decisions, &week_decisions(&json!({"A": 12.0, "B": 20}), &[])).is_empty()
@@ -180,12 +180,12 @@ mod tests {
         assert_eq!(found[0].difference, DecisionDifference::Settings { settings: vec![b] });
         let calls = DecisionDifference::Calls { own: Vec::new(), good: vec![json!({"deal_id": 4})] };
         assert_eq!(found[1].difference, calls);
-        let made = other.calls_for(&|tool| *tool == ToolId::SetPrices);
+        let made = other.calls_for_tools(&|tool| *tool == ToolId::SetPrices);
         assert_eq!(made, [(ToolId::SetPrices, json!({"A": 12, "B": 30}))]);
     }
 
     #[test]
-    fn flattened_arguments_are_named_by_their_path() {
+    fn flatten_arguments_names_values_by_path() {
         let spend = json!({"targeted_spend": {"linkedin": {"S1": 5.0}, "search": {"S2": 1.0}}});
         let found = flatten_arguments(spend.as_object().expect("an object"));
         let names: Vec<&str> = found.keys().map(String::as_str).collect();

@@ -4,10 +4,10 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
-use novamind_record::stamp::HandoutEntry;
+use novamind_record::stamp::HandoutOptions;
 use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
-use novamind_session::{LessonEntry, NewRun, Session, Storage, create_lesson_branch};
+use novamind_session::{LessonOptions, NewRun, Session, Storage, create_lesson_branch};
 use novamind_tools::Rejection;
 
 /// Returns the lesson of a run, or the rejection `not_in_a_lesson`.
@@ -56,8 +56,8 @@ pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> 
     let new = NewRun {
         mode: Mode::Lesson,
         participant: manifest.participant.clone(),
-        lesson: Some(LessonEntry { lesson: standing.lesson.clone(), part, is_judged: true }),
-        handout: manifest.handout.clone().map(HandoutEntry::for_later_run),
+        lesson: Some(LessonOptions { lesson: standing.lesson.clone(), part, is_judged: true }),
+        handout: manifest.handout.clone().map(HandoutOptions::for_later_run),
         storage: Storage::Runs(runs.to_owned()),
         ..NewRun::default()
     };

@@ -24,7 +24,7 @@ pub(crate) fn text(text: &str) -> Value<'_> {
 }
 
 /// Converts a value with `write`. Returns NULL for `None`.
-pub(super) fn or_null<'a, T>(value: Option<T>, write: impl FnOnce(T) -> Value<'a>) -> Value<'a> {
+pub(super) fn value_or_null<'a, T>(value: Option<T>, write: impl FnOnce(T) -> Value<'a>) -> Value<'a> {
     value.map_or(NULL, write)
 }
 
@@ -81,7 +81,7 @@ mod tests {
         let mut next = 0;
         for count in counts {
             let rows = (0..count).map(|at| {
-                let word = or_null((at % 2 == 0).then_some("even"), text);
+                let word = value_or_null((at % 2 == 0).then_some("even"), text);
                 [real((next + at) as f64 / 2.0), word]
             });
             insert_rows(&transaction, "INSERT INTO t (n, word) VALUES", rows).expect("rows");

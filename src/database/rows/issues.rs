@@ -46,7 +46,7 @@ impl IssueWriter {
             return;
         }
         for &issue in &facts.issues_resolved {
-            self.mark_solved(issue, facts.day);
+            self.mark_resolved(issue, facts.day);
         }
         let before = self.clock.last().copied().unwrap_or(0);
         self.clock.resize(facts.day as usize, before);
@@ -57,7 +57,7 @@ impl IssueWriter {
         }
     }
 
-    fn mark_solved(&mut self, issue: u32, day: u32) {
+    fn mark_resolved(&mut self, issue: u32, day: u32) {
         let opened = self.first_issues.partition_point(|(first, _)| *first <= issue).checked_sub(1);
         let Some((_, opened)) = opened.map(|at| self.first_issues[at]) else { return };
         let days = &self.days;

@@ -81,7 +81,7 @@ fn entry_note(params: &Params, category: Category, note: LedgerNote) -> String {
     match (category, note) {
         (_, LedgerNote::Subscribers(count)) => format!("In-app ad revenue ({count} subscribers)"),
         (_, LedgerNote::Project(tier, number)) => {
-            format!("R&D Tier {tier}: {} (t{tier}_{number})", params.research(tier).name)
+            format!("R&D Tier {tier}: {} (t{tier}_{number})", params.research_tier(tier).name)
         }
         (_, LedgerNote::Study(study)) if study.is_refresh() => {
             format!("Group research: {}, refresh at level {}", study.group, study.target)

@@ -19,7 +19,7 @@ pub(super) use schema::{LAYOUT_VERSION, create_tables};
 
 use super::blocks::{AdsRun, SharedStore};
 use super::packing::PackedDay;
-use bulk_insert::or_null;
+use bulk_insert::value_or_null;
 pub(super) use bulk_insert::{NULL, Value, insert_rows, integer, real, text};
 use issues::IssueWriter;
 use ledger::LedgerWriter;
@@ -257,8 +257,8 @@ impl RowWriter {
                 integer(pack_persona(company, arrival.persona)),
                 integer(self.usage_label(arrival)),
                 integer(self.budget_label(arrival)),
-                or_null(company.then_some(arrival.seats), integer),
-                or_null(entry.addresses.get(&arrival.customer), |address| text(address)),
+                value_or_null(company.then_some(arrival.seats), integer),
+                value_or_null(entry.addresses.get(&arrival.customer), |address| text(address)),
                 NULL,
             ]
         });
@@ -312,11 +312,11 @@ impl RowWriter {
                 real(row.listed_price),
                 real(row.promotion),
                 integer(row.start_day),
-                or_null(row.end_day, integer),
+                value_or_null(row.end_day, integer),
                 integer(row.status as u8),
                 integer(row.opened_day % period),
                 integer(row.seats),
-                or_null(row.contract_end_day, integer),
+                value_or_null(row.contract_end_day, integer),
                 integer(row.billed_once),
             ]
         });

@@ -5,7 +5,7 @@ use super::cause::{Cause, CauseDetail};
 use super::question::WeekQuantity;
 use super::shapley::shapley_values;
 use super::visibility::InputVisibility;
-use super::week_resimulation::{Candidate, ExcludedCauses, WeekResimulation};
+use super::week_resimulation::{ExcludedCauses, RemovableCause, WeekResimulation};
 use novamind_record::figures::SimulatedWeek;
 use novamind_tools::Rejection;
 
@@ -35,7 +35,7 @@ pub struct ChangeExplanation {
 
 impl ChangeExplanation {
     /// Returns the change of the figure between the two weeks.
-    pub fn change(&self) -> f64 {
+    pub fn total_change(&self) -> f64 {
         self.after - self.before
     }
 }
@@ -81,7 +81,8 @@ impl WeekResimulation {
         }
         let (mut calls, mut inputs) = (singleton_groups(&self.calls), self.input_groups());
         let joined = self.merge_smallest_groups(quantity, &mut calls, &mut inputs, progress);
-        let Some(mut parts) = joined.and_then(|()| self.contributions(quantity, &calls, &inputs, progress))
+        let Some(mut parts) =
+            joined.and_then(|()| self.compute_contributions(quantity, &calls, &inputs, progress))
         else {
             return Ok(None);
         };
@@ -156,7 +157,7 @@ impl WeekResimulation {
         Some(())
     }
 
-    fn contributions(
+    fn compute_contributions(
         &mut self,
         quantity: WeekQuantity,
         calls: &[CauseGroup],
@@ -192,8 +193,8 @@ fn value_or_zero(quantity: WeekQuantity, week: &SimulatedWeek) -> f64 {
     if value.is_nan() { 0.0 } else { value }
 }
 
-fn singleton_groups(candidates: &[Candidate]) -> Vec<CauseGroup> {
-    let group = |(at, candidate): (usize, &Candidate)| CauseGroup {
+fn singleton_groups(candidates: &[RemovableCause]) -> Vec<CauseGroup> {
+    let group = |(at, candidate): (usize, &RemovableCause)| CauseGroup {
         cause: candidate.cause,
         members: 1 << at,
         details: candidate.details.clone(),

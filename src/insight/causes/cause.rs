@@ -92,7 +92,7 @@ pub enum CauseDetail {
     /// A world input with different values in the two weeks.
     Input(InputDetail),
     /// Number of occurrences and the noun for one occurrence, for example 3 and `call`.
-    Occurred(usize, &'static str),
+    Occurrences(usize, &'static str),
 }
 
 /// The values of a world input in the two weeks.

@@ -48,10 +48,10 @@ impl WeekPair<'_> {
         let input = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: false });
         let share = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: true });
         let moves = end.competitors.len() - eve.competitors.len();
-        note(Cause::Competitors, moves > 0, vec![CauseDetail::Occurred(moves, "move")]);
+        note(Cause::Competitors, moves > 0, vec![CauseDetail::Occurrences(moves, "move")]);
         let law = &self.start.params.drift;
         let drift = self.days().any(|day| novamind_world::customers::drift::is_drift_day(day, law));
-        note(Cause::Drift, drift, vec![CauseDetail::Occurred(1, "step")]);
+        note(Cause::Drift, drift, vec![CauseDetail::Occurrences(1, "step")]);
         note(Cause::Yields, end.yields != eve.yields, Vec::new());
         let index = input("index", eve.economy.pmi, end.economy.pmi);
         note(Cause::Economy, eve.economy.pmi != end.economy.pmi, vec![index]);
@@ -72,7 +72,7 @@ impl WeekPair<'_> {
     }
 
     /// Fixes world inputs at their values of the previous week. Utilization is relative to days without the player's changes.
-    pub(super) fn held_inputs(
+    pub(super) fn fix_inputs(
         &self,
         causes: impl Iterator<Item = Cause>,
         undone: &[DayFigures],
@@ -86,7 +86,7 @@ impl WeekPair<'_> {
                 Cause::Economy => fixed_inputs.economy = true,
                 Cause::Surges => fixed_inputs.surges = self.surge_factors().1,
                 Cause::Calendar => fixed_inputs.month_days = self.month_day_factors().1,
-                Cause::Service => fixed_inputs.service = self.held_service(undone),
+                Cause::Service => fixed_inputs.service = self.fix_service(undone),
                 _ => {}
             }
         }
@@ -94,7 +94,7 @@ impl WeekPair<'_> {
     }
 
     /// Returns the utilization that the usage of the previous week would cause, with the random draws of the same weekday.
-    fn held_service(&self, undone: &[DayFigures]) -> Vec<FixedService> {
+    fn fix_service(&self, undone: &[DayFigures]) -> Vec<FixedService> {
         let week = self.start.params.run.days_per_week;
         let used = |days: &[DayFigures], wanted: u32| {
             days.iter().find(|day| day.day == wanted).map_or(0, |day| day.total_usage)

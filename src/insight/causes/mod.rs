@@ -27,7 +27,7 @@ pub use question::{WeekQuantity, WeekQuestion};
 use crate::counterfactual::analysis_cache::RecordAnalysis;
 use crate::counterfactual::recorded_run::RecordedRun;
 use novamind_record::lesson::is_lesson_over;
-use novamind_session::{InspectionPermit, Session, unreadable_record};
+use novamind_session::{InspectionPermit, Session, unreadable_record_rejection};
 use novamind_tools::Rejection;
 pub(crate) use visibility::{InputVisibility, input_visibility};
 use week_resimulation::WeekResimulation;
@@ -55,13 +55,13 @@ impl RecordAnalysis for CauseAnalysis {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
     fn open(folder: &Path) -> Result<CauseAnalysis, Rejection> {
-        let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
+        let past = RecordedRun::open(folder).map_err(|error| unreadable_record_rejection(&error))?;
         let sight = input_visibility(&past.manifest, past.is_ended)?;
         Ok(CauseAnalysis { run: past, visibility: sight, last_week: None })
     }
 
     fn refresh(&mut self) -> Result<(), Rejection> {
-        self.run.refresh().map_err(|error| unreadable_record(&error))?;
+        self.run.refresh().map_err(|error| unreadable_record_rejection(&error))?;
         let sight = input_visibility(&self.run.manifest, self.run.is_ended)?;
         if sight != self.visibility {
             (self.visibility, self.last_week) = (sight, None);
@@ -89,7 +89,7 @@ impl CauseAnalysis {
         let week = self.resolve_week(week)?;
         if self.last_week.as_ref().is_none_or(|latest| latest.week() != week) {
             let made = WeekResimulation::new(&mut self.run, self.visibility, week, progress);
-            self.last_week = made.map_err(|error| unreadable_record(&error))?;
+            self.last_week = made.map_err(|error| unreadable_record_rejection(&error))?;
         }
         let Some(laboratory) = &mut self.last_week else { return Ok(None) };
         match quantity.group().filter(|group| {
@@ -104,7 +104,7 @@ impl CauseAnalysis {
     fn resolve_week(&self, week: Option<u32>) -> Result<u32, Rejection> {
         let days = self.run.days_per_week();
         let last = self.run.last_day().min(self.run.manifest.days).div_ceil(days);
-        let whole = |week: u32| self.run.has_boundary_on((week * days).min(self.run.manifest.days));
+        let whole = |week: u32| self.run.has_recorded_state_on((week * days).min(self.run.manifest.days));
         let last = if whole(last) { last } else { last.saturating_sub(1) };
         let asked = week.unwrap_or(last);
         if (2..=last).contains(&asked) && whole(asked) && whole(asked - 1) {

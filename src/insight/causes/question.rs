@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::inspection::breakpoint::grammar::{ConditionParseError, TokenReader, quantity_error};
+use crate::inspection::breakpoint::grammar::{ConditionParseError, TokenReader, describe_quantity_error};
 use crate::inspection::breakpoint::measure::QuantityError;
 use novamind_base::similar_names;
 use novamind_record::figures::{FigureUnit, SimulatedWeek, WeekFigure};
@@ -109,8 +109,10 @@ impl FromStr for WeekQuestion {
         let group = words.parse_group().map_err(further)?;
         let week = words.parse_whole_number().map_err(further)?;
         words.expect_end().map_err(further)?;
-        let quantity = WeekQuantity::new(figure, group)
-            .map_err(|no| ConditionParseError { message: quantity_error(&figure.id(), no), column: 1 })?;
+        let quantity = WeekQuantity::new(figure, group).map_err(|no| ConditionParseError {
+            message: describe_quantity_error(&figure.id(), no),
+            column: 1,
+        })?;
         Ok(WeekQuestion { quantity, week })
     }
 }

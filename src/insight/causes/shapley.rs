@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn additive_causes_get_their_own_amount() {
+    fn additive_causes_receive_their_own_amount() {
         let alone = [3.0, -1.5, 0.0, 7.0];
         let sum =
             |set: u32| (0..4).filter(|cause| set & (1 << cause) != 0).map(|cause| alone[cause]).sum::<f64>();

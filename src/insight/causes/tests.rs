@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use serde_json::json;
 
 use super::*;
-use crate::counterfactual::test_kit::{WEEKS, play_weeks};
+use crate::counterfactual::test_kit::{WEEKS_BEFORE_CHANGE, play_weeks};
 use novamind_record::figures::{GroupFigures, SimulatedWeek, WeekFigure, WeekGroupFigures};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -78,11 +78,15 @@ fn all_quantities() -> Vec<WeekQuantity> {
 /// Asserts that the contributions and the residual add up to the change.
 fn assert_contributions_add_up(why: &ChangeExplanation) {
     let sum = why.contributions.iter().map(|part| part.amount).sum::<f64>() + why.residual;
-    assert!((sum - why.change()).abs() < 1e-9 * why.change().abs().max(1.0), "{sum} of {}", why.change());
+    assert!(
+        (sum - why.total_change()).abs() < 1e-9 * why.total_change().abs().max(1.0),
+        "{sum} of {}",
+        why.total_change()
+    );
 }
 
 #[test]
-fn deliberate_changes_rank_first_with_their_branch_difference() {
+fn changed_settings_rank_first_with_their_branch_difference() {
     let runs = tempfile::tempdir().expect("a folder");
     let control = play_weeks(runs.path(), Mode::Debug, 3, None);
     for (tool, arguments, figure) in [
@@ -99,7 +103,7 @@ fn deliberate_changes_rank_first_with_their_branch_difference() {
         let quantity = company_quantity(figure);
         let why = explain(&session, quantity);
         assert_contributions_add_up(&why);
-        let before = quantity.value_in(&simulated_week(&session, WEEKS as usize - 1));
+        let before = quantity.value_in(&simulated_week(&session, WEEKS_BEFORE_CHANGE as usize - 1));
         assert_eq!((why.before, why.after), (before, last_value(&session, quantity)));
         let paired = last_value(&session, quantity) - last_value(&control, quantity);
         let first = &why.contributions[0];
@@ -177,7 +181,7 @@ fn group_cancellations_add_up_per_cause() {
 }
 
 #[test]
-fn all_figures_of_a_week_share_its_simulations() {
+fn figures_of_a_week_share_simulations() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_weeks(runs.path(), Mode::Sandbox, 3, Some(("set_prices", json!({"A": 24}))));
     let mut causes = open_causes(&session);
@@ -199,13 +203,13 @@ fn all_figures_of_a_week_share_its_simulations() {
 }
 
 #[test]
-fn unchanged_settings_are_no_cause_and_figures_add_up() {
+fn unchanged_settings_are_not_causes_and_contributions_add_up() {
     let runs = tempfile::tempdir().expect("a folder");
     // Setting a price to its current value is not a change.
     let session = play_weeks(runs.path(), Mode::Debug, 5, Some(("set_prices", json!({"A": 12}))));
     let mut causes = open_causes(&session);
     let mut last_values = Vec::new();
-    for week in 2..=WEEKS + 1 {
+    for week in 2..=WEEKS_BEFORE_CHANGE + 1 {
         let mut values = Vec::new();
         for quantity in all_quantities() {
             let why = match causes.explain(WeekQuestion { quantity, week: Some(week) }, &continue_progress) {
@@ -255,7 +259,7 @@ fn unchanged_settings_are_no_cause_and_figures_add_up() {
         session.debug_hidden_state().expect("a debug run").world().market.reputation.get(s1)
     );
     let leads: f64 = Group::all()
-        .map(|group| f64::from(session.company().group_weeks()[WEEKS as usize][group].leads))
+        .map(|group| f64::from(session.company().group_weeks()[WEEKS_BEFORE_CHANGE as usize][group].leads))
         .sum();
     assert_eq!(value(company_quantity(WeekFigure::Leads)), leads);
     let mood = session.debug_hidden_state().expect("a debug run").mean_satisfaction(s1).expect("subscribers");
@@ -348,7 +352,7 @@ fn interacting_changes_share_their_effect() {
 }
 
 #[test]
-fn sandbox_groups_market_inputs_and_baseline_rejects() {
+fn sandbox_run_groups_market_inputs_and_baseline_run_rejects_analysis() {
     let runs = tempfile::tempdir().expect("a folder");
     let change = || Some(("set_prices", json!({"A": 24})));
     let mut sandbox = play_weeks(runs.path(), Mode::Sandbox, 3, change());
@@ -378,7 +382,7 @@ fn incomparable_weeks_are_rejected_and_analysis_can_be_stopped() {
     let session = play_weeks(runs.path(), Mode::Debug, 3, None);
     let mut causes = open_causes(&session);
     let usage = WeekQuestion { quantity: company_quantity(WeekFigure::Usage), week: None };
-    for week in [0, 1, WEEKS + 2, u32::MAX] {
+    for week in [0, 1, WEEKS_BEFORE_CHANGE + 2, u32::MAX] {
         let week_question = WeekQuestion { week: Some(week), ..usage };
         let refusal = causes.explain(week_question, &continue_progress).expect_err("no such week");
         assert_eq!(refusal.code, "week_unknown");
@@ -416,8 +420,9 @@ fn one_time_purchase_of_the_week_before_is_a_cause() {
     let mut session = play_weeks(runs.path(), Mode::Sandbox, 3, project);
     let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    let paid =
-        -session.weeks()[WEEKS as usize].booked.total_of(novamind_world::events::Category::ResearchProject);
+    let paid = -session.weeks()[WEEKS_BEFORE_CHANGE as usize]
+        .booked
+        .category_total(novamind_world::events::Category::ResearchProject);
     assert!(paid > 0.0);
     let earlier = |why: &ChangeExplanation| {
         let part = why.contributions.iter().find(|part| part.cause == Cause::EarlierPurchases);

@@ -59,7 +59,7 @@ pub(super) fn unknown_group_rejection(group: Group, week: u32) -> Rejection {
 mod tests {
     use super::*;
     use novamind_record::folder::configuration::Configuration;
-    use novamind_record::rules::{ResultsShown, SessionRules};
+    use novamind_record::rules::{ResultsDisclosure, SessionRules};
     use novamind_record::stamp::StudyStamp;
     use novamind_session::{NewRun, Session};
 
@@ -69,7 +69,7 @@ mod tests {
         let session = Session::create(new, &Configuration::bundled()).expect("a run");
         let mut manifest = session.manifest().clone();
         assert_eq!(input_visibility(&manifest, true), Ok(InputVisibility::EveryInput));
-        for (practice, results) in [(true, ResultsShown::Own), (false, ResultsShown::None)] {
+        for (practice, results) in [(true, ResultsDisclosure::Own), (false, ResultsDisclosure::None)] {
             manifest.study = Some(StudyStamp::pilot_study(practice));
             manifest.rules = Some(SessionRules { results, ..SessionRules::for_mode(Mode::Baseline) });
             assert_eq!(
@@ -77,7 +77,7 @@ mod tests {
                 Err("not_in_this_mode")
             );
         }
-        manifest.rules.as_mut().expect("rules").results = ResultsShown::Own;
+        manifest.rules.as_mut().expect("rules").results = ResultsDisclosure::Own;
         assert_eq!(input_visibility(&manifest, true), Ok(InputVisibility::EveryInput));
     }
 }

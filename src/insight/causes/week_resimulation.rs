@@ -31,7 +31,7 @@ pub(super) struct ExcludedCauses {
 }
 
 /// A cause that can be removed from a week.
-pub(super) struct Candidate {
+pub(super) struct RemovableCause {
     pub cause: Cause,
     pub details: Vec<CauseDetail>,
     /// Lines of the cause's calls in the trajectory; empty for a world input.
@@ -48,8 +48,8 @@ pub(super) struct WeekResimulation {
     week_before: SimulatedWeek,
     pub(super) visibility: InputVisibility,
     /// Tools that the player called in the week.
-    pub(super) calls: Vec<Candidate>,
-    pub(super) inputs: Vec<Candidate>,
+    pub(super) calls: Vec<RemovableCause>,
+    pub(super) inputs: Vec<RemovableCause>,
     /// Days of the week without any call; empty until simulated.
     days_without_calls: Vec<DayFigures>,
     simulated_weeks: BTreeMap<ExcludedCauses, SimulatedWeek>,
@@ -80,10 +80,10 @@ impl WeekResimulation {
         let Some(after) = simulate_branch(&between, &moves, &none, end, &mut reach) else { return Ok(None) };
         past.verify_state(end, &after.final_state)?;
         let two = WeekPair { start: &between, before: &before, after: &after };
-        let input = |(cause, details)| Candidate { cause, details, lines: BTreeSet::new() };
+        let input = |(cause, details)| RemovableCause { cause, details, lines: BTreeSet::new() };
         let inputs = two.differing_inputs().into_iter().map(input).collect();
-        let mut calls = call_candidates(&between, &moves, &after);
-        calls.extend(parameter_candidate(&between, &moves, end));
+        let mut calls = removable_call_causes(&between, &moves, &after);
+        calls.extend(removable_parameter_cause(&between, &moves, end));
         let actual = ExcludedCauses { calls: 0, inputs: 0 };
         let known = BTreeMap::from([(actual, last_simulated_week(&between, &after))]);
         let week_before = last_simulated_week(&start, &before);
@@ -177,20 +177,20 @@ impl WeekResimulation {
         without: ExcludedCauses,
         go_on: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> Option<BranchOutcome> {
-        let dropped = selected_candidates(&self.calls, without.calls)
+        let dropped = selected_causes(&self.calls, without.calls)
             .flat_map(|candidate| candidate.lines.iter().copied())
             .collect();
         let fixed_inputs = match without.inputs {
             0 => FixedInputs::default(),
             inputs => {
                 let two = WeekPair { start: &self.start, before: &self.before, after: &self.after };
-                two.held_inputs(
-                    selected_candidates(&self.inputs, inputs).map(|candidate| candidate.cause),
+                two.fix_inputs(
+                    selected_causes(&self.inputs, inputs).map(|candidate| candidate.cause),
                     &self.days_without_calls,
                 )
             }
         };
-        let edits = Edits { dropped_lines: dropped, held_inputs: fixed_inputs, ..Edits::default() };
+        let edits = Edits { dropped_lines: dropped, fixed_inputs: fixed_inputs, ..Edits::default() };
         let outcome =
             simulate_branch(&self.start, &self.steps, &edits, self.after.final_state.world.day, go_on)?;
         // The figures of a week that ended early cannot be compared with the figures of a complete week.
@@ -198,23 +198,27 @@ impl WeekResimulation {
     }
 }
 
-fn selected_candidates(candidates: &[Candidate], set: u32) -> impl Iterator<Item = &Candidate> {
+fn selected_causes(candidates: &[RemovableCause], set: u32) -> impl Iterator<Item = &RemovableCause> {
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, candidate)| candidate)
 }
 
 /// Returns the player's calls in the week, one candidate per tool. A setting that returned to its initial value is
 /// included only if the week was simulated in several steps.
-fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchOutcome) -> Vec<Candidate> {
+fn removable_call_causes(
+    eve: &MemorySnapshot,
+    moves: &[RecordedStep],
+    after: &BranchOutcome,
+) -> Vec<RemovableCause> {
     let set = setting_changes(&eve.world.settings, &after.final_state.world.settings);
     let in_steps = moves.iter().filter(|step| matches!(step, RecordedStep::Days(_))).count() > 1;
-    let mut by_tool: Vec<Candidate> = Vec::new();
-    for call in moves.iter().filter_map(as_accepted_call) {
+    let mut by_tool: Vec<RemovableCause> = Vec::new();
+    for call in moves.iter().filter_map(accepted_call) {
         let cause = Cause::Calls(call.tool);
         match by_tool.iter_mut().find(|candidate| candidate.cause == cause) {
             Some(candidate) => drop(candidate.lines.insert(call.seq)),
             None => {
                 let lines = BTreeSet::from([call.seq]);
-                by_tool.push(Candidate { cause, details: Vec::new(), lines });
+                by_tool.push(RemovableCause { cause, details: Vec::new(), lines });
             }
         }
     }
@@ -225,25 +229,29 @@ fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchO
         if tool.tool().spec().kind == ToolKind::Setting {
             return in_steps || !candidate.details.is_empty();
         }
-        candidate.details = vec![CauseDetail::Occurred(candidate.lines.len(), "call")];
+        candidate.details = vec![CauseDetail::Occurrences(candidate.lines.len(), "call")];
         true
     });
     by_tool
 }
 
 /// Returns the parameter changes that were made or took effect in the week, as one candidate.
-fn parameter_candidate(eve: &MemorySnapshot, moves: &[RecordedStep], end: u32) -> Option<Candidate> {
+fn removable_parameter_cause(
+    eve: &MemorySnapshot,
+    moves: &[RecordedStep],
+    end: u32,
+) -> Option<RemovableCause> {
     let set = moves.iter().filter_map(|step| match step {
         RecordedStep::Parameter(setting) => Some(&setting.change),
         RecordedStep::Call(_) | RecordedStep::Days(_) => None,
     });
     let acting = eve.overrides.scheduled_changes().chain(set).filter(|change| change.from_day <= Some(end));
     let lines: BTreeSet<u64> = acting.map(|change| change.seq).collect();
-    let details = vec![CauseDetail::Occurred(lines.len(), "setting")];
-    (!lines.is_empty()).then_some(Candidate { cause: Cause::Parameters, details, lines })
+    let details = vec![CauseDetail::Occurrences(lines.len(), "setting")];
+    (!lines.is_empty()).then_some(RemovableCause { cause: Cause::Parameters, details, lines })
 }
 
-fn as_accepted_call(step: &RecordedStep) -> Option<&RecordedCall> {
+fn accepted_call(step: &RecordedStep) -> Option<&RecordedCall> {
     match step {
         RecordedStep::Call(call) if call.accepted => Some(call),
         _ => None,

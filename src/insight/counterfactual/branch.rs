@@ -5,15 +5,15 @@ use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value, json};
 
-use super::customer_renumbering::{RenumberedCall, with_branch_number_note};
+use super::customer_renumbering::{RenumberedCall, add_branch_number_note};
 use super::edits::{AddedCall, AddedSetting, Edits, Redraw, UsageBasedCapacity};
 use super::memory_snapshot::MemorySnapshot;
-use super::recorded_steps::{RecordedCall, RecordedDays, RecordedStep, has_replies};
+use super::recorded_steps::{RecordedCall, RecordedDays, RecordedStep, contains_post_replies};
 use novamind_record::figures::{GroupFigures, WeekFigures};
 use novamind_session::GroupWeek;
 use novamind_session::engine::{
-    ParameterChange, RunDatabase, Simulation, StateHash, UpdatedParams, count_day, json_to_value,
-    measure_group, parameter_not_allowed,
+    ParameterChange, RunDatabase, Simulation, StateHash, UpdatedParams, add_day_to_week, json_to_value,
+    measure_group, parameter_not_allowed_rejection,
 };
 use novamind_tools::{Arguments, ParameterNumbers, Rejection, ToolContext, ToolId, limits};
 use novamind_world::command::Command;
@@ -151,7 +151,7 @@ impl<'a> BranchSimulation<'a> {
         edits: &'a Edits,
         hashed: bool,
     ) -> BranchSimulation<'a> {
-        let processes_text = hashed || has_replies(moves);
+        let processes_text = hashed || contains_post_replies(moves);
         let params = edits.params.as_ref().unwrap_or(&start.params).clone();
         let feed = if processes_text { start.feed.clone() } else { Default::default() };
         let overrides = start.overrides.rebased_on(&params, &edits.dropped_lines);
@@ -249,7 +249,7 @@ impl<'a> BranchSimulation<'a> {
     /// Plans a call. Argument bounds are checked only for new calls, because the run has already accepted the recorded calls.
     fn plan_call(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Rejection> {
         let Simulation { world, params, feed, .. } = &self.simulation;
-        let numbers = || self.numbers.get_or_init(|| ParameterNumbers::for_params(params).into()).clone();
+        let numbers = || self.numbers.get_or_init(|| ParameterNumbers::from_params(params).into()).clone();
         let tool = tool.tool();
         let arguments = Arguments::parse(tool.spec(), args, numbers)?;
         if is_new {
@@ -265,7 +265,7 @@ impl<'a> BranchSimulation<'a> {
         let is_renumbered = here.as_ref().is_some_and(|here| here != args);
         let refusal = here.and_then(|here| self.execute_call(tool, &here, is_new).err());
         let refusal =
-            refusal.map(|refusal| if is_renumbered { with_branch_number_note(refusal) } else { refusal });
+            refusal.map(|refusal| if is_renumbered { add_branch_number_note(refusal) } else { refusal });
         let day = self.simulation.world.day;
         let refused = absent.into_iter().chain(refusal);
         self.rejected.extend(refused.map(|refusal| RejectedCall { seq, day, tool, rejection: refusal }));
@@ -293,7 +293,7 @@ impl<'a> BranchSimulation<'a> {
                 self.simulation.set_params(now, self.projection.entry_writer());
                 self.numbers = OnceLock::new();
             }
-            Err(unfit) => self.rejected_parameters.push((day, key, parameter_not_allowed(unfit))),
+            Err(unfit) => self.rejected_parameters.push((day, key, parameter_not_allowed_rejection(unfit))),
         }
     }
 
@@ -359,8 +359,11 @@ impl<'a> BranchSimulation<'a> {
     fn simulate_day(&mut self) {
         let day_before = self.has_unprocessed_text.then(Vec::new);
         let params = self.simulation.params.clone();
-        let figures =
-            self.simulation.simulate_day(&self.edits.held_inputs, self.projection.entry_writer(), day_before);
+        let figures = self.simulation.simulate_day(
+            &self.edits.fixed_inputs,
+            self.projection.entry_writer(),
+            day_before,
+        );
         if !Arc::ptr_eq(&params, &self.simulation.params) {
             self.numbers = OnceLock::new();
         }
@@ -368,7 +371,7 @@ impl<'a> BranchSimulation<'a> {
         self.simulation.judge_own_posts(self.projection.entry_writer());
         let Simulation { facts, params, world, .. } = &self.simulation;
         self.week.add_simulated_day(&figures, facts, &self.call_entries, params);
-        count_day(&mut self.group_week, &figures, facts, world);
+        add_day_to_week(&mut self.group_week, &figures, facts, world);
         self.call_entries.clear();
         self.days.push(figures);
         let days_per_week = params.run.days_per_week;

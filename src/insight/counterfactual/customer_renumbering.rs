@@ -39,7 +39,7 @@ impl RenumberedCall {
 }
 
 /// Adds a note that the customer numbers in the message are numbers of the branch.
-pub(crate) fn with_branch_number_note(refusal: Rejection) -> Rejection {
+pub(crate) fn add_branch_number_note(refusal: Rejection) -> Rejection {
     let message = format!("{} (customer numbers of the branch)", refusal.message);
     Rejection { message, ..refusal }
 }

@@ -32,7 +32,7 @@ pub(crate) struct Edits {
     /// Customer numbers of the run; `None` if every branch has the same numbers.
     pub recorded_numbers: Option<Arc<CustomerNumbers>>,
     /// World inputs with fixed values.
-    pub held_inputs: FixedInputs,
+    pub fixed_inputs: FixedInputs,
     /// Parameters that replace the parameters of the run.
     pub params: Option<Arc<Params>>,
     /// New random draws from a later day on.

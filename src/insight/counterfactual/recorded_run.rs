@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::branch::simulate_branch;
 use super::edits::Edits;
 use super::memory_snapshot::MemorySnapshot;
-use super::recorded_steps::{RecordedStep, steps_between, steps_of};
+use super::recorded_steps::{RecordedStep, steps_between, steps_from_lines};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::is_lesson_over;
@@ -44,7 +44,7 @@ impl RecordedRun {
             path,
             length_bytes: length,
             manifest,
-            steps: steps_of(&trajectory.lines),
+            steps: steps_from_lines(&trajectory.lines),
             is_ended: ended,
             snapshots: BTreeMap::from([(0, opening)]),
         })
@@ -53,7 +53,7 @@ impl RecordedRun {
     /// Reads new events. Keeps the cached states that are still valid.
     ///
     /// # Errors
-    /// Same errors as [`RecordedRun::open`].
+    /// Same errors as [`RecordedRun::open_run`].
     pub(crate) fn refresh(&mut self) -> Result<(), RunError> {
         let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
         if length == self.length_bytes {
@@ -75,7 +75,7 @@ impl RecordedRun {
     }
 
     pub(crate) fn last_day(&self) -> u32 {
-        self.last_boundary(u32::MAX)
+        self.last_recorded_day_up_to(u32::MAX)
     }
 
     pub(crate) fn days_per_week(&self) -> u32 {
@@ -83,13 +83,13 @@ impl RecordedRun {
     }
 
     /// Returns whether the record contains the state hash of a day; true for day 0.
-    pub(crate) fn has_boundary_on(&self, day: u32) -> bool {
+    pub(crate) fn has_recorded_state_on(&self, day: u32) -> bool {
         day == 0
             || self.steps.iter().any(|step| matches!(step, RecordedStep::Days(days) if days.until == day))
     }
 
     /// Returns the last day, at most `until`, whose state hash is recorded.
-    pub(crate) fn last_boundary(&self, until: u32) -> u32 {
+    pub(crate) fn last_recorded_day_up_to(&self, until: u32) -> u32 {
         let ends = self.steps.iter().filter_map(|step| match step {
             RecordedStep::Days(days) => Some(days.until),
             RecordedStep::Call(_) | RecordedStep::Parameter(_) => None,

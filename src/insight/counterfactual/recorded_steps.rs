@@ -140,14 +140,14 @@ pub(crate) struct RecordedDays {
 }
 
 /// Returns the recorded steps in trajectory lines, in order.
-pub(crate) fn steps_of(lines: &[Line]) -> Vec<RecordedStep> {
+pub(crate) fn steps_from_lines(lines: &[Line]) -> Vec<RecordedStep> {
     let mut scores = Vec::new();
-    lines.iter().filter_map(|line| step_of(line, &mut scores)).collect()
+    lines.iter().filter_map(|line| step_from_line(line, &mut scores)).collect()
 }
 
 /// Returns the step that an event records, if any. Collects scores in `scores` until the simulated days to which they apply.
-fn step_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
-    if let Some(closing) = line.record.closing() {
+fn step_from_line(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
+    if let Some(closing) = line.record.closed_days() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
         return Some(RecordedStep::Days(RecordedDays {
             until: line.day,
@@ -189,7 +189,7 @@ pub(crate) fn steps_between(moves: &[RecordedStep], from: u32, until: u32) -> &[
 }
 
 /// Returns whether an accepted call replies to another author's post, in which case the simulation needs the texts of posts.
-pub(crate) fn has_replies(moves: &[RecordedStep]) -> bool {
+pub(crate) fn contains_post_replies(moves: &[RecordedStep]) -> bool {
     moves.iter().any(|step| match step {
         RecordedStep::Call(call) => {
             call.accepted && call.tool == ToolId::PostSocialMedia && !call.args["reply_to_post_id"].is_null()

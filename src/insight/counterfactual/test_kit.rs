@@ -10,7 +10,7 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
 /// Number of weeks that are played before a change.
-pub(crate) const WEEKS: u32 = 7;
+pub(crate) const WEEKS_BEFORE_CHANGE: u32 = 7;
 
 /// Plays several weeks of a company with customers, makes a change, and plays one more week.
 pub(crate) fn play_weeks(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
@@ -35,8 +35,8 @@ pub(crate) fn play_weeks(runs: &Path, mode: Mode, seed: u64, change: Option<(&st
     ] {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
-    for week in 0..=WEEKS {
-        if let (true, Some((tool, arguments))) = (week == WEEKS, &change) {
+    for week in 0..=WEEKS_BEFORE_CHANGE {
+        if let (true, Some((tool, arguments))) = (week == WEEKS_BEFORE_CHANGE, &change) {
             session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         }
         let forecasts = session.company().naive_forecasts();

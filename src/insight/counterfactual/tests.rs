@@ -11,7 +11,7 @@ use super::branch::*;
 use super::edits::{AddedCall, Edits};
 use super::memory_snapshot::MemorySnapshot;
 use super::recorded_run::RecordedRun;
-use super::recorded_steps::{RecordedStep, steps_of};
+use super::recorded_steps::{RecordedStep, steps_from_lines};
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -32,7 +32,7 @@ fn resimulation_without_edits_reproduces_recorded_states() {
     for name in ["everything", "development", "release"] {
         let (Origin { manifest, params, .. }, trajectory) =
             read_origin(&recorded_run_path(name)).expect("a run");
-        let script = steps_of(&trajectory.lines);
+        let script = steps_from_lines(&trajectory.lines);
         let start = MemorySnapshot::at_day_0(&manifest, params);
         let outcome = simulate_branch_with_hashes(&start, &script, &Edits::default(), manifest.days);
         let outcome = outcome.expect("it is not stopped");
@@ -54,7 +54,8 @@ fn resimulation_without_edits_reproduces_recorded_states() {
 #[test]
 fn every_snapshot_leads_to_the_recorded_state() {
     let mut past = RecordedRun::open(&recorded_run_path("everything")).expect("a run");
-    let days: Vec<u32> = (0..=past.last_day()).step_by(7).filter(|day| past.has_boundary_on(*day)).collect();
+    let days: Vec<u32> =
+        (0..=past.last_day()).step_by(7).filter(|day| past.has_recorded_state_on(*day)).collect();
     // Requests states in ascending order, in descending order and across several weeks. Each state is compared with
     // the record.
     for day in days.iter().chain(days.iter().rev()).chain(days.last()) {
@@ -111,9 +112,9 @@ fn rejected_call_is_reported_and_other_calls_are_kept() {
 }
 
 #[test]
-fn held_inputs_apply_and_simulation_can_be_stopped() {
+fn fixed_inputs_apply_and_simulation_can_be_stopped() {
     let fixed_inputs = FixedInputs { from: 36, economy: true, ..FixedInputs::default() };
-    let outcome = simulate_week_with(Edits { held_inputs: fixed_inputs, ..Edits::default() });
+    let outcome = simulate_week_with(Edits { fixed_inputs: fixed_inputs, ..Edits::default() });
     let mut past = RecordedRun::open(&recorded_run_path("development")).expect("a run");
     let eve =
         past.snapshot_at(35, &mut continue_progress).expect("the recorded state").expect("it is not stopped");

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::assumed::{EstimateReading, assumed_params};
+use super::assumed::{EstimateVariant, assumed_params};
 use super::explorer::{CurrentOffer, CurveBasis, CurveExplorer, PlanPoint};
 use novamind_session::{InspectionPermit, Session};
 use novamind_tools::Rejection;
@@ -57,7 +57,7 @@ impl CurveExplorer {
         let market = (world.market.drift.expectation(*group), params.clone());
         let product = world.product.quality(*group, params);
         let tiers = &world.settings.core.tiers;
-        let quality = ByPlan::from_fn(|plan| product * params.model(tiers[plan]).quality_multiplier);
+        let quality = ByPlan::from_fn(|plan| product * params.model_tier(tiers[plan]).quality_multiplier);
         let basis = CurveBasis::Truth { day: run.day() };
         CurveExplorer::from_markets(*group, basis, current_offer(run, *group, &quality), vec![market])
     }
@@ -88,7 +88,7 @@ impl CurveExplorer {
         let market =
             |reading| (Expectation::default(), Arc::new(assumed_params(estimates, reading, run.params())));
         let markets =
-            [EstimateReading::Likely, EstimateReading::Strict, EstimateReading::Generous].map(market).into();
+            [EstimateVariant::Likely, EstimateVariant::Strict, EstimateVariant::Generous].map(market).into();
         let basis = CurveBasis::Estimates {
             level: estimates.level,
             noise: estimates.max_relative_error,

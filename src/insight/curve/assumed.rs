@@ -19,7 +19,7 @@ const UNBOUNDED_FACTOR: f64 = 10.0;
 
 /// A choice of true means within the errors of the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum EstimateReading {
+pub(super) enum EstimateVariant {
     /// True means that equal the estimates.
     Likely,
     /// The smallest budgets, and the largest quality floors and usage, within the error.
@@ -30,7 +30,7 @@ pub(super) enum EstimateReading {
 
 /// Returns parameters of a market in which the group matches its estimates. All other parameters have bundled values,
 /// except the curve forms of the run's scenario, which players can see.
-pub(super) fn assumed_params(estimates: &Estimates, reading: EstimateReading, run: &Params) -> Params {
+pub(super) fn assumed_params(estimates: &Estimates, reading: EstimateVariant, run: &Params) -> Params {
     let end = |value: f64, is_most: bool| {
         let (least, most) = estimates.true_range(value);
         match is_most {
@@ -40,11 +40,11 @@ pub(super) fn assumed_params(estimates: &Estimates, reading: EstimateReading, ru
         }
     };
     let (budget, floor, usage) = match reading {
-        EstimateReading::Likely => (estimates.budget, estimates.required_quality, estimates.usage),
-        EstimateReading::Strict => {
+        EstimateVariant::Likely => (estimates.budget, estimates.required_quality, estimates.usage),
+        EstimateVariant::Strict => {
             (end(estimates.budget, false), end(estimates.required_quality, true), end(estimates.usage, true))
         }
-        EstimateReading::Generous => {
+        EstimateVariant::Generous => {
             (end(estimates.budget, true), end(estimates.required_quality, false), end(estimates.usage, false))
         }
     };

@@ -119,7 +119,7 @@ impl fmt::Debug for CurveExplorer {
 }
 
 impl Market {
-    fn draw(group: Group, expectation: Expectation, params: Arc<Params>) -> Market {
+    fn draw_leads(group: Group, expectation: Expectation, params: Arc<Params>) -> Market {
         let streams = Streams::new(SAMPLE_SEED);
         let sample = LeadSample::draw(group, LEAD_SAMPLE_SIZE, expectation, &params, &streams);
         Market { sample, params }
@@ -143,7 +143,7 @@ impl CurveExplorer {
         let CurrentOffer { plans, discount: promotion, ongoing_discounts: ongoing } = on_offer;
         let markets: Vec<Market> = markets
             .into_iter()
-            .map(|(expectation, params)| Market::draw(group, expectation, params))
+            .map(|(expectation, params)| Market::draw_leads(group, expectation, params))
             .collect();
         let mut explorer = CurveExplorer {
             group,
@@ -156,7 +156,7 @@ impl CurveExplorer {
         };
         let most = explorer.max_price();
         let price = |step: usize| most * step as f64 / PRICE_STEPS as f64;
-        explorer.points = (0..=PRICE_STEPS).map(|step| explorer.point(price(step))).collect();
+        explorer.points = (0..=PRICE_STEPS).map(|step| explorer.curve_point(price(step))).collect();
         explorer
     }
 
@@ -168,7 +168,7 @@ impl CurveExplorer {
         (most / 10.0).ceil().max(1.0) * 10.0
     }
 
-    fn point(&self, price: f64) -> CurvePoint {
+    fn curve_point(&self, price: f64) -> CurvePoint {
         let required = |market: &Market, share: &[f64]| {
             market.sample.required_quality_quantiles(price, share, &market.params)
         };
@@ -179,7 +179,7 @@ impl CurveExplorer {
             p10: values[0],
             median: values[1],
             p90: values[2],
-            median_range: (min_of(&medians), max_of(&medians)),
+            median_range: (min_value(&medians), max_value(&medians)),
         }
     }
 
@@ -189,7 +189,7 @@ impl CurveExplorer {
     }
 
     /// Returns the expected decisions of leads about `plans`, with current discounts.
-    pub fn outcome(&self, plans: &ByPlan<PlanPoint>) -> CurveOutcome {
+    pub fn outcome_for_plans(&self, plans: &ByPlan<PlanPoint>) -> CurveOutcome {
         self.evaluate(plans, self.discount, &self.ongoing_discounts)
     }
 
@@ -208,7 +208,7 @@ impl CurveExplorer {
         let choices: Vec<LeadChoices> = self.markets.iter().map(choose).collect();
         let expected = |of: fn(&LeadChoices) -> f64| {
             let values: Vec<f64> = choices.iter().map(of).collect();
-            ExpectedRange { likely: values[0], least: min_of(&values), most: max_of(&values) }
+            ExpectedRange { likely: values[0], least: min_value(&values), most: max_value(&values) }
         };
         let is_individual = !self.group.is_enterprise();
         let likely = &choices[0];
@@ -233,10 +233,10 @@ pub fn true_curve(group: Group, params: &Params) -> Vec<CurvePoint> {
     CurveExplorer::from_markets(group, CurveBasis::Truth { day: 0 }, on_offer, vec![market]).points
 }
 
-fn min_of(values: &[f64]) -> f64 {
+fn min_value(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-fn max_of(values: &[f64]) -> f64 {
+fn max_value(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }

@@ -47,7 +47,7 @@ fn format_explorer(curve_explorer: &CurveExplorer) -> String {
         "{:?} {:?} {:?} {curve_outcomes:?}",
         curve_explorer.basis,
         curve_explorer.points,
-        curve_explorer.outcome(&curve_explorer.plans)
+        curve_explorer.outcome_for_plans(&curve_explorer.plans)
     )
 }
 
@@ -109,7 +109,7 @@ fn unfinished_runs_show_ranges_and_finished_runs_true_values() {
         let mut session = create_run(mode, &[]);
         let curve_explorer = explorer(&mut session, "S1");
         assert_eq!(curve_explorer.basis, CurveBasis::Estimates { level: 1, noise: 0.65, as_of: 0 });
-        let curve_outcome = curve_explorer.outcome(&curve_explorer.plans);
+        let curve_outcome = curve_explorer.outcome_for_plans(&curve_explorer.plans);
         assert!(
             curve_outcome.conversion.least <= curve_outcome.conversion.likely
                 && curve_outcome.conversion.likely <= curve_outcome.conversion.most
@@ -134,7 +134,7 @@ fn unfinished_runs_show_ranges_and_finished_runs_true_values() {
 fn outcome_is_computed_for_current_and_changed_plans() {
     let mut session = create_run(Mode::Debug, &[]);
     let curve_explorer = explorer(&mut session, "S1");
-    let now = curve_explorer.outcome(&curve_explorer.plans);
+    let now = curve_explorer.outcome_for_plans(&curve_explorer.plans);
     let takers: f64 = now.plan_shares.expect("individuals").iter().sum();
     assert!((takers - now.conversion.likely).abs() < 1e-12);
     let dearer = ByPlan(
@@ -143,13 +143,13 @@ fn outcome_is_computed_for_current_and_changed_plans() {
             .0
             .map(|plan| super::explorer::PlanPoint { list_price: 3.0 * plan.list_price, ..plan }),
     );
-    assert!(curve_explorer.outcome(&dearer).conversion.likely < now.conversion.likely);
+    assert!(curve_explorer.outcome_for_plans(&dearer).conversion.likely < now.conversion.likely);
     let better = ByPlan(
         curve_explorer.plans.0.map(|plan| super::explorer::PlanPoint { quality: plan.quality + 0.3, ..plan }),
     );
-    assert!(curve_explorer.outcome(&better).conversion.likely > now.conversion.likely);
+    assert!(curve_explorer.outcome_for_plans(&better).conversion.likely > now.conversion.likely);
     let companies = explorer(&mut session, "E1");
-    let curve_outcome = companies.outcome(&companies.plans);
+    let curve_outcome = companies.outcome_for_plans(&companies.plans);
     assert_eq!((curve_outcome.revenue_per_lead, curve_outcome.plan_shares), (None, None));
 }
 

@@ -6,7 +6,7 @@ use novamind_session::{HiddenState, InspectionPermit};
 use novamind_tools::Rejection;
 use novamind_world::events::Severity;
 use novamind_world::identifiers::{ByGroup, Group};
-use novamind_world::market::competitors::{Event, next_move, severity};
+use novamind_world::market::competitors::{CompetitorEvent, next_move, severity};
 
 /// The first competitor move after a given day.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct NextCompetitorMove {
     /// Share of each group's quality bank that will be copied, by group; empty after the move.
     pub group_shares: Vec<(Group, f64)>,
     /// Outcome of the move, if its day has been simulated.
-    pub outcome: Option<Event>,
+    pub outcome: Option<CompetitorEvent>,
 }
 
 impl NextCompetitorMove {
@@ -50,7 +50,7 @@ pub struct CompetitorState {
     /// Increase of the expectations of all groups by competitors and drift.
     pub common_expectation: f64,
     /// Past moves with their severity.
-    pub moves: Vec<(Event, Severity)>,
+    pub moves: Vec<(CompetitorEvent, Severity)>,
     /// Next move; `None` if no move follows before the end of the run.
     pub next_move: Option<NextCompetitorMove>,
 }
@@ -92,7 +92,7 @@ pub(super) fn next_competitor_move(
     let (world, params) = (inside.world(), inside.params());
     let events = &world.market.competitors;
     if let Some(made) = events.iter().copied().find(|event| event.day > day) {
-        let Event { day, sampled, u, .. } = made;
+        let CompetitorEvent { day, sampled, u, .. } = made;
         return Some(NextCompetitorMove {
             day,
             sampled_size: sampled,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use novamind_world::canonical::hash_of;
+use novamind_world::canonical::canonical_hash;
 use novamind_world::customers::columns::Subscriber;
 use novamind_world::day::closing_figures;
 use novamind_world::day::observer::DayObserver;
@@ -39,7 +39,7 @@ impl DayEnd {
 /// Returns the hashes of the parts of a state and of the facts of its day.
 fn part_hashes(world: &World, facts: &Facts) -> Vec<PartHash> {
     let mut parts = world.part_hashes();
-    parts.push(PartHash { part: "facts", hash: hash_of(facts) });
+    parts.push(PartHash { part: "facts", hash: canonical_hash(facts) });
     parts
 }
 

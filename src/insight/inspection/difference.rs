@@ -141,11 +141,11 @@ impl Inspector<'_> {
             InspectionPermit::start(self.run, "difference", &format!("{one} {other}"), Some(one.max(other)))?;
         let album = Arc::new(DayEndRecorder::for_days(&[one, other]));
         permit.replay_until(self.run, one.max(other), album.clone())?;
-        let first = album.take(one).ok_or_else(day_not_reached)?;
+        let first = album.take(one).ok_or_else(day_not_reached_error)?;
         if one == other {
             return Ok(DayDifference::between((one, other), &first, &first));
         }
-        let second = album.take(other).ok_or_else(day_not_reached)?;
+        let second = album.take(other).ok_or_else(day_not_reached_error)?;
         Ok(DayDifference::between((one, other), &first, &second))
     }
 
@@ -192,7 +192,7 @@ impl Inspector<'_> {
             }
             let album = Arc::new(DayEndRecorder::for_days(&[day]));
             inspection_permit.replay_until(run, day, album.clone())?;
-            album.take(day).ok_or_else(day_not_reached)
+            album.take(day).ok_or_else(day_not_reached_error)
         };
         let difference = DayDifference::between(
             (day, day),
@@ -203,6 +203,6 @@ impl Inspector<'_> {
     }
 }
 
-fn day_not_reached() -> Rejection {
+fn day_not_reached_error() -> Rejection {
     Rejection::new("not_readable", "the re-simulation of the run did not reach the day")
 }

@@ -61,7 +61,7 @@ pub struct EnterpriseThreadDay {
 }
 
 /// Returns the evaluation of a thread at the start of the day, or `None` if the thread has ended.
-pub(crate) fn enterprise_thread_day(
+pub(crate) fn evaluate_enterprise_thread(
     thread: &Thread,
     enterprise: &Enterprise,
     customers: &Customers,
@@ -69,7 +69,7 @@ pub(crate) fn enterprise_thread_day(
 ) -> Option<EnterpriseThreadDay> {
     let (day, params) = (talks.day.day(), talks.day.params);
     let turn = thread.active_turn(params.fidelity.reappearing_threads)?;
-    let row = enterprise.company(thread.customer)?.row(customers)?;
+    let row = enterprise.enterprise_customer(thread.customer)?.row(customers)?;
     let judge = enterprise.offer_evaluator(thread, customers, talks)?;
     let late_penalty = late_days(thread, day).map_or(0.0, |days| late_penalty(days, &params.enterprise));
     let offended = match late_penalty {

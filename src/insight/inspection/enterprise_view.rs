@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::enterprise_thread_day::{EnterpriseThreadDay, enterprise_thread_day};
+use super::enterprise_thread_day::{EnterpriseThreadDay, evaluate_enterprise_thread};
 use novamind_session::{InspectionPermit, Session};
 use novamind_tools::Rejection;
 use novamind_world::customers::Customers;
@@ -25,7 +25,7 @@ pub struct EnterpriseView {
 
 impl EnterpriseView {
     /// Returns the threads that were open on the shown day.
-    pub fn threads_of_day(&self) -> impl Iterator<Item = &EnterpriseThreadDay> {
+    pub fn threads_on_shown_day(&self) -> impl Iterator<Item = &EnterpriseThreadDay> {
         self.days.iter().filter(|thread_day| thread_day.day == self.day)
     }
 }
@@ -61,7 +61,8 @@ impl DayObserver for EnterpriseRecorder {
         talks: &NegotiationContext<'_>,
     ) {
         let threads = enterprise.threads.iter().filter(|thread| thread.customer == self.customer);
-        let seen = threads.filter_map(|thread| enterprise_thread_day(thread, enterprise, customers, talks));
+        let seen =
+            threads.filter_map(|thread| evaluate_enterprise_thread(thread, enterprise, customers, talks));
         self.days.lock().unwrap_or_else(PoisonError::into_inner).extend(seen);
     }
 }

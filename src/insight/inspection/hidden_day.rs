@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::enterprise_thread_day::{EnterpriseThreadDay, enterprise_thread_day};
+use super::enterprise_thread_day::{EnterpriseThreadDay, evaluate_enterprise_thread};
 use super::quality_equation::QualityDay;
 use super::reputation_equation::ReputationDay;
 use super::satisfaction_equation::{SatisfactionDay, SatisfactionSums, SatisfactionSumsByBlock};
@@ -17,7 +17,7 @@ use novamind_world::events::{Facts, Reading, Sender, Snapshot};
 use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::Market;
 use novamind_world::market::arrivals::{ArrivalContext, lead_context};
-use novamind_world::market::competitors::{Event, severity};
+use novamind_world::market::competitors::{CompetitorEvent, severity};
 use novamind_world::market::economy::Dimension;
 use novamind_world::market::leads::{LeadFactors, word_of_mouth};
 use novamind_world::morning::Morning;
@@ -90,7 +90,7 @@ pub(crate) struct MarketDayEnd {
     /// Accumulated drift of the curves since day 0.
     pub(crate) drift: DriftTotals,
     /// Competitor event of the day, with its severity.
-    pub(crate) event: Option<(Event, &'static str)>,
+    pub(crate) event: Option<(CompetitorEvent, &'static str)>,
     /// Value of the economy index (PMI).
     pub(crate) pmi: f64,
     /// Newest measurement of the PMI, and whether it has been published.
@@ -165,7 +165,7 @@ impl DayObserver for HiddenDayRecorder {
     }
 
     fn on_reputation_change(&self, write: &ReputationWrite<'_>) {
-        self.lock().today.reputation.add_write(write);
+        self.lock().today.reputation.add_change(write);
     }
 
     fn on_reputation_settled(
@@ -188,7 +188,8 @@ impl DayObserver for HiddenDayRecorder {
         }
         let reappearing = talks.day.params.fidelity.reappearing_threads;
         let threads = enterprise.threads.iter().filter(|thread| is_reply_pending(thread, reappearing));
-        let seen = threads.filter_map(|thread| enterprise_thread_day(thread, enterprise, customers, talks));
+        let seen =
+            threads.filter_map(|thread| evaluate_enterprise_thread(thread, enterprise, customers, talks));
         self.lock().today.threads = seen.collect();
     }
 

@@ -13,7 +13,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`, the `sql_` codes.
     pub fn query_hidden_tables(&mut self, sql: &str, day: Option<u32>) -> Result<QueryResult, Rejection> {
-        let ticket = self.hidden_query_interrupt()?.ticket();
+        let ticket = self.hidden_query_interrupt()?.issue_ticket();
         self.query_hidden_tables_with_ticket(ticket, sql, day)
     }
 
@@ -84,12 +84,12 @@ impl Inspector<'_> {
         let (now, day) = (permit.hidden_state(self.run).world(), permit.day());
         let is_now = day == now.day;
         let wanted = if is_now { CustomersSnapshot::current(now) } else { CustomersSnapshot::DayEnd(day) };
-        if tables.shows_customers(wanted) {
+        if tables.contains_customers(wanted) {
             return Ok(());
         }
         let shown = match is_now {
             true => tables.fill_customers(ticket, table, wanted, now),
-            false => tables.fill_customers(ticket, table, wanted, &permit.world_at_end_of(self.run, day)?),
+            false => tables.fill_customers(ticket, table, wanted, &permit.world_at_day_end(self.run, day)?),
         };
         shown.map_err(query_rejection)
     }
@@ -107,6 +107,6 @@ impl Inspector<'_> {
             return Ok(());
         }
         let diary = self.all_hidden_days(permit, keeps_threads)?;
-        tables.fill_to(day, ticket, table, &diary).map_err(query_rejection)
+        tables.append_days(day, ticket, table, &diary).map_err(query_rejection)
     }
 }

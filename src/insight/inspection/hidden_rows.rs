@@ -150,12 +150,13 @@ pub(crate) fn customer_rows(world: &World) -> impl Iterator<Item = [HiddenValue;
     let subscribers = world.customers.blocks().flat_map(move |(group, block)| {
         (0..block.len()).map(move |at| {
             let row = block.row(at);
-            let company = group.is_enterprise().then(|| world.enterprise.company(row.customer)).flatten();
+            let company =
+                group.is_enterprise().then(|| world.enterprise.enterprise_customer(row.customer)).flatten();
             customer_row(group, "subscriber", &row, company.map(|company| company.negotiator))
         })
     });
     let others = world.enterprise.companies.iter().filter_map(|company| {
-        let (standing, row) = match &company.standing {
+        let (standing, row) = match &company.status {
             EnterpriseStatus::Lead(row) => ("lead", row),
             EnterpriseStatus::Lost(row) => ("gone", row),
             EnterpriseStatus::Subscriber => return None,

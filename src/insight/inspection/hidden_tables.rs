@@ -7,7 +7,7 @@ use super::hidden_rows::{
     competitor_row, customer_rows, drift_rows, factor_rows, group_rows, pmi_row, thread_row,
 };
 use novamind_database::{QueryConnection, QueryError, QueryTicket, Table};
-use novamind_world::canonical::hash_of;
+use novamind_world::canonical::canonical_hash;
 use novamind_world::state::World;
 
 /// The database connection of the x-ray. No other connection has hidden tables.
@@ -38,7 +38,7 @@ impl CustomersSnapshot {
     pub(crate) fn current(world: &World) -> CustomersSnapshot {
         CustomersSnapshot::Current {
             customers: world.customers.hash(),
-            companies: hash_of(&world.enterprise),
+            companies: canonical_hash(&world.enterprise),
         }
     }
 }
@@ -72,12 +72,12 @@ impl HiddenTables {
     }
 
     /// Returns whether `hidden.customers` already has the wanted content.
-    pub(crate) fn shows_customers(&self, wanted: CustomersSnapshot) -> bool {
+    pub(crate) fn contains_customers(&self, wanted: CustomersSnapshot) -> bool {
         self.shown == Some(wanted)
     }
 
     /// Appends recorded days to a table, up to a given day. Moves the threads of these days to the table.
-    pub(crate) fn fill_to(
+    pub(crate) fn append_days(
         &mut self,
         day: u32,
         ticket: QueryTicket,

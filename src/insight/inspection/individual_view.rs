@@ -24,13 +24,13 @@ pub struct IndividualView {
 
 impl IndividualView {
     /// Returns the individual's state on the shown day, or on the last earlier day with a subscription.
-    pub fn day_shown(&self) -> Option<&IndividualDay> {
+    pub fn shown_state(&self) -> Option<&IndividualDay> {
         self.days.last()
     }
 
     /// Returns the day on which the currently open issue was opened.
     pub fn issue_opened_on(&self) -> Option<u32> {
-        let individual_day = self.day_shown().filter(|day| day.open_issue_days > 0)?;
+        let individual_day = self.shown_state().filter(|day| day.open_issue_days > 0)?;
         let days = self.days.iter().rev();
         let mut later = u32::MAX;
         // While an issue is open, its age increases daily. If the age does not increase, a new issue was opened.
@@ -44,7 +44,7 @@ impl IndividualView {
 
     /// Returns the state on the last billing day before the shown day.
     pub fn last_bill(&self) -> Option<&IndividualDay> {
-        let shown = self.day_shown()?.day;
+        let shown = self.shown_state()?.day;
         self.days.iter().rev().find(|individual_day| individual_day.is_due && individual_day.day < shown)
     }
 }

@@ -130,7 +130,7 @@ impl LeadEquation {
     }
 
     /// Returns the expected leads if the factors in `held` had the given values.
-    pub fn expected_with(&self, held: &[(LeadFactor, f64)]) -> f64 {
+    pub fn expected_leads_with(&self, held: &[(LeadFactor, f64)]) -> f64 {
         let mut factors = self.factors;
         held.iter().for_each(|(factor, value)| *factor.factor_mut(&mut factors) = *value);
         factors.expected()

@@ -10,9 +10,9 @@ use novamind_world::market::economy::index_on_day;
 use novamind_world::market::surges::{Surge, surge_on_day};
 use novamind_world::product::development::daily_noise;
 use novamind_world::product::research;
-use novamind_world::random::{Part, word_below};
+use novamind_world::random::{Part, bernoulli_from_word};
 use novamind_world::retention::due_today;
-use novamind_world::retention::renewal::{group_involuntary_rate, payment_rolls};
+use novamind_world::retention::renewal::{group_involuntary_rate, payment_failure_words};
 
 /// A part of the world whose next draws can be inspected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -285,8 +285,9 @@ fn failed_payment_effect(inside: HiddenState<'_>, group: Group, day: u32) -> Dra
     for (number, block) in inside.world().customers.groups[group].blocks.iter().enumerate() {
         let due = due_today(block, day, params);
         if rate > 0.0 && !due.is_empty() {
-            let rolls = payment_rolls(group, number as u32, day, streams);
-            let failing = due.into_iter().filter(|at| word_below(rolls[block.word_position(*at)], rate));
+            let rolls = payment_failure_words(group, number as u32, day, streams);
+            let failing =
+                due.into_iter().filter(|at| bernoulli_from_word(rolls[block.word_position(*at)], rate));
             customers.extend(failing.map(|at| block.customer[at]));
         }
     }

@@ -12,7 +12,7 @@ use novamind_world::reputation::{
 
 /// The cancellations of a day and their effect on reputation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct DepartureEffect {
+pub struct CancellationEffect {
     /// Number of cancellations that changed reputation. A lost enterprise counts once for each thread.
     pub count: u32,
     /// Change of the reputation; never positive.
@@ -49,8 +49,8 @@ pub struct ChangeThresholds {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ReputationDay {
     before: ByGroup<f64>,
-    individual_departures: ByGroup<DepartureEffect>,
-    enterprise_departures: ByGroup<DepartureEffect>,
+    individual_departures: ByGroup<CancellationEffect>,
+    enterprise_departures: ByGroup<CancellationEffect>,
     contributions: ByGroup<SubscriberContribution>,
     /// Spillovers with a positive weight, in the order of the day.
     spillovers: Vec<SpilloverEffect>,
@@ -65,7 +65,7 @@ impl ReputationDay {
     }
 
     /// Adds a change of reputation by a mechanism.
-    pub(crate) fn add_write(&mut self, write: &ReputationWrite<'_>) {
+    pub(crate) fn add_change(&mut self, write: &ReputationWrite<'_>) {
         let group = write.group;
         let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
         self.bounds[group] += write.after - without_bounds;
@@ -117,9 +117,9 @@ pub struct ReputationEquation {
     /// Reputation at the start of the day.
     pub before: f64,
     /// Effect of cancellations of individuals without an acceptable plan.
-    pub individual_departures: DepartureEffect,
+    pub individual_departures: CancellationEffect,
     /// Effect of lost enterprises.
-    pub enterprise_departures: DepartureEffect,
+    pub enterprise_departures: CancellationEffect,
     /// Contribution of the group's subscribers.
     pub contribution: SubscriberContribution,
     /// Spillovers from other groups, including dropped spillovers.
@@ -202,7 +202,7 @@ impl Spillover {
     }
 
     /// Returns the spillover from one group to another, or `None` without a weight or a change.
-    pub fn between(&self, from: Group, to: Group) -> Option<SpilloverEffect> {
+    pub fn spillover_between(&self, from: Group, to: Group) -> Option<SpilloverEffect> {
         self.spillovers.iter().copied().find(|spill| spill.from == from && spill.to == to)
     }
 }
@@ -222,7 +222,7 @@ mod tests {
         let (params, streams) = (Params::bundled(), Streams::new(5));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1e9, &params, &mut facts);
-        novamind_world::test_kit::policy_p(&mut world);
+        novamind_world::test_kit::apply_policy_p(&mut world);
         let diary = HiddenDayRecorder::default();
         let mut day = |world: &mut World| {
             step_day_observed(world, &params, &streams, &FixedInputs::default(), &mut facts, &diary);

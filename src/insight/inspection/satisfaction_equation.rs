@@ -215,7 +215,7 @@ impl SatisfactionEquation {
     }
 
     /// Returns the mean instant satisfaction, which is the sum of the terms.
-    pub fn instant(&self) -> Option<f64> {
+    pub fn instant_satisfaction(&self) -> Option<f64> {
         mean(self.today.sums.instant, self.today.sums.count)
     }
 

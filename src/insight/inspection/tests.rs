@@ -20,7 +20,7 @@ use novamind_world::day::observer::DayObserver;
 use novamind_world::events::{EndCause, Facts};
 use novamind_world::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_world::market::arrivals::ArrivalContext;
-use novamind_world::market::competitors::{Event, next_move};
+use novamind_world::market::competitors::{CompetitorEvent, next_move};
 use novamind_world::market::leads::LeadFactors;
 use novamind_world::market::surges::surge_on_day;
 use novamind_world::params::Params;
@@ -58,7 +58,7 @@ struct ObservedDay {
     shared: (f64, f64),
     group_banks: ByGroup<(f64, f64)>,
     drift: DriftTotals,
-    events: Vec<Event>,
+    events: Vec<CompetitorEvent>,
 }
 
 /// Observes the simulator's values independently of the hidden-day recorder.
@@ -176,7 +176,7 @@ fn satisfaction_terms_add_up_to_the_mean() {
             let (Some(before), Some(after), Some(instant)) = (
                 satisfaction_equation.before(),
                 satisfaction_equation.after(),
-                satisfaction_equation.instant(),
+                satisfaction_equation.instant_satisfaction(),
             ) else {
                 assert!(moved.is_empty());
                 continue;
@@ -227,7 +227,7 @@ fn reputation_terms_add_up_to_the_reputation() {
             );
             assert_eq!(reputation_equation.contribution, all.contributions[group]);
             for spill in &reputation_equation.spillovers {
-                assert_eq!(all.between(spill.from, group), Some(*spill));
+                assert_eq!(all.spillover_between(spill.from, group), Some(*spill));
                 assert_eq!(spill.counts, spill.change.abs() > reputation_equation.thresholds.spillover);
                 number += u32::from(spill.counts);
                 dropped += u32::from(!spill.counts);
@@ -252,7 +252,7 @@ fn competitor_and_drift_state_match_the_world_and_next_move_occurs() {
         for (group, bonus, bank) in &rivals.group_banks {
             assert_eq!((*bonus, *bank), used.group_banks[*group]);
         }
-        let moves: Vec<Event> = rivals.moves.iter().map(|(event, _)| *event).collect();
+        let moves: Vec<CompetitorEvent> = rivals.moves.iter().map(|(event, _)| *event).collect();
         assert_eq!(moves, used.events);
         let coming = last.iter().find(|event| event.day > day);
         assert_eq!(rivals.next_move.as_ref().and_then(|next| next.outcome), coming.copied());

@@ -5,7 +5,7 @@ use serde::Serialize;
 use novamind_world::customers::curve::{Curve, required_quality};
 use novamind_world::identifiers::{ByPlan, Plan};
 use novamind_world::params::Params;
-use novamind_world::quality::Experience;
+use novamind_world::quality::QualityTerms;
 use novamind_world::retention::plan_comparison::PlanComparison;
 
 /// An individual's evaluation of a plan on a billing day.
@@ -15,7 +15,7 @@ pub struct RenewalPlanTerms {
     pub price: f64,
     /// Terms of the perceived quality.
     #[serde(flatten)]
-    pub experience: Experience,
+    pub experience: QualityTerms,
     /// Perceived quality of the plan.
     pub quality: f64,
     /// Required quality at the plan's price.
@@ -75,7 +75,7 @@ impl DecisionTerm {
         last_bill: Option<&ByPlan<f64>>,
     ) -> Option<PlanComparison> {
         let mut other = *weighing;
-        let mut each = |change: &dyn Fn(&mut Experience)| other.experiences.0.iter_mut().for_each(change);
+        let mut each = |change: &dyn Fn(&mut QualityTerms)| other.experiences.0.iter_mut().for_each(change);
         match self {
             DecisionTerm::Issue => each(&|experience| experience.issues = 0.0),
             DecisionTerm::Ads => each(&|experience| experience.ads = 0.0),
@@ -209,11 +209,11 @@ mod tests {
     }
 
     #[test]
-    fn weighed_decisions_match_100000_decisions() {
+    fn weighed_decisions_match_simulated_decisions() {
         let (params, streams) = (Params::bundled(), Streams::new(11));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1e12, &params, &mut facts);
-        novamind_world::test_kit::policy_p(&mut world);
+        novamind_world::test_kit::apply_policy_p(&mut world);
         let everybody = DecisionObserver::default();
         let (mut judged, mut left, mut switched, mut turned_by_issue) = (0, 0, 0, 0);
         while judged < 100_000 {
@@ -254,7 +254,7 @@ mod tests {
     /// Asserts that the terms of each plan add up bit for bit to the value that the simulator compared.
     fn assert_terms_add_up(weighed: &WeighedDecision) {
         for plan_terms in weighed.plans.iter() {
-            let Experience { delivered, relationship, tenure, quota, issues, ads } = plan_terms.experience;
+            let QualityTerms { delivered, relationship, tenure, quota, issues, ads } = plan_terms.experience;
             let quality = (delivered + relationship + tenure) * quota - issues - ads;
             assert_eq!(quality.to_bits(), plan_terms.quality.to_bits());
             assert_eq!((plan_terms.quality - plan_terms.required).to_bits(), plan_terms.surplus.to_bits());

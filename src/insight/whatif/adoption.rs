@@ -6,14 +6,14 @@ use serde_json::json;
 
 use super::decision_edit::{BranchStart, DecisionEdit, build_edits, follow_usage_with_capacity};
 use super::lesson_restrictions::check_tools_unlocked;
-use crate::counterfactual::customer_renumbering::{RenumberedCall, with_branch_number_note};
+use crate::counterfactual::customer_renumbering::{RenumberedCall, add_branch_number_note};
 use crate::counterfactual::edits::{Edits, UsageBasedCapacity};
-use crate::counterfactual::recorded_steps::{RecordedCall, RecordedStep, steps_of};
+use crate::counterfactual::recorded_steps::{RecordedCall, RecordedStep, steps_from_lines};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{JudgedPost, Via, VoiceAnswer};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_session::engine::UsageCapacityRule;
-use novamind_session::{Session, StagedBranch, not_saved_error, unreadable_record};
+use novamind_session::{Session, StagedBranch, branch_not_saved_rejection, unreadable_record_rejection};
 use novamind_tools::{Rejection, ToolId};
 use novamind_world::customers::customer_numbers::CustomerNumbers;
 
@@ -44,11 +44,11 @@ pub fn create_branch_with_decisions(
     let (from, until) = (week.saturating_sub(1).saturating_mul(days), run.day());
     let path = run.folder().map(|folder| folder.join("trajectory.jsonl"));
     let path = path.ok_or_else(|| Rejection::new("not_saved", "a run in memory cannot be branched"))?;
-    let trajectory = Trajectory::read(&path).map_err(|error| unreadable_record(&error))?;
+    let trajectory = Trajectory::read(&path).map_err(|error| unreadable_record_rejection(&error))?;
     let follows = |line: &&Line| line.day > from || (line.day == from && !line.closes_days());
     let later: Vec<Line> = trajectory.lines.iter().filter(follows).cloned().collect();
     // Edits are validated before the branch is created.
-    let known = steps_of(&later);
+    let known = steps_from_lines(&later);
     let (settings, params) = (run.settings(), run.params());
     let check = BranchStart { day: from, settings, params, mode };
     build_edits(decided, &check, &known, until.max(from + 1))?;
@@ -58,9 +58,9 @@ pub fn create_branch_with_decisions(
     let no_room =
         |refusal: Rejection| if refusal.code == "not_saved" { branch_rejection(refusal) } else { refusal };
     let branch = StagedBranch::stage(run, week, mode).map_err(no_room)?;
-    let mut session = branch.open().map_err(|error| branch_rejection(not_saved_error(error)))?;
+    let mut session = branch.open().map_err(|error| branch_rejection(branch_not_saved_rejection(error)))?;
     // Posts that are repeated keep their recorded scores.
-    session.set_inherited_scores(later.iter().filter_map(judged_post).collect());
+    session.set_inherited_scores(later.iter().filter_map(recorded_post_scores).collect());
     let (settings, params) = (session.settings(), session.params());
     let opening = BranchStart { day: from, settings, params, mode };
     let mut edits = build_edits(decided, &opening, &known, until.max(from + 1))?;
@@ -80,16 +80,16 @@ pub fn create_branch_with_decisions(
     if let Some(refusal) = refused.iter().map(|(_, _, refusal)| refusal).find(ends_it) {
         return Err(branch_rejection(refusal.clone()));
     }
-    session.save().map_err(|error| branch_rejection(not_saved_error(error)))?;
+    session.save().map_err(|error| branch_rejection(branch_not_saved_rejection(error)))?;
     drop(session);
     Ok(AdoptedBranch {
-        session: branch.publish().map_err(|error| branch_rejection(not_saved_error(error)))?,
+        session: branch.publish().map_err(|error| branch_rejection(branch_not_saved_rejection(error)))?,
         rejected: refused,
     })
 }
 
 /// Returns the language model's scores of a post, if the event contains scores.
-fn judged_post(line: &Line) -> Option<JudgedPost> {
+fn recorded_post_scores(line: &Line) -> Option<JudgedPost> {
     match &line.record {
         Record::Voice(VoiceAnswer::Scores(judged)) => Some(judged.clone()),
         _ => None,
@@ -126,7 +126,7 @@ impl BranchAdoption<'_> {
                 return;
             }
             let seq = line.seq;
-            match (&line.record, steps_of(std::slice::from_ref(line)).first()) {
+            match (&line.record, steps_from_lines(std::slice::from_ref(line)).first()) {
                 (_, Some(RecordedStep::Call(call))) => self.replay_call(call, edits),
                 (Record::Advance(filed), _) => {
                     is_begun = true;
@@ -199,7 +199,7 @@ impl BranchAdoption<'_> {
         if let Err(refusal) = self.session.call(tool, &here, Via::Branch) {
             self.record_rejection(
                 tool.name(),
-                if here == *args { refusal } else { with_branch_number_note(refusal) },
+                if here == *args { refusal } else { add_branch_number_note(refusal) },
             );
         }
     }

@@ -10,7 +10,9 @@ use crate::counterfactual::memory_snapshot::MemorySnapshot;
 use crate::counterfactual::recorded_steps::{RecordedCall, RecordedStep};
 use novamind_base::formatting::json_number;
 use novamind_record::mode::Mode;
-use novamind_session::engine::{UsageCapacityRule, json_to_value, require_debug_mode, unknown_parameter};
+use novamind_session::engine::{
+    UsageCapacityRule, json_to_value, require_debug_mode, unknown_parameter_rejection,
+};
 use novamind_tools::{ArgumentKind, Rejection, ToolId, ToolKind, catalogue, find};
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
@@ -65,7 +67,7 @@ pub enum DecisionEdit {
 /// Converts decision edits to edits of recorded steps.
 ///
 /// # Errors
-/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`, and
+/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed_rejection`, and
 /// `not_in_this_mode` if a parameter is set outside a debug run.
 pub(super) fn build_edits(
     decided: &[DecisionEdit],
@@ -111,7 +113,7 @@ impl BranchStart<'_> {
     /// Rejects a parameter that cannot be set, or that cannot have the given value.
     fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Rejection> {
         require_debug_mode(self.mode)?;
-        let in_force = self.params.value(key).map_err(unknown_parameter)?;
+        let in_force = self.params.value(key).map_err(unknown_parameter_rejection)?;
         let not_allowed = |problem| Rejection::for_field(key, "parameter_not_allowed", problem);
         if let (Value::String(word), false) = (value, in_force.is_str()) {
             return Err(not_allowed(format!(
@@ -185,7 +187,7 @@ fn drop_calls_of_tool(tool: ToolId, edits: &mut Edits, moves: &[RecordedStep]) {
 
 fn check_is_call(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
     let is_there = recorded_calls(moves).any(|call| call.seq == seq);
-    is_there.then_some(()).ok_or_else(|| unknown_line(seq))
+    is_there.then_some(()).ok_or_else(|| unknown_line_rejection(seq))
 }
 
 /// Rejects a line that is not a recorded decision.
@@ -195,7 +197,7 @@ fn check_is_decision(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> 
     if moves.iter().any(is_it) { Ok(()) } else { check_is_call(seq, moves) }
 }
 
-fn unknown_line(seq: u64) -> Rejection {
+fn unknown_line_rejection(seq: u64) -> Rejection {
     let message =
         format!("line {seq} is not a decision in the weeks of this what-if; whatif WEEK lists the decisions");
     Rejection::for_field("line", "line_unknown", message)
@@ -298,7 +300,7 @@ impl FromStr for DecisionEdit {
         let rest = rest.trim();
         match first {
             "" => Err(format!("an edit is missing; for example {}", EDIT_SYNTAX.join(" or "))),
-            "keep" => parse_acting_tool(rest).map(DecisionEdit::Keep),
+            "keep" => parse_state_changing_tool(rest).map(DecisionEdit::Keep),
             "drop" => parse_line_number(rest).map(DecisionEdit::Drop),
             "change" => {
                 let (seq, args) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
@@ -325,7 +327,7 @@ fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else {
         return parse_added_call(None, text);
     };
-    let tool = parse_acting_tool(name)?;
+    let tool = parse_state_changing_tool(name)?;
     if !is_scalable(tool) {
         let amounts: Vec<&str> =
             ToolId::all().filter(|tool_id| is_scalable(*tool_id)).map(ToolId::name).collect();
@@ -358,12 +360,12 @@ fn parse_set_or_call(week: Option<u32>, text: &str) -> Result<DecisionEdit, Stri
 
 fn parse_added_call(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
     let (name, rest) = call.split_once(char::is_whitespace).unwrap_or((call, ""));
-    let tool = parse_acting_tool(name)?;
+    let tool = parse_state_changing_tool(name)?;
     Ok(DecisionEdit::Add { week, tool, args: parse_arguments(rest, tool.spec().unnamed_argument)? })
 }
 
 /// Parses a tool name. Rejects tools that cannot change the company.
-fn parse_acting_tool(name: &str) -> Result<ToolId, String> {
+fn parse_state_changing_tool(name: &str) -> Result<ToolId, String> {
     let Some(tool) = find(name) else {
         let near = catalogue::similar_tools(name);
         let help = match near.is_empty() {

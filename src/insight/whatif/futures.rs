@@ -37,7 +37,7 @@ impl Futures {
     /// future has a value.
     pub fn interval(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<FutureInterval> {
         let mut values: Vec<f64> =
-            self.values(branch, figure, day).into_iter().filter(|value| !value.is_nan()).collect();
+            self.values_by_future(branch, figure, day).into_iter().filter(|value| !value.is_nan()).collect();
         values.sort_by(f64::total_cmp);
         let at = |share: f64| quantile_of_sorted(&values, share);
         Some(FutureInterval { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
@@ -55,7 +55,8 @@ impl Futures {
     /// Returns the paired difference of a figure between a branch and the first branch, at the end of the week that
     /// ends on `day`. Returns `None` if no future has a value in both branches.
     pub fn difference(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<PairedDifference> {
-        let pairs = self.values(branch, figure, day).into_iter().zip(self.values(0, figure, day));
+        let pairs =
+            self.values_by_future(branch, figure, day).into_iter().zip(self.values_by_future(0, figure, day));
         PairedDifference::from_pairs(pairs)
     }
 
@@ -69,7 +70,7 @@ impl Futures {
     }
 
     /// Returns the value of a figure in each future, or NaN if the figure has no value.
-    fn values(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
+    fn values_by_future(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
         let week = self.days.iter().position(|number| *number == day);
         let value = |weeks: &Vec<FigureValues>| match (week, weeks.last()) {
             (Some(at), _) if at < weeks.len() => weeks[at][figure as usize],
@@ -129,8 +130,8 @@ mod tests {
         assert_eq!(futures.bankruptcy_count(0), 1);
         let in_the_last_week = Futures::new(0, vec![7], vec![vec![vec![week(-5.0)], vec![week(1.0)]]]);
         assert_eq!(in_the_last_week.bankruptcy_count(0), 1);
-        assert_eq!(futures.values(0, BranchFigure::Cash, 14), [-5.0, 3.0]);
-        assert_eq!(futures.values(0, BranchFigure::Subscribers, 14), [0.0, 10.0]);
-        assert!(futures.values(0, BranchFigure::Churn, 14)[0].is_nan());
+        assert_eq!(futures.values_by_future(0, BranchFigure::Cash, 14), [-5.0, 3.0]);
+        assert_eq!(futures.values_by_future(0, BranchFigure::Subscribers, 14), [0.0, 10.0]);
+        assert!(futures.values_by_future(0, BranchFigure::Churn, 14)[0].is_nan());
     }
 }

@@ -7,7 +7,7 @@ use crate::counterfactual::recorded_run::RecordedRun;
 use crate::counterfactual::recorded_steps::RecordedStep;
 use novamind_record::lesson::{Lesson, LessonPart, LessonProgress};
 use novamind_record::trajectory::Trajectory;
-use novamind_session::unreadable_record;
+use novamind_session::unreadable_record_rejection;
 use novamind_tools::{Rejection, ToolId};
 
 /// Returns the student's progress in an unfinished lesson, and whether the lesson changes the capacity automatically.
@@ -19,14 +19,15 @@ pub(super) fn lesson_state(
     past: &RecordedRun,
 ) -> Result<(Option<LessonProgress>, bool), Rejection> {
     let Some(stamp) = past.manifest.lesson.as_ref() else { return Ok((None, false)) };
-    let lesson = Lesson::from_run(folder, &stamp.name).map_err(|error| unreadable_record(&error))?;
+    let lesson =
+        Lesson::from_run(folder, &stamp.name).map_err(|error| unreadable_record_rejection(&error))?;
     let part = (stamp.part as usize).clamp(1, lesson.plan.parts.len().max(1)) - 1;
     let moves_capacity = lesson.plan.parts.get(part).is_some_and(LessonPart::has_automatic_capacity);
     if past.is_ended {
         return Ok((None, moves_capacity));
     }
-    let trajectory =
-        Trajectory::read(&folder.join("trajectory.jsonl")).map_err(|error| unreadable_record(&error))?;
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))
+        .map_err(|error| unreadable_record_rejection(&error))?;
     Ok((Some(LessonProgress::from_lines(lesson.into(), part, &trajectory.lines)), moves_capacity))
 }
 

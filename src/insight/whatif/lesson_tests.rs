@@ -10,7 +10,7 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::lesson::Lesson;
 use novamind_record::trajectory::record::Via;
 use novamind_session::engine::UsageCapacityRule;
-use novamind_session::{LessonEntry, NewRun, Storage};
+use novamind_session::{LessonOptions, NewRun, Storage};
 
 /// A lesson with automatic capacity, in which the company outgrows its servers.
 const LESSON_TOML: &str = r#"
@@ -68,7 +68,7 @@ fn start_lesson(folder: &Path, runs: &str) -> Session {
     let lesson = Arc::new(Lesson::from_file(&path).expect("a lesson"));
     let new = NewRun {
         mode: Mode::Lesson,
-        lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
+        lesson: Some(LessonOptions { lesson, part: 0, is_judged: true }),
         storage: Storage::Runs(folder.join(runs)),
         ..NewRun::default()
     };

@@ -40,7 +40,7 @@ use novamind_record::figures::WeekFigures;
 use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
 use novamind_session::engine::UsageCapacityRule;
-use novamind_session::{InspectionPermit, Session, unreadable_record};
+use novamind_session::{InspectionPermit, Session, unreadable_record_rejection};
 use novamind_tools::{Rejection, highest_customer};
 use novamind_world::events::DayFigures;
 
@@ -79,7 +79,7 @@ impl RecordAnalysis for WhatIf {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
     fn open(folder: &Path) -> Result<WhatIf, Rejection> {
-        let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
+        let past = RecordedRun::open(folder).map_err(|error| unreadable_record_rejection(&error))?;
         let sight = input_visibility(&past.manifest, past.is_ended)?;
         let (lesson, moves_capacity) = lesson_state(folder, &past)?;
         Ok(WhatIf {
@@ -93,7 +93,7 @@ impl RecordAnalysis for WhatIf {
     }
 
     fn refresh(&mut self) -> Result<(), Rejection> {
-        self.run.refresh().map_err(|error| unreadable_record(&error))?;
+        self.run.refresh().map_err(|error| unreadable_record_rejection(&error))?;
         self.visibility = input_visibility(&self.run.manifest, self.run.is_ended)?;
         (self.lesson, self.automates_capacity) = lesson_state(&self.folder, &self.run)?;
         Ok(())
@@ -141,9 +141,9 @@ impl WhatIf {
             }
         }
         let Some(day) = parting.last_day_naming_new_customers(&edits) else { return Ok(Some((all, edits))) };
-        let day = self.run.last_boundary(day);
+        let day = self.run.last_recorded_day_up_to(day);
         let snapshot = self.run.snapshot_at(day, &mut |simulated| progress(simulated as usize, day as usize));
-        let Some(memory_snapshot) = snapshot.map_err(|error| unreadable_record(&error))? else {
+        let Some(memory_snapshot) = snapshot.map_err(|error| unreadable_record_rejection(&error))? else {
             return Ok(None);
         };
         let meant = Arc::new(memory_snapshot.world.customers.numbers.clone());
@@ -185,11 +185,11 @@ impl WhatIf {
             .collect())
     }
 
-    /// Returns the result of [`WhatIf::compare`], and the result of [`WhatIf::futures`] if a number of futures is
+    /// Returns the result of [`WhatIf::compare_or_write`], and the result of [`WhatIf::futures`] if a number of futures is
     /// given. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// Same errors as [`WhatIf::compare`].
+    /// Same errors as [`WhatIf::compare_or_write`].
     pub fn compare_with_futures(
         &mut self,
         (week, until_week): (u32, Option<u32>),
@@ -263,7 +263,7 @@ impl WhatIf {
     /// continue beyond it, otherwise at the start of the branches. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// Same errors as [`WhatIf::compare`].
+    /// Same errors as [`WhatIf::compare_or_write`].
     pub fn futures(
         &mut self,
         week: u32,
@@ -317,7 +317,7 @@ impl WhatIf {
         let day = week.checked_sub(1).map(|earlier| earlier.saturating_mul(days));
         let last = self.run.last_day().min(self.run.manifest.days.saturating_sub(1)) / days + 1;
         match day {
-            Some(day) if week <= last && self.run.has_boundary_on(day) => Ok(day),
+            Some(day) if week <= last && self.run.has_recorded_state_on(day) => Ok(day),
             _ => {
                 let message =
                     format!("a what-if cannot start with week {week}; choose a week from 1 to {last}");
@@ -328,11 +328,11 @@ impl WhatIf {
 
     /// Returns the last day that can be simulated, with a name for this day. An unfinished lesson stops at the end of
     /// the current step, because the next step can ask for the outcome.
-    fn horizon(&self) -> (u32, &'static str) {
+    fn last_possible_day(&self) -> (u32, &'static str) {
         let (days, last) = (self.run.days_per_week(), self.run.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {
             let part = lesson.current_part();
-            part.step_after(self.run.last_day() / days).map(|step| part.step_weeks(step).1 * days)
+            part.step_at_week(self.run.last_day() / days).map(|step| part.step_weeks(step).1 * days)
         });
         match step_end {
             Some(end) if end < last => (end, "the step of the lesson"),
@@ -348,7 +348,7 @@ impl WhatIf {
     ) -> Result<Option<BranchPoint>, Rejection> {
         self.check_guess_submitted()?;
         let from = self.first_day_of_week(week)?;
-        let (days, (horizon, ends)) = (self.run.days_per_week(), self.horizon());
+        let (days, (horizon, ends)) = (self.run.days_per_week(), self.last_possible_day());
         let until = match until_week {
             Some(last) if last > horizon.div_ceil(days) => {
                 let message =
@@ -367,11 +367,15 @@ impl WhatIf {
             }
         };
         let mut reach = |day: u32| progress(day as usize, from as usize);
-        let back =
-            (0..=from.saturating_sub(LOOKBACK_WEEKS * days)).rev().find(|day| self.run.has_boundary_on(*day));
+        let back = (0..=from.saturating_sub(LOOKBACK_WEEKS * days))
+            .rev()
+            .find(|day| self.run.has_recorded_state_on(*day));
         let moments = back.map_or(Ok(None), |day| self.run.snapshot_at(day, &mut reach));
-        let Some(back) = moments.map_err(|error| unreadable_record(&error))? else { return Ok(None) };
-        let moment = self.run.snapshot_at(from, &mut reach).map_err(|error| unreadable_record(&error))?;
+        let Some(back) = moments.map_err(|error| unreadable_record_rejection(&error))? else {
+            return Ok(None);
+        };
+        let moment =
+            self.run.snapshot_at(from, &mut reach).map_err(|error| unreadable_record_rejection(&error))?;
         let Some(start) = moment else { return Ok(None) };
         let way = self.run.steps_between(back.world.day, from);
         let Some(earlier) = simulate_branch(&back, way, &Edits::default(), from, &mut reach) else {

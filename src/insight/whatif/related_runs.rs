@@ -9,7 +9,7 @@ use novamind_record::folder::manifest_check::read_manifest;
 use novamind_record::folder::runs::{RunSummary, list_runs, run_folder};
 use novamind_record::trajectory::record::Parent;
 use novamind_record::trajectory::{Line, Record, Trajectory};
-use novamind_session::week_of;
+use novamind_session::week_of_day;
 
 /// A run in the tree of related runs.
 #[derive(Debug, Clone)]
@@ -58,7 +58,7 @@ fn branch_week_and_change(folder: &Path, parent: &Parent) -> Option<(u32, Option
     let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
     let branch_lines = lines(folder)?;
     let at = branch_lines.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
-    let week = week_of(branch_lines[at].day) + 1;
+    let week = week_of_day(branch_lines[at].day) + 1;
     let parents = lines(&folder.with_file_name(&parent.run));
     let change =
         parents.and_then(|parents| first_changed_decision(&branch_lines[at..], &parents, parent.seq));
@@ -68,7 +68,7 @@ fn branch_week_and_change(folder: &Path, parent: &Parent) -> Option<(u32, Option
 /// Returns the first decision that only the branch or only its parent made on a day, up to the last day that both runs
 /// have reached.
 fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
-    let one = |line: &Line| decision_of_line(line).map(|(what, how)| (line.day, what.to_owned(), how));
+    let one = |line: &Line| parse_decision(line).map(|(what, how)| (line.day, what.to_owned(), how));
     let branch_decisions: Vec<_> = lines.iter().filter_map(one).collect();
     let parent_decisions: Vec<_> = parents.iter().filter(|line| line.seq > left_at).filter_map(one).collect();
     let until = lines.last()?.day;
@@ -90,7 +90,7 @@ fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Opt
 }
 
 /// Returns the decision that an event records: a tool with its arguments or a parameter with its value.
-fn decision_of_line(line: &Line) -> Option<(&str, Value)> {
+fn parse_decision(line: &Line) -> Option<(&str, Value)> {
     if let Record::Override(setting) = &line.record {
         return Some((&setting.key, setting.new.clone()));
     }

@@ -53,7 +53,7 @@ pub fn ablation_report(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u
     };
     for axis in axes {
         exhibit.tables.push(arm_table(axis, day));
-        exhibit.tables.push(step_table(axis, day));
+        exhibit.tables.push(adjacent_difference_table(axis, day));
         exhibit.graphs.push(subscriber_graph(axis));
         exhibit.notes.push(describe_equal_runs(axis));
     }
@@ -108,7 +108,7 @@ fn arm_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
     table
 }
 
-fn step_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
+fn adjacent_difference_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
     let columns = vec![
         Column::text("step", "from, to"),
         Column::number("lost", &format!("subscribers lost, day {day}"), Measure::Count),

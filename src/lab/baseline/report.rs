@@ -184,7 +184,7 @@ fn best_by_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable 
 }
 
 /// Describes the configurations that share the first rank: the name of one configuration and the number of ties.
-fn tied_labels(grid: &PolicyGrid, first: &[usize]) -> String {
+fn describe_ties(grid: &PolicyGrid, first: &[usize]) -> String {
     match first {
         [] => String::new(),
         [one] => grid.configurations[*one].label(),
@@ -271,7 +271,7 @@ fn notes(grid: &PolicyGrid, is_published: bool, board: &RankedResults<'_>) -> Ve
     if let Some(best) = board.order.first() {
         let alike = |arm: &&usize| board.runs_of_arm(**arm) == board.runs_of_arm(*best);
         let first: Vec<usize> = board.order.iter().filter(alike).copied().collect();
-        let label = tied_labels(grid, &first);
+        let label = describe_ties(grid, &first);
         notes.push(match board.results.seeds.len() {
             1 => format!("Best configuration: {label}."),
             _ => format!("Best configuration by median final cash: {label}."),

@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn figure_columns_exist() {
+    fn behavior_figure_columns_exist() {
         for (name, of, _) in FIGURE_COLUMNS {
             assert!(find_figure(name, of).is_some(), "{name}");
         }
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn report_has_all_tables() {
+    fn behavior_report_has_all_tables() {
         let mut runs = sample_runs();
         assert!(behavior_report(&runs).table("customers").is_none(), "there were no customers");
         runs[0].groups = DatabaseFigures::load(&test_kit::play_weeks(5)).groups;

@@ -4,82 +4,97 @@ use std::time::Instant;
 
 use super::machine::{folder_megabytes, peak_memory_megabytes};
 use super::measured_company::{MarketSize, MeasuredCompany, POLICY, RunStorage, SEED, WeekMeasurement};
-use super::{BenchContext, BenchError, BenchFigure, Case, Samples, Unit, queries, resimulation};
-use crate::{Collector, Policy, RunSpec, play};
+use super::{BenchCase, BenchContext, BenchError, BenchFigure, BenchUnit, Samples, queries, resimulation};
+use crate::{MetricsCollector, Policy, RunSpec, play_policy};
 use novamind_base::statistics::median;
 use novamind_record::folder::runs::find_run;
 use novamind_session::{Access, Session};
 
 /// Measured cases of the simulator.
-pub const CASES: &[Case] = &[
-    Case {
+pub const CASES: &[BenchCase] = &[
+    BenchCase {
         name: "day",
         figures: &[
             BenchFigure::with_target(
                 "a day at 165,000, database in the background",
-                Unit::Milliseconds,
+                BenchUnit::Milliseconds,
                 10.0,
                 Some(4.0),
             ),
-            BenchFigure::without_target("a day at 165,000, in memory", Unit::Milliseconds),
+            BenchFigure::without_target("a day at 165,000, in memory", BenchUnit::Milliseconds),
         ],
         needs_new_process: false,
         is_slow: false,
         measure: measure_day,
     },
-    Case {
+    BenchCase {
         name: "million",
         figures: &[
             BenchFigure::with_target(
                 "a day at 1,000,000, database in the background",
-                Unit::Milliseconds,
+                BenchUnit::Milliseconds,
                 60.0,
                 Some(25.0),
             ),
-            BenchFigure::without_target("a day at 1,000,000, in memory", Unit::Milliseconds),
-            BenchFigure::with_target("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
+            BenchFigure::without_target("a day at 1,000,000, in memory", BenchUnit::Milliseconds),
+            BenchFigure::with_target(
+                "peak memory at 1,000,000",
+                BenchUnit::Megabytes,
+                1.2 * 1_073.741_824,
+                None,
+            ),
         ],
         needs_new_process: false,
         is_slow: true,
         measure: measure_day_with_a_million,
     },
-    Case {
+    BenchCase {
         name: "run",
-        figures: &[BenchFigure::with_target("500 days, trajectory recorded", Unit::Seconds, 3.0, Some(1.7))],
+        figures: &[BenchFigure::with_target(
+            "500 days, trajectory recorded",
+            BenchUnit::Seconds,
+            3.0,
+            Some(1.7),
+        )],
         needs_new_process: false,
         is_slow: false,
         measure: measure_run,
     },
-    Case {
+    BenchCase {
         name: "save",
         figures: &[
             BenchFigure::with_target(
                 "500 days with --save, world.db complete",
-                Unit::Seconds,
+                BenchUnit::Seconds,
                 9.0,
                 Some(5.0),
             ),
-            BenchFigure::with_target("run directory with --save", Unit::Megabytes, 300.0, Some(150.0)),
-            BenchFigure::with_target("peak memory with --save", Unit::Megabytes, 400.0, None),
+            BenchFigure::with_target("run directory with --save", BenchUnit::Megabytes, 300.0, Some(150.0)),
+            BenchFigure::with_target("peak memory with --save", BenchUnit::Megabytes, 400.0, None),
         ],
         needs_new_process: true,
         is_slow: false,
         measure: measure_save,
     },
-    Case {
+    BenchCase {
         name: "resume",
-        figures: &[BenchFigure::with_target("resume of a 500-day run", Unit::Seconds, 1.0, None)],
+        figures: &[BenchFigure::with_target("resume of a 500-day run", BenchUnit::Seconds, 1.0, None)],
         needs_new_process: false,
         is_slow: false,
         measure: measure_resume,
     },
-    Case {
+    BenchCase {
         name: "week",
         figures: &[
-            BenchFigure::with_target("a week at 165,000: key to dashboard", Unit::Milliseconds, 150.0, None),
+            BenchFigure::with_target(
+                "a week at 165,000: key to dashboard",
+                BenchUnit::Milliseconds,
+                150.0,
+                None,
+            ),
             BenchFigure::with_target(
                 "a week at 165,000: key to first query answered",
-                Unit::Milliseconds,
+                BenchUnit::Milliseconds,
                 800.0,
                 None,
             ),
@@ -88,44 +103,44 @@ pub const CASES: &[Case] = &[
         is_slow: false,
         measure: measure_week,
     },
-    Case {
+    BenchCase {
         name: "resimulation",
         figures: resimulation::FIGURES,
         needs_new_process: false,
         is_slow: true,
         measure: resimulation::measure_resimulation,
     },
-    Case {
+    BenchCase {
         name: "queries",
         figures: queries::FIGURES,
         needs_new_process: false,
         is_slow: true,
         measure: queries::measure_queries,
     },
-    Case {
+    BenchCase {
         name: "scaling",
         figures: &[
             BenchFigure::with_target(
                 "cost per subscriber, 10,000 to 1,000,000: spread",
-                Unit::Percent,
+                BenchUnit::Percent,
                 30.0,
                 None,
             ),
             BenchFigure::without_target(
                 "one thread, per subscriber and day at 10,000",
-                Unit::NanosecondsPerSubscriberDay,
+                BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
                 "one thread, per subscriber and day at 40,000",
-                Unit::NanosecondsPerSubscriberDay,
+                BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
                 "one thread, per subscriber and day at 165,000",
-                Unit::NanosecondsPerSubscriberDay,
+                BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
                 "one thread, per subscriber and day at 1,000,000",
-                Unit::NanosecondsPerSubscriberDay,
+                BenchUnit::NanosecondsPerSubscriberDay,
             ),
         ],
         needs_new_process: false,
@@ -144,7 +159,10 @@ fn measure_weeks(company: &mut MeasuredCompany, count: usize) -> Result<Vec<Week
 }
 
 /// Returns a company with about 165,000 subscribers, which grows during the measurement.
-fn company_with_165_000(keep: RunStorage, bench: &BenchContext) -> Result<MeasuredCompany, BenchError> {
+fn create_company_with_165_000_subscribers(
+    keep: RunStorage,
+    bench: &BenchContext,
+) -> Result<MeasuredCompany, BenchError> {
     MeasuredCompany::with_subscribers(150_000, keep, bench)
 }
 
@@ -153,34 +171,45 @@ fn company_with_165_000(keep: RunStorage, bench: &BenchContext) -> Result<Measur
 /// # Errors
 /// Fails if the run cannot be played or saved.
 pub fn save_large_company(bench: &BenchContext) -> Result<String, BenchError> {
-    let mut company = company_with_165_000(RunStorage::Disk, bench)?;
+    let mut company = create_company_with_165_000_subscribers(RunStorage::Disk, bench)?;
     company.session.save()?;
     Ok(company.session.manifest().id.clone())
 }
 
 /// Returns a company with about 1,000,000 subscribers in the large market.
-fn company_with_a_million(keep: RunStorage, bench: &BenchContext) -> Result<MeasuredCompany, BenchError> {
+fn create_company_with_a_million_subscribers(
+    keep: RunStorage,
+    bench: &BenchContext,
+) -> Result<MeasuredCompany, BenchError> {
     let mut company = MeasuredCompany::new(MarketSize::Large, keep, bench)?;
-    company.grow_to(1_000_000)?;
+    company.grow_to_subscribers(1_000_000)?;
     company.play_billing_period()?;
     Ok(company)
 }
 
 fn measure_day(bench: &BenchContext) -> Result<Samples, BenchError> {
-    let on_disk = measure_weeks(&mut company_with_165_000(RunStorage::Disk, bench)?, bench.repetitions)?;
-    let in_memory = measure_weeks(&mut company_with_165_000(RunStorage::Memory, bench)?, bench.repetitions)?;
+    let on_disk = measure_weeks(
+        &mut create_company_with_165_000_subscribers(RunStorage::Disk, bench)?,
+        bench.repetitions,
+    )?;
+    let in_memory = measure_weeks(
+        &mut create_company_with_165_000_subscribers(RunStorage::Memory, bench)?,
+        bench.repetitions,
+    )?;
     Ok(vec![estimate_day_milliseconds(165_000.0, &on_disk), estimate_day_milliseconds(165_000.0, &in_memory)])
 }
 
 fn measure_day_with_a_million(bench: &BenchContext) -> Result<Samples, BenchError> {
-    let mut company = company_with_a_million(RunStorage::Disk, bench)?;
+    let mut company = create_company_with_a_million_subscribers(RunStorage::Disk, bench)?;
     let on_disk = measure_weeks(&mut company, bench.repetitions)?;
     company.session.save()?;
     // Read the peak memory before a second company allocates memory.
     let memory = peak_memory_megabytes().into_iter().collect();
     drop(company);
-    let in_memory =
-        measure_weeks(&mut company_with_a_million(RunStorage::Memory, bench)?, bench.repetitions)?;
+    let in_memory = measure_weeks(
+        &mut create_company_with_a_million_subscribers(RunStorage::Memory, bench)?,
+        bench.repetitions,
+    )?;
     Ok(vec![estimate_day_milliseconds(1e6, &on_disk), estimate_day_milliseconds(1e6, &in_memory), memory])
 }
 
@@ -192,7 +221,7 @@ fn play_500_days(projection: bool, bench: &BenchContext) -> Result<(f64, String)
         saves_database: projection,
         ..RunSpec::for_seed(SEED)
     };
-    let outcome = play(&policy, &spec, &bench.configuration, &mut Collector::disabled())?;
+    let outcome = play_policy(&policy, &spec, &bench.configuration, &mut MetricsCollector::disabled())?;
     let run = outcome.run.ok_or_else(|| BenchError("the run was not saved".to_owned()))?;
     Ok((outcome.seconds, run))
 }
@@ -228,7 +257,7 @@ fn measure_resume(bench: &BenchContext) -> Result<Samples, BenchError> {
 }
 
 fn measure_week(bench: &BenchContext) -> Result<Samples, BenchError> {
-    let mut company = company_with_165_000(RunStorage::Disk, bench)?;
+    let mut company = create_company_with_165_000_subscribers(RunStorage::Disk, bench)?;
     let (mut dashboard, mut query) = (Vec::new(), Vec::new());
     for _ in 0..bench.repetitions {
         let lap = company.measure_week()?;
@@ -252,17 +281,17 @@ const MAX_WEEKS_PER_SIZE: usize = 5;
 /// Uses one thread, because the gain of a second thread depends on wake-up latency. This latency is the same for a
 /// company of any size.
 fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| costs_by_size(bench))
+    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| measure_costs_by_size(bench))
 }
 
 /// Measures the companies in turn, so that a slow period of the machine affects all companies equally.
-fn costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
+fn measure_costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
     // The companies start slightly smaller, because they grow during the measurement.
     let sized_companies = SUBSCRIBER_COUNTS
         .iter()
         .map(|size| MeasuredCompany::with_subscribers(size / 10 * 9, RunStorage::Memory, bench));
     let mut companies = sized_companies.collect::<Result<Vec<MeasuredCompany>, BenchError>>()?;
-    companies.push(company_with_a_million(RunStorage::Memory, bench)?);
+    companies.push(create_company_with_a_million_subscribers(RunStorage::Memory, bench)?);
     let mut costs = vec![Vec::new(); companies.len()];
     for _ in 0..bench.repetitions.min(MAX_WEEKS_PER_SIZE) {
         for (company, values) in companies.iter_mut().zip(&mut costs) {

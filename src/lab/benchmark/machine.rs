@@ -10,13 +10,13 @@ const CALIBRATION_STEPS: u64 = 60_000_000;
 /// this time, figures of different machines can be compared.
 pub fn calibration_seconds() -> f64 {
     let started = Instant::now();
-    black_box(fixed_work(black_box(CALIBRATION_STEPS)));
+    black_box(run_fixed_work(black_box(CALIBRATION_STEPS)));
     started.elapsed().as_secs_f64()
 }
 
 /// Each step depends on the previous step, like the terms of a formula. A step consists of shifts, a multiplication, a
 /// division and a root.
-fn fixed_work(steps: u64) -> f64 {
+fn run_fixed_work(steps: u64) -> f64 {
     let (mut word, mut value) = (0x9e37_79b9_7f4a_7c15_u64, 1.0_f64);
     for _ in 0..steps {
         word ^= word << 13;
@@ -51,8 +51,8 @@ mod tests {
 
     #[test]
     fn fixed_work_is_deterministic() {
-        assert_eq!(fixed_work(1000).to_bits(), fixed_work(1000).to_bits());
-        assert!(fixed_work(1000).is_finite());
+        assert_eq!(run_fixed_work(1000).to_bits(), run_fixed_work(1000).to_bits());
+        assert!(run_fixed_work(1000).is_finite());
     }
 
     #[test]

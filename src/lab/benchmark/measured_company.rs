@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{BenchContext, BenchError};
 use crate::policy::Policy;
-use crate::runner::{RunSpec, decide, new_run};
+use crate::runner::{RunSpec, make_decisions, new_run};
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
@@ -86,7 +86,7 @@ impl MeasuredCompany {
         bench: &BenchContext,
     ) -> Result<MeasuredCompany, BenchError> {
         let mut company = MeasuredCompany::new(MarketSize::Standard, keep, bench)?;
-        company.grow_to(subscribers)?;
+        company.grow_to_subscribers(subscribers)?;
         Ok(company)
     }
 
@@ -97,7 +97,7 @@ impl MeasuredCompany {
 
     /// Makes the decisions of a week and simulates the week. Only the simulation is measured.
     pub fn measure_week(&mut self) -> Result<WeekMeasurement, BenchError> {
-        decide(&self.policy, SEED, &mut self.session)?;
+        make_decisions(&self.policy, SEED, &mut self.session)?;
         self.session.wait_for_database()?;
         let before = self.subscribers();
         let forecasts = self.session.company().naive_forecasts();
@@ -108,7 +108,7 @@ impl MeasuredCompany {
     }
 
     /// Plays weeks until the company has at least `subscribers` subscribers.
-    pub fn grow_to(&mut self, subscribers: u32) -> Result<(), BenchError> {
+    pub fn grow_to_subscribers(&mut self, subscribers: u32) -> Result<(), BenchError> {
         while self.subscribers() < subscribers {
             if self.session.ended().is_some() {
                 return Err(BenchError(format!("the company never reached {subscribers} subscribers")));

@@ -1,6 +1,6 @@
 //! Speed of simulation on this machine: one row per operation that users or programs wait for.
 //!
-//! Each [`Case`] is measured in a separate process, so that its peak memory can be measured. A case returns samples of
+//! Each [`BenchCase`] is measured in a separate process, so that its peak memory can be measured. A case returns samples of
 //! one or more [`BenchFigure`]s. The value of a figure is the median of its samples. [`CASES`] covers the simulator.
 //! Other crates can add cases, for example for the console.
 //!
@@ -81,12 +81,12 @@ use novamind_tools::Rejection;
 
 pub use cases::{CASES, save_large_company};
 pub use machine::calibration_seconds;
-pub use queries::company_for_queries;
+pub use queries::create_company_for_queries;
 
 /// Unit of a benchmark figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Unit {
+pub enum BenchUnit {
     /// A time in milliseconds.
     Milliseconds,
     /// A time in seconds.
@@ -99,25 +99,25 @@ pub enum Unit {
     Percent,
 }
 
-impl Unit {
+impl BenchUnit {
     /// Returns the symbol of the unit.
     pub fn symbol(self) -> &'static str {
         match self {
-            Unit::Milliseconds => "ms",
-            Unit::Seconds => "s",
-            Unit::NanosecondsPerSubscriberDay => "ns",
-            Unit::Megabytes => "MB",
-            Unit::Percent => "%",
+            BenchUnit::Milliseconds => "ms",
+            BenchUnit::Seconds => "s",
+            BenchUnit::NanosecondsPerSubscriberDay => "ns",
+            BenchUnit::Megabytes => "MB",
+            BenchUnit::Percent => "%",
         }
     }
 
     /// Returns the length of the unit in seconds, or `None` if the unit is not a time.
     pub fn seconds_per_unit(self) -> Option<f64> {
         match self {
-            Unit::Milliseconds => Some(1e-3),
-            Unit::Seconds => Some(1.0),
-            Unit::NanosecondsPerSubscriberDay => Some(1e-9),
-            Unit::Megabytes | Unit::Percent => None,
+            BenchUnit::Milliseconds => Some(1e-3),
+            BenchUnit::Seconds => Some(1.0),
+            BenchUnit::NanosecondsPerSubscriberDay => Some(1e-9),
+            BenchUnit::Megabytes | BenchUnit::Percent => None,
         }
     }
 }
@@ -128,7 +128,7 @@ pub struct BenchFigure {
     /// Name of the figure in the speed table.
     pub name: &'static str,
     /// Unit of the measured values.
-    pub unit: Unit,
+    pub unit: BenchUnit,
     /// Maximum allowed value; `None` without a target.
     pub target: Option<f64>,
     /// Maximum desired value; `None` without a stretch target.
@@ -138,7 +138,7 @@ pub struct BenchFigure {
 /// A measured value compared with its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum TargetVerdict {
     /// The value is within the stretch target.
     WithinStretch,
     /// The value is within the target.
@@ -151,14 +151,14 @@ pub enum Verdict {
     NotMeasured,
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for TargetVerdict {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(match self {
-            Verdict::WithinStretch => "within stretch",
-            Verdict::WithinTarget => "within target",
-            Verdict::Over => "over",
-            Verdict::NoTarget => "",
-            Verdict::NotMeasured => "not measured",
+            TargetVerdict::WithinStretch => "within stretch",
+            TargetVerdict::WithinTarget => "within target",
+            TargetVerdict::Over => "over",
+            TargetVerdict::NoTarget => "",
+            TargetVerdict::NotMeasured => "not measured",
         })
     }
 }
@@ -167,7 +167,7 @@ impl BenchFigure {
     /// Creates a benchmark figure with a target.
     pub const fn with_target(
         name: &'static str,
-        unit: Unit,
+        unit: BenchUnit,
         target: f64,
         stretch: Option<f64>,
     ) -> BenchFigure {
@@ -175,18 +175,18 @@ impl BenchFigure {
     }
 
     /// Creates a benchmark figure without a target.
-    pub const fn without_target(name: &'static str, unit: Unit) -> BenchFigure {
+    pub const fn without_target(name: &'static str, unit: BenchUnit) -> BenchFigure {
         BenchFigure { name, unit, target: None, stretch: None }
     }
 
     /// Compares a measured value with the target of the figure.
-    pub fn verdict(&self, value: Option<f64>) -> Verdict {
+    pub fn verdict(&self, value: Option<f64>) -> TargetVerdict {
         match (value, self.target, self.stretch) {
-            (None, ..) => Verdict::NotMeasured,
-            (Some(value), _, Some(stretch)) if value <= stretch => Verdict::WithinStretch,
-            (Some(value), Some(target), _) if value <= target => Verdict::WithinTarget,
-            (Some(_), Some(_), _) => Verdict::Over,
-            (Some(_), None, _) => Verdict::NoTarget,
+            (None, ..) => TargetVerdict::NotMeasured,
+            (Some(value), _, Some(stretch)) if value <= stretch => TargetVerdict::WithinStretch,
+            (Some(value), Some(target), _) if value <= target => TargetVerdict::WithinTarget,
+            (Some(_), Some(_), _) => TargetVerdict::Over,
+            (Some(_), None, _) => TargetVerdict::NoTarget,
         }
     }
 }
@@ -195,7 +195,7 @@ impl BenchFigure {
 pub type Samples = Vec<Vec<f64>>;
 
 /// A benchmark case, which is measured in a separate process.
-pub struct Case {
+pub struct BenchCase {
     /// Name of the case for `--only`.
     pub name: &'static str,
     /// Figures that the case measures.
@@ -262,14 +262,14 @@ mod tests {
     #[test]
     fn verdict_follows_target_and_stretch() {
         let figure =
-            |target, stretch| BenchFigure { name: "a day", unit: Unit::Milliseconds, target, stretch };
+            |target, stretch| BenchFigure { name: "a day", unit: BenchUnit::Milliseconds, target, stretch };
         let both = figure(Some(10.0), Some(4.0));
-        assert_eq!(both.verdict(Some(4.0)), Verdict::WithinStretch);
-        assert_eq!(both.verdict(Some(10.0)), Verdict::WithinTarget);
-        assert_eq!(both.verdict(Some(10.1)), Verdict::Over);
-        assert_eq!(both.verdict(None), Verdict::NotMeasured);
-        assert_eq!(figure(Some(10.0), None).verdict(Some(1.0)), Verdict::WithinTarget);
-        assert_eq!(figure(None, None).verdict(Some(1.0)), Verdict::NoTarget);
+        assert_eq!(both.verdict(Some(4.0)), TargetVerdict::WithinStretch);
+        assert_eq!(both.verdict(Some(10.0)), TargetVerdict::WithinTarget);
+        assert_eq!(both.verdict(Some(10.1)), TargetVerdict::Over);
+        assert_eq!(both.verdict(None), TargetVerdict::NotMeasured);
+        assert_eq!(figure(Some(10.0), None).verdict(Some(1.0)), TargetVerdict::WithinTarget);
+        assert_eq!(figure(None, None).verdict(Some(1.0)), TargetVerdict::NoTarget);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::measured_company::{MeasuredCompany, RunStorage};
-use super::{BenchContext, BenchError, BenchFigure, Samples, Unit};
+use super::{BenchContext, BenchError, BenchFigure, BenchUnit, Samples};
 use novamind_base::statistics::median;
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_record::trajectory::record::Via;
@@ -23,23 +23,23 @@ const USAGE_30_DAYS_SQL: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS un
 
 /// Figures of the slowest library query, a count over millions of rows, and ten common queries.
 pub const FIGURES: &[BenchFigure] = &[
-    BenchFigure::with_target("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
+    BenchFigure::with_target("slowest query of the library at 190,000", BenchUnit::Milliseconds, 300.0, None),
     BenchFigure::with_target(
         "usage of 30 days at 190,000, counted and summed",
-        Unit::Milliseconds,
+        BenchUnit::Milliseconds,
         1_000.0,
         None,
     ),
-    BenchFigure::without_target("query cash-by-week", Unit::Milliseconds),
-    BenchFigure::without_target("query costs-by-week", Unit::Milliseconds),
-    BenchFigure::without_target("query growth-by-week", Unit::Milliseconds),
-    BenchFigure::without_target("query revenue-by-plan", Unit::Milliseconds),
-    BenchFigure::without_target("query leavers-by-group", Unit::Milliseconds),
-    BenchFigure::without_target("query retention-by-plan", Unit::Milliseconds),
-    BenchFigure::without_target("query acquisition-by-source", Unit::Milliseconds),
-    BenchFigure::without_target("query usage-by-group", Unit::Milliseconds),
-    BenchFigure::without_target("query support-wait", Unit::Milliseconds),
-    BenchFigure::without_target("query prices-paid", Unit::Milliseconds),
+    BenchFigure::without_target("query cash-by-week", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query costs-by-week", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query growth-by-week", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query revenue-by-plan", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query leavers-by-group", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query retention-by-plan", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query acquisition-by-source", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query usage-by-group", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query support-wait", BenchUnit::Milliseconds),
+    BenchFigure::without_target("query prices-paid", BenchUnit::Milliseconds),
 ];
 
 /// Returns the queried company at its peak size, after five weeks of in-app ads. At this time, every table has its
@@ -47,7 +47,7 @@ pub const FIGURES: &[BenchFigure] = &[
 ///
 /// # Errors
 /// Fails if the run cannot be played or saved.
-pub fn company_for_queries(bench: &BenchContext) -> Result<Session, BenchError> {
+pub fn create_company_for_queries(bench: &BenchContext) -> Result<Session, BenchError> {
     let mut company = MeasuredCompany::with_subscribers(SUBSCRIBER_COUNT, RunStorage::Disk, bench)?;
     company.session.call(ToolId::SetAdsStrength, &json!({"global_strength": 0.1}), Via::Script)?;
     for _ in 0..5 {

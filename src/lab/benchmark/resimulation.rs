@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::measured_company::{MeasuredCompany, RunStorage};
-use super::{BenchContext, BenchError, BenchFigure, Samples, Unit};
+use super::{BenchContext, BenchError, BenchFigure, BenchUnit, Samples};
 use novamind_insight::{
     CauseAnalysis, ConditionParseError, DecisionEdit, RecordAnalysis, WhatIf, cause_analysis_folder,
 };
@@ -22,13 +22,16 @@ const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_da
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target(
         "what if, 4 branches of 12 weeks of 20,000: next answer",
-        Unit::Seconds,
+        BenchUnit::Seconds,
         0.5,
         None,
     ),
-    BenchFigure::without_target("what if, 4 branches of 12 weeks of 20,000: first answer", Unit::Seconds),
-    BenchFigure::with_target("why of a week at 20,000: first answer", Unit::Seconds, 1.0, None),
-    BenchFigure::with_target("why of a week at 165,000: first answer", Unit::Seconds, 8.0, None),
+    BenchFigure::without_target(
+        "what if, 4 branches of 12 weeks of 20,000: first answer",
+        BenchUnit::Seconds,
+    ),
+    BenchFigure::with_target("why of a week at 20,000: first answer", BenchUnit::Seconds, 1.0, None),
+    BenchFigure::with_target("why of a week at 165,000: first answer", BenchUnit::Seconds, 8.0, None),
 ];
 
 /// Measures companies with the subscriber counts that the figures name.
@@ -49,7 +52,7 @@ pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError>
         run_what_if(&mut what_if, parting)?;
         next.push(again.elapsed().as_secs_f64());
     }
-    company.grow_to(LARGE_SUBSCRIBERS)?;
+    company.grow_to_subscribers(LARGE_SUBSCRIBERS)?;
     let large = measure_cause_analysis(&company.session, bench.repetitions)?;
     Ok(vec![next, first, small, large])
 }

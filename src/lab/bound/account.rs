@@ -34,7 +34,7 @@ pub struct BoundGroup {
 
 /// A line of the account with its computed and published figure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AccountEntry {
+pub struct AccountRow {
     /// Line of the account.
     pub line: AccountLine,
     /// Computed figure of the line, dollars.
@@ -51,7 +51,7 @@ pub struct BoundAccount {
     /// Assumptions of the account.
     pub assumptions: BoundAssumptions,
     /// Whether competitors are active under the parameters.
-    pub has_rivals: bool,
+    pub has_competitors: bool,
     /// Usage of all customers, units per day.
     pub daily_usage: f64,
     /// Quality that all customers lose to overload.
@@ -59,7 +59,7 @@ pub struct BoundAccount {
     /// Figures of each group.
     pub groups: Vec<BoundGroup>,
     /// Lines of the account, in order.
-    pub lines: Vec<AccountEntry>,
+    pub lines: Vec<AccountRow>,
 }
 
 /// A row of the sensitivity table, which varies the slack.
@@ -102,20 +102,20 @@ impl BoundAccount {
         let has_rivals = !params.competitor.competitor_events_disabled;
         let mut account = BoundAccount {
             assumptions: premises,
-            has_rivals,
+            has_competitors: has_rivals,
             daily_usage,
             overload_penalty: overload,
             groups,
             lines: Vec::new(),
         };
-        account.lines = account.entries(params);
+        account.lines = account.compute_rows(params);
         account
     }
 
-    fn entries(&self, params: &Params) -> Vec<AccountEntry> {
+    fn compute_rows(&self, params: &Params) -> Vec<AccountRow> {
         let line = |line: AccountLine| {
-            let value = self.line_dollars(line, params);
-            AccountEntry {
+            let value = self.compute_line(line, params);
+            AccountRow {
                 line,
                 computed: value,
                 published: 1e6 * line.published_millions(),
@@ -125,12 +125,12 @@ impl BoundAccount {
         AccountLine::ALL.into_iter().map(line).collect()
     }
 
-    fn line_dollars(&self, line: AccountLine, params: &Params) -> f64 {
+    fn compute_line(&self, line: AccountLine, params: &Params) -> f64 {
         let premises = &self.assumptions;
         match line {
-            AccountLine::Individuals => self.revenue_of(false),
-            AccountLine::Enterprises => self.revenue_of(true),
-            AccountLine::Revenue => self.revenue_of(false) + self.revenue_of(true),
+            AccountLine::Individuals => self.customer_revenue(false),
+            AccountLine::Enterprises => self.customer_revenue(true),
+            AccountLine::Revenue => self.customer_revenue(false) + self.customer_revenue(true),
             AccountLine::Compute => operating_costs::compute_cost(self.daily_usage, premises, params),
             AccountLine::Capacity => operating_costs::capacity_cost(premises, params),
             AccountLine::GlobalDevelopment => improvement_costs::global_development_cost(premises),
@@ -144,20 +144,20 @@ impl BoundAccount {
             AccountLine::MarketResearch => research_costs::market_research_cost(params),
             AccountLine::GroupResearch => research_costs::group_research_cost(premises, params),
             AccountLine::Costs => {
-                AccountLine::COSTS.into_iter().map(|cost| self.line_dollars(cost, params)).sum()
+                AccountLine::COSTS.into_iter().map(|cost| self.compute_line(cost, params)).sum()
             }
             AccountLine::Subtotal => {
-                params.initial.initial_cash + self.line_dollars(AccountLine::Revenue, params)
-                    - self.line_dollars(AccountLine::Costs, params)
+                params.initial.initial_cash + self.compute_line(AccountLine::Revenue, params)
+                    - self.compute_line(AccountLine::Costs, params)
             }
             AccountLine::Estimate => {
-                premises.reported_share * self.line_dollars(AccountLine::Subtotal, params)
+                premises.reported_share * self.compute_line(AccountLine::Subtotal, params)
             }
         }
     }
 
     /// Returns the revenue from enterprises or from individuals, dollars.
-    pub(super) fn revenue_of(&self, of_companies: bool) -> f64 {
+    pub(super) fn customer_revenue(&self, of_companies: bool) -> f64 {
         let bound_groups = self.groups.iter().filter(|bound_group| {
             Group::parse(bound_group.group).is_some_and(|group| group.is_enterprise() == of_companies)
         });
@@ -232,13 +232,13 @@ fn group_account(
 mod tests {
     use super::*;
 
-    fn account(slack: f64) -> BoundAccount {
+    fn account_with_slack(slack: f64) -> BoundAccount {
         BoundAccount::new(BoundAssumptions::from_paper(slack), &Params::bundled())
     }
 
     #[test]
-    fn product_lines_equal_published_figures() {
-        let bound_account = account(3.0);
+    fn account_lines_of_the_product_equal_published_figures() {
+        let bound_account = account_with_slack(3.0);
         for line in [
             AccountLine::Capacity,
             AccountLine::GlobalDevelopment,
@@ -251,8 +251,8 @@ mod tests {
     }
 
     #[test]
-    fn sums_are_within_3_percent_of_published_figures() {
-        let bound_account = account(3.0);
+    fn account_sums_are_within_3_percent_of_published_figures() {
+        let bound_account = account_with_slack(3.0);
         for line in [AccountLine::Revenue, AccountLine::Costs, AccountLine::Subtotal, AccountLine::Estimate] {
             let ratio = bound_account.computed(line) / 1e6 / line.published_millions();
             assert!((ratio - 1.0).abs() < 0.03, "{}: {ratio}", line.name());
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn slack_of_three_suffices_and_two_does_not() {
+    fn slack_of_three_retains_customers_and_two_does_not() {
         let rows = sensitivity(&[1.0, 2.0, 3.0, 4.0], &Params::bundled());
         assert!(rows.iter().all(|row| row.renewals == 26 * 16));
         for row in &rows[..2] {
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn account_lines_add_up() {
-        let bound_account = account(2.0);
+        let bound_account = account_with_slack(2.0);
         let costs: f64 = AccountLine::COSTS.iter().map(|line| bound_account.computed(*line)).sum();
         assert!((costs - bound_account.computed(AccountLine::Costs)).abs() < 1e-3);
         let left = 1e6 + bound_account.computed(AccountLine::Revenue) - costs;

@@ -39,13 +39,13 @@ fn mean_calendar_factor(last: u32, params: &Params) -> f64 {
 }
 
 /// Returns the number of customers (individuals and enterprises) to acquire.
-pub fn account_count(params: &Params) -> f64 {
+pub fn acquired_customer_count(params: &Params) -> f64 {
     Group::all().map(|group| params.group(group).base_market_cap).sum()
 }
 
 /// Returns the total cost of leads, dollars.
 pub fn lead_costs(params: &Params) -> f64 {
-    account_count(params) * params.leads.lead_acquisition_cost
+    acquired_customer_count(params) * params.leads.lead_acquisition_cost
 }
 
 #[cfg(test)]
@@ -62,7 +62,7 @@ mod tests {
             272_000.0 / 0.3203613 / 0.5 / mean_calendar_factor(30, &params) * libm::atanh(taken) / taken;
         let value = advertising_cost(s1, &premises, &params);
         assert!((value / expected - 1.0).abs() < 1e-6, "{value} {expected}");
-        assert_eq!(account_count(&params), 1_208_492.0);
+        assert_eq!(acquired_customer_count(&params), 1_208_492.0);
         assert_eq!(lead_costs(&params), 604_246.0);
     }
 }

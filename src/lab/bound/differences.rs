@@ -23,7 +23,7 @@ impl BoundAccount {
             AccountLine::Revenue => "the sum of the two lines above".to_owned(),
             AccountLine::Compute => {
                 let units = 1e6 * line.published_millions()
-                    / (params.model(self.assumptions.model_tier).unit_cost
+                    / (params.model_tier(self.assumptions.model_tier).unit_cost
                         * f64::from(self.assumptions.days));
                 format!(
                     "{} million units a day here, {} published",
@@ -48,7 +48,7 @@ impl BoundAccount {
                 grouped_number(
                     1e6 * line.published_millions()
                         / params.leads.lead_acquisition_cost
-                        / acquisition_costs::account_count(params),
+                        / acquisition_costs::acquired_customer_count(params),
                     2
                 )
             ),
@@ -88,7 +88,7 @@ impl BoundAccount {
         let what = if of_companies { "the maximum seats of every account" } else { "the markets of day 0" };
         format!(
             "{} of full billing is paid here; full billing of {what} at mean budgets is {} million, of which the published figure is {}",
-            percent(self.revenue_of(of_companies) / full, 1),
+            percent(self.customer_revenue(of_companies) / full, 1),
             grouped_number(full / 1e6, 0),
             percent(1e6 * line.published_millions() / full, 1)
         )

@@ -10,7 +10,7 @@ pub fn global_development_cost(premises: &BoundAssumptions) -> f64 {
 
 /// Returns the cost of the R&D projects, dollars.
 pub fn research_cost(premises: &BoundAssumptions, params: &Params) -> f64 {
-    (1..=premises.research_tiers).map(|tier| f64::from(params.research(tier).cost)).sum()
+    (1..=premises.research_tiers).map(|tier| f64::from(params.research_tier(tier).cost)).sum()
 }
 
 #[cfg(test)]

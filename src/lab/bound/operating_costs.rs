@@ -5,12 +5,12 @@ use novamind_world::params::Params;
 
 /// Returns the cost of compute over the account's days, dollars.
 pub fn compute_cost(daily_usage: f64, premises: &BoundAssumptions, params: &Params) -> f64 {
-    params.model(premises.model_tier).unit_cost * daily_usage * f64::from(premises.days)
+    params.model_tier(premises.model_tier).unit_cost * daily_usage * f64::from(premises.days)
 }
 
 /// Returns the cost of capacity over the account's days, dollars.
 pub fn capacity_cost(premises: &BoundAssumptions, params: &Params) -> f64 {
-    f64::from(params.capacity(premises.capacity_tier).cost_per_day) * f64::from(premises.days)
+    f64::from(params.capacity_tier(premises.capacity_tier).cost_per_day) * f64::from(premises.days)
 }
 
 /// Returns the cost of operations over the account's days, dollars. `customers` includes seats.

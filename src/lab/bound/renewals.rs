@@ -19,7 +19,7 @@ pub fn renewal_shares(
     params: &Params,
 ) -> Vec<f64> {
     let gain = targeted_development_gain(spending, &params.development);
-    let model = params.model(premises.model_tier).quality_multiplier;
+    let model = params.model_tier(premises.model_tier).quality_multiplier;
     let (mean, spread) = required_quality(group, params);
     let share = |day: &u32| {
         let at = *day as usize;

@@ -114,7 +114,7 @@ fn group_table(account: &BoundAccount) -> LabTable {
 fn assumption_table(account: &BoundAccount) -> LabTable {
     let columns = vec![Column::text("assumption", "assumption"), Column::text("meaning", "meaning")];
     let mut table = LabTable::new("assumptions", "Assumptions", columns);
-    let rows = account.assumptions.descriptions(account.has_rivals);
+    let rows = account.assumptions.descriptions(account.has_competitors);
     table.rows =
         rows.into_iter().map(|(name, text)| vec![CellValue::text(name), CellValue::text(text)]).collect();
     table

@@ -25,7 +25,7 @@ pub fn added_expectation(group: Group, day: u32, climate: &SharedQualityPath, pa
 
 /// Returns the quality that customers lose to overload.
 pub fn overload_penalty(daily_usage: f64, capacity_tier: u8, params: &Params) -> f64 {
-    let capacity = f64::from(params.capacity(capacity_tier).capacity_units);
+    let capacity = f64::from(params.capacity_tier(capacity_tier).capacity_units);
     let strain = (daily_usage / capacity - params.operations.overload_reference_utilization).max(0.0);
     params.quality.service_overload_weight * strain
 }

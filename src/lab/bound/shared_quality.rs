@@ -26,11 +26,11 @@ pub struct SharedQualityPath {
 /// Returns the quality gain from the R&D projects that finish on a day, with the mean duration and mean gain of each tier.
 fn research_gain_on(day: u32, premises: &BoundAssumptions, params: &Params) -> f64 {
     let done = |tier: &u8| {
-        let research_tier = params.research(*tier);
+        let research_tier = params.research_tier(*tier);
         let least = f64::from(params.development.rd_min_duration_days);
         premises.research_day + research_tier.mean_days.max(least) as u32 == day
     };
-    (1..=premises.research_tiers).filter(done).map(|tier| params.research(tier).mean_quality_boost).sum()
+    (1..=premises.research_tiers).filter(done).map(|tier| params.research_tier(tier).mean_quality_boost).sum()
 }
 
 /// Simulates shared quality and competitor effects under the plan, averaged over seeds.

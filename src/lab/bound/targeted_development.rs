@@ -15,7 +15,7 @@ pub fn widest_gap(
     premises: &BoundAssumptions,
     params: &Params,
 ) -> f64 {
-    let model = params.model(premises.model_tier).quality_multiplier;
+    let model = params.model_tier(premises.model_tier).quality_multiplier;
     let (mean, _) = required_quality(group, params);
     let gap = |day: &u32| {
         let shared = params.quality.base_product_quality + climate.shared[*day as usize];

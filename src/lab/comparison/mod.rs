@@ -11,7 +11,7 @@ pub use table::{comparison_to_rows, comparison_to_text};
 
 use novamind_report::Logbook;
 use novamind_report::ranking::compare_results;
-use novamind_report::ranking_eligibility::{RankingCriteria, describe_excluded};
+use novamind_report::ranking_eligibility::{RankingCriteria, describe_unranked_runs};
 
 /// Compares runs.
 pub fn compare_runs(runs: &[Logbook]) -> Comparison {
@@ -68,7 +68,7 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
     note(any(&|logbook, first| logbook.parameters_digest != first.parameters_digest), "parameters");
     note(any(&|logbook, first| logbook.mode != first.mode), "mode");
     let obstacles: Vec<_> = runs.iter().map(|run| RankingCriteria::from_logbook(run).obstacles()).collect();
-    caveats.extend(describe_excluded(&obstacles).map(|(count, why)| match count {
+    caveats.extend(describe_unranked_runs(&obstacles).map(|(count, why)| match count {
         1 => format!("One run is not comparable with published runs: {why}."),
         count => format!("{count} runs are not comparable with published runs: {why}."),
     }));

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_known_figures() {
+    fn run_columns_are_known_figures() {
         for (figure, of, _) in super::COLUMNS {
             assert!(super::super::find_figure(figure, of).is_some(), "{figure}");
         }

@@ -106,7 +106,7 @@ fn decision_lines(comparison: &Comparison, line: usize) -> String {
         text += &format!("  day {}\n", decided.day);
         for (run, texts) in comparison.runs.iter().zip(&decided.by_run).filter(|(_, texts)| !texts.is_empty())
         {
-            let lines = wrap_decisions(&count_equal(texts), line.saturating_sub(width + 6));
+            let lines = wrap_decisions(&merge_equal_decisions(texts), line.saturating_sub(width + 6));
             for (at, line) in lines.iter().enumerate() {
                 let name = if at == 0 { run.as_str() } else { "" };
                 text += &format!("    {name:<width$}  {line}\n");
@@ -117,7 +117,7 @@ fn decision_lines(comparison: &Comparison, line: usize) -> String {
 }
 
 /// Merges equal decisions of a week and appends their count.
-fn count_equal(decisions: &[String]) -> Vec<String> {
+fn merge_equal_decisions(decisions: &[String]) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     for decision in decisions {
         match counted.iter_mut().find(|(known, _)| known == decision) {
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn equal_decisions_are_counted_and_lines_wrapped() {
         let texts = ["found nothing", "price A: 1 → 2", "found nothing"].map(str::to_owned);
-        let counted = count_equal(&texts);
+        let counted = merge_equal_decisions(&texts);
         assert_eq!(counted, ["found nothing (2 times)", "price A: 1 → 2"]);
         assert_eq!(wrap_decisions(&counted, 100), ["found nothing (2 times); price A: 1 → 2"]);
         assert_eq!(wrap_decisions(&counted, 30), ["found nothing (2 times);", "price A: 1 → 2"]);

@@ -71,7 +71,7 @@ const CLAIMS: &[Claim] = &[
     Claim {
         statement: "competitor events have the same days and sizes before copying",
         unit_names: ("move", "moves"),
-        draws: |luck| &luck.rivals,
+        draws: |luck| &luck.competitor_events,
         compared_keys: ComparedKeys::UntilFirstEnd,
         same_decisions: false,
         format_key: day_key_name,
@@ -199,9 +199,9 @@ pub struct ConsistencyCheck {
     /// Results of both policies on the first seed.
     pub ends: [PlayEnd; 2],
     /// Whether both policies led to the same final states, in which case nothing was tested.
-    pub plays_alike: bool,
+    pub ends_in_same_state: bool,
     /// Whether one policy switches demand surges off but was played with demand surges.
-    pub equalises_surges: bool,
+    pub equalizes_surges: bool,
     /// Results of all claims.
     pub claims: Vec<ClaimResult>,
 }
@@ -244,13 +244,13 @@ pub struct ConsistencySpec {
 impl ConsistencySpec {
     /// Returns `Some(true)` if only one policy switches demand surges off. Both policies are then played with surges,
     /// because their worlds would otherwise differ.
-    fn surges(policies: &[Policy; 2]) -> Option<bool> {
+    fn forced_surges(policies: &[Policy; 2]) -> Option<bool> {
         let [one, other] = policies;
         (one.start.surges != other.start.surges).then_some(true)
     }
 
     /// Returns the reason why two policies cannot be compared, if any.
-    pub fn precondition_problem(&self, policies: &[Policy; 2]) -> Option<&'static str> {
+    pub fn incomparability_reason(&self, policies: &[Policy; 2]) -> Option<&'static str> {
         let [one, other] = policies.each_ref().map(|policy| &policy.start);
         match self.scenario {
             _ if policies[0] == policies[1] => {
@@ -286,8 +286,8 @@ pub fn check_consistency(
     let ends = plays.first().map(|first| [first.one.end, first.other.end]).unwrap_or_default();
     Ok(ConsistencyCheck {
         policies: policies.clone().map(|policy| policy.name),
-        plays_alike: plays.iter().all(|play| play.one.state == play.other.state),
-        equalises_surges: ConsistencySpec::surges(policies).is_some(),
+        ends_in_same_state: plays.iter().all(|play| play.one.state == play.other.state),
+        equalizes_surges: ConsistencySpec::forced_surges(policies).is_some(),
         ends,
         claims: CLAIMS.iter().map(|claim| claim.evaluate(&plays)).collect(),
     })
@@ -318,7 +318,7 @@ impl SeedPlays {
             let run = RunSpec {
                 scenario: spec.scenario.clone(),
                 stop_after_day: spec.until,
-                surges: ConsistencySpec::surges(policies),
+                surges: ConsistencySpec::forced_surges(policies),
                 ..RunSpec::for_seed(seed)
             };
             let luck = play_recording_draws(policy, &run, configuration);
@@ -416,18 +416,18 @@ impl Claim {
 mod tests {
     use super::*;
 
-    fn spec(until: u32) -> ConsistencySpec {
+    fn test_spec(until: u32) -> ConsistencySpec {
         ConsistencySpec { seeds: vec![42], scenario: None, until: Some(until) }
     }
 
-    fn check(spec: &ConsistencySpec) -> ConsistencyCheck {
+    fn run_check(spec: &ConsistencySpec) -> ConsistencyCheck {
         let policies = contrasting_policies().expect("the bundled policies");
         check_consistency(&policies, spec, &Configuration::bundled(), &|| ()).expect("it plays")
     }
 
     #[test]
     fn every_claim_is_tested_and_holds() {
-        let found = check(&spec(280));
+        let found = run_check(&test_spec(280));
         for claim in &found.claims {
             assert_eq!(claim.outcome, ClaimOutcome::Holds, "{claim:?}");
         }
@@ -440,8 +440,8 @@ mod tests {
 
     #[test]
     fn replayed_series_are_not_random() {
-        let replayed = ConsistencySpec { scenario: Some("reference-seed42".to_owned()), ..spec(119) };
-        let found = check(&replayed);
+        let replayed = ConsistencySpec { scenario: Some("reference-seed42".to_owned()), ..test_spec(119) };
+        let found = run_check(&replayed);
         let verdict = |part: &str| {
             found.claims.iter().find(|claim| claim.claim.contains(part)).map(|claim| claim.outcome)
         };

@@ -29,7 +29,7 @@ pub struct PlayDraws {
     /// Values of the economy index by day.
     pub economy: DrawMap,
     /// Competitor events by day. The values are the size before copying and the share of the bank that can be copied.
-    pub rivals: DrawMap,
+    pub competitor_events: DrawMap,
     /// Demand surges by first day. The values are the last day and the factor.
     pub surges: DrawMap,
     /// Channel yields by day, group and channel, on days on which the yields change.
@@ -80,7 +80,9 @@ pub fn play_recording_draws(
         refusal: Box::new(refusal),
     };
     while !is_over(&session, spec) {
-        decide_with_answers(policy, spec.seed, &mut session, &mut |answer| luck.record_answer(answer))?;
+        decide_with_answers(policy, spec.seed, &mut session, &mut |answer| {
+            luck.record_market_research(answer)
+        })?;
         luck.record_next_draws(&mut session).map_err(|refusal| refused(&session, "the x-ray", refusal))?;
         advance_week(policy, spec.seed, until, &mut session, &mut |report| luck.record_day(report))?;
     }
@@ -90,7 +92,7 @@ pub fn play_recording_draws(
 
 impl PlayDraws {
     /// Records the result of a market research attempt.
-    fn record_answer(&mut self, answer: &Answer) {
+    fn record_market_research(&mut self, answer: &Answer) {
         let Answer::ResearchMarket(attempt) = answer else { return };
         let found = match attempt {
             DiscoveryAttempt::Found { discovered_group_id } => discovered_group_id.index() as u64 + 1,
@@ -151,7 +153,7 @@ impl PlayDraws {
     fn record_final_state(&mut self, session: &Session) -> Result<(), Rejection> {
         let world = session.debug_hidden_state()?.world();
         for event in &world.market.competitors {
-            self.rivals.insert([event.day, 0], to_bits([event.sampled, event.u]));
+            self.competitor_events.insert([event.day, 0], to_bits([event.sampled, event.u]));
         }
         for surge in &world.market.surges {
             self.surges.insert([surge.day, 0], [u64::from(surge.end_day), surge.multiplier.to_bits(), 0, 0]);

@@ -16,7 +16,7 @@ impl ConsistencyCheck {
             let first = claim_result.first_difference.as_ref()?;
             Some(format!("Fails: {}. First difference: {first}.", claim_result.claim))
         }));
-        if self.equalises_surges {
+        if self.equalizes_surges {
             exhibit.notes.push(
                 "One of the policies switches demand surges off. Both are played with surges, so that both play the same world."
                     .to_owned(),

@@ -78,7 +78,7 @@ fn every_random_part_is_in_the_table() {
 }
 
 #[test]
-fn names_are_unique_and_parameters_exist() {
+fn draw_names_are_unique_and_parameters_exist() {
     let tables: toml::Table = bundled_sources()
         .iter()
         .flat_map(|source| source.text.parse::<toml::Table>().expect("parameters"))

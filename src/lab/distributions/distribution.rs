@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn parameters_show_the_limits() {
+    fn described_parameters_include_the_bounds() {
         let distribution = DrawDistribution::Normal { mean: 50.0, std: 32.4, min: 15.0, max: f64::INFINITY };
         assert_eq!(
             (distribution.name(), distribution.describe_parameters().as_str()),

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_integers_get_one_bin_each() {
+    fn histogram_has_one_bin_for_each_of_few_integers() {
         let histogram = Histogram::from_draws(&[10.0, 12.0, 12.0, 11.0], 20);
         assert_eq!((histogram.from, histogram.width, histogram.counts.clone()), (9.5, 1.0, vec![1, 1, 2]));
         assert_eq!(histogram.bin_center(2), 12.0);

@@ -12,7 +12,7 @@ use novamind_world::random::Part;
 const SERVICE_FILE: &str = "product/service.rs";
 const RESEARCH_FILE: &str = "product/research.rs";
 
-fn chance_of_outage(params: &Params) -> f64 {
+fn example_outage_probability(params: &Params) -> f64 {
     outage_probability(0.0, 0.0, &params.operations)
 }
 
@@ -25,10 +25,10 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         family: DrawFamily::Single,
         parameters: &["operations.base_outage_prob", "operations.ops_outage_min_prob"],
         source_files: &[(SERVICE_FILE, 1)],
-        distribution: |params, _| DrawDistribution::Bernoulli(chance_of_outage(params)),
+        distribution: |params, _| DrawDistribution::Bernoulli(example_outage_probability(params)),
         draw: |luck, _, n| {
             let mut stream = luck.streams.open(Part::Service, [n]);
-            f64::from(u8::from(stream.bernoulli(chance_of_outage(&luck.params))))
+            f64::from(u8::from(stream.bernoulli(example_outage_probability(&luck.params))))
         },
     },
     WorldDraw {
@@ -118,7 +118,7 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(RESEARCH_FILE, 1)],
         distribution: |params, tier| {
-            let tier_params = params.research(tier as u8);
+            let tier_params = params.research_tier(tier as u8);
             DrawDistribution::RoundedNormal {
                 mean: tier_params.mean_days,
                 std: tier_params.std_days,
@@ -128,7 +128,7 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         },
         draw: |luck, tier, n| {
             let z = luck.streams.open(Part::Research, [tier as u64, n]).standard_normal();
-            let tier_params = luck.params.research(tier as u8);
+            let tier_params = luck.params.research_tier(tier as u8);
             f64::from(project_duration(tier_params, z, &luck.params.development))
         },
     },
@@ -144,7 +144,7 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(RESEARCH_FILE, 1)],
         distribution: |params, tier| {
-            let tier_params = params.research(tier as u8);
+            let tier_params = params.research_tier(tier as u8);
             DrawDistribution::Normal {
                 mean: tier_params.mean_quality_boost,
                 std: tier_params.std_quality_boost,
@@ -156,7 +156,7 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
             let mut stream = luck.streams.open(Part::Research, [tier as u64, n]);
             // The first draw of the stream is the duration.
             let (_, z) = (stream.standard_normal(), stream.standard_normal());
-            project_boost(luck.params.research(tier as u8), z, &luck.params.development)
+            project_boost(luck.params.research_tier(tier as u8), z, &luck.params.development)
         },
     },
     WorldDraw {

@@ -5,10 +5,10 @@ use super::world_draw::{DrawFamily, WorldDraw, group_at};
 use novamind_world::customers::columns::CUSTOMERS_PER_BLOCK;
 use novamind_world::enterprise::messages::reply_delay;
 use novamind_world::params::Params;
-use novamind_world::random::{Part, word_below};
+use novamind_world::random::{Part, bernoulli_from_word};
 use novamind_world::reputation::cancel_damage;
 use novamind_world::retention::issues::issue_probability;
-use novamind_world::retention::renewal::{involuntary_rate, payment_rolls};
+use novamind_world::retention::renewal::{involuntary_rate, payment_failure_words};
 
 const RENEWAL_FILE: &str = "retention/renewal.rs";
 const SUPPORT_FILE: &str = "retention/support_pools.rs";
@@ -19,7 +19,7 @@ const EXAMPLE_OPEN_ISSUES: usize = 8;
 /// Satisfaction of the example customer who opens an issue.
 const EXAMPLE_SATISFACTION: f64 = 0.5;
 
-fn issue_chance(params: &Params) -> f64 {
+fn example_issue_probability(params: &Params) -> f64 {
     issue_probability(EXAMPLE_SATISFACTION, false, 1.0, &params.issues)
 }
 
@@ -67,11 +67,11 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
             "issues.issue_probability_max",
         ],
         source_files: &[("retention/issues.rs", 2)],
-        distribution: |params, _| DrawDistribution::Bernoulli(issue_chance(params)),
+        distribution: |params, _| DrawDistribution::Bernoulli(example_issue_probability(params)),
         draw: |luck, member, n| {
             let mut word = [0];
             luck.streams.open(Part::IssueOpening, [n, member as u64, 0]).fill(&mut word);
-            f64::from(u8::from(word_below(word[0], issue_chance(&luck.params))))
+            f64::from(u8::from(bernoulli_from_word(word[0], example_issue_probability(&luck.params))))
         },
     },
     WorldDraw {
@@ -116,9 +116,9 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
             // Draws for the customer at the same position of the block, on consecutive days.
             let group = group_at(member);
             let (number, day) = ((n % 97) as u32, (n / 97) as u32);
-            let word =
-                payment_rolls(group, number, day, &luck.streams)[n as usize % CUSTOMERS_PER_BLOCK as usize];
-            f64::from(u8::from(word_below(word, luck.params.group(group).involuntary_churn_mean)))
+            let word = payment_failure_words(group, number, day, &luck.streams)
+                [n as usize % CUSTOMERS_PER_BLOCK as usize];
+            f64::from(u8::from(bernoulli_from_word(word, luck.params.group(group).involuntary_churn_mean)))
         },
     },
     WorldDraw {

@@ -15,7 +15,7 @@ const PRESS_FILE: &str = "market/social/press.rs";
 const REACH_FILE: &str = "market/social/reach.rs";
 
 /// Satisfaction of the example author.
-const EXAMPLE_MOOD: f64 = 0.1;
+const EXAMPLE_AUTHOR_SATISFACTION: f64 = 0.1;
 /// Number of subscribers in the example.
 const EXAMPLE_SUBSCRIBERS: usize = 100;
 
@@ -62,7 +62,7 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
         parameters: &["social.sentiment"],
         source_files: &[(CROWD_FILE, 1)],
         distribution: |params, _| {
-            let chances = sentiment_chances(EXAMPLE_MOOD, &params.social);
+            let chances = sentiment_chances(EXAMPLE_AUTHOR_SATISFACTION, &params.social);
             let negative = 1.0 - chances.positive - chances.neutral;
             DrawDistribution::Discrete(vec![
                 (1.0, chances.positive),
@@ -70,8 +70,11 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
                 (-1.0, negative),
             ])
         },
-        draw: |luck, _, n| match sentiment(EXAMPLE_MOOD, post_stream(luck, n).uniform(), &luck.params.social)
-        {
+        draw: |luck, _, n| match sentiment(
+            EXAMPLE_AUTHOR_SATISFACTION,
+            post_stream(luck, n).uniform(),
+            &luck.params.social,
+        ) {
             Sentiment::Positive => 1.0,
             Sentiment::Neutral => 0.0,
             Sentiment::Negative => -1.0,

@@ -198,7 +198,7 @@ impl PreparedExperiment<'_> {
     pub fn run(self, with: &ExperimentContext<'_>) -> Result<ExperimentResults, ExperimentError> {
         let (seeds, arms) = (self.experiment.seeds.clone(), self.experiment.arms.len());
         let all = self.run_numbers();
-        let mut results = self.run_some(&all, with)?.into_iter();
+        let mut results = self.run_numbered(&all, with)?.into_iter();
         let by_arm = (0..arms).map(|_| results.by_ref().take(seeds.len()).collect()).collect();
         Ok(ExperimentResults { seeds, by_arm })
     }
@@ -206,8 +206,8 @@ impl PreparedExperiment<'_> {
     /// Plays the runs among `numbers` that have no result. Returns the results of all `numbers` in the given order.
     ///
     /// # Errors
-    /// Same errors as [`PreparedExperiment::run`].
-    pub fn run_some(
+    /// Same errors as [`PreparedExperiment::finished_run`].
+    pub fn run_numbered(
         mut self,
         numbers: &[usize],
         with: &ExperimentContext<'_>,
@@ -257,7 +257,7 @@ impl PreparedExperiment<'_> {
         let mut day = |report: &DayReport<'_>| watch.add_day(report);
         let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
             .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) })?;
-        let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
+        let outcome = runner::policy_outcome(&arm.policy, seed, &session, Duration::ZERO);
         Ok(runner::is_over(&session, &spec).then(|| watch.into_result(outcome, session.weeks())))
     }
 }

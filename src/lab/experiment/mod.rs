@@ -1,7 +1,7 @@
 //! Experiments: several arms, each with a policy, are played on the same seeds in parallel. Each result is stored as
 //! soon as its run ends.
 //!
-//! [`Experiment::prepare`] loads results of earlier commands. [`PreparedExperiment::run`] plays the remaining runs. A
+//! [`Experiment::prepare`] loads results of earlier commands. [`PreparedExperiment::finished_run`] plays the remaining runs. A
 //! stopped command resumes when it is repeated. The resumed command prints the same output as an uninterrupted command.
 
 mod engine;
@@ -87,14 +87,14 @@ impl Experiment {
     ///
     /// # Errors
     /// Fails if the scenario is unknown or a parameter is invalid.
-    pub fn equal_arms(&self, configuration: &Configuration) -> Result<Vec<Vec<usize>>, RunError> {
+    pub fn find_equal_arms(&self, configuration: &Configuration) -> Result<Vec<Vec<usize>>, RunError> {
         let key = |arm: &Arm| Ok(ArmKey::new(arm, &self.recorded, configuration)?.run_key(0));
-        Ok(groups_of_equal(self.arms.iter().map(key).collect::<Result<Vec<String>, RunError>>()?))
+        Ok(group_equal_items(self.arms.iter().map(key).collect::<Result<Vec<String>, RunError>>()?))
     }
 }
 
 /// Returns groups of two or more indices whose items are equal.
-pub fn groups_of_equal<T: Ord>(items: Vec<T>) -> Vec<Vec<usize>> {
+pub fn group_equal_items<T: Ord>(items: Vec<T>) -> Vec<Vec<usize>> {
     let mut places: BTreeMap<T, Vec<usize>> = BTreeMap::new();
     items.into_iter().enumerate().for_each(|(at, item)| places.entry(item).or_default().push(at));
     let mut groups: Vec<Vec<usize>> = places.into_values().filter(|numbers| numbers.len() > 1).collect();

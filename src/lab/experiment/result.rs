@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::RecordedFigures;
-use crate::metrics::Collector;
+use crate::metrics::MetricsCollector;
 use crate::runner::{PolicyRunOutcome, RunEnd};
 use novamind_record::figures::WeekFigures;
 use novamind_session::DayReport;
@@ -121,7 +121,7 @@ impl RunResult {
 /// Observes the days of a run and collects its result.
 pub(super) struct RunRecorder {
     daily: Option<Vec<DayPoint>>,
-    collector: Collector,
+    collector: MetricsCollector,
     peak: (u32, u32),
     start_cash: f64,
     /// Cash at the end of the previous day, dollars.
@@ -133,8 +133,8 @@ impl RunRecorder {
     /// Creates a recorder for a run with the given starting cash.
     pub(super) fn new(wanted: &RecordedFigures, start_cash: f64) -> RunRecorder {
         let collector = match wanted.figures_on.is_empty() {
-            true => Collector::disabled(),
-            false => Collector::new(Some(wanted.figures_on.clone())),
+            true => MetricsCollector::disabled(),
+            false => MetricsCollector::new(Some(wanted.figures_on.clone())),
         };
         let daily = wanted.daily.then(Vec::new);
         RunRecorder { daily, collector, peak: (0, 0), start_cash, cash: start_cash, mrr: 0.0 }

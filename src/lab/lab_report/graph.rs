@@ -3,7 +3,7 @@
 use super::LabReport;
 use super::text::wrap_text;
 use novamind_report::page::{Chart, Curve, Plot, StackSeries};
-use novamind_report::plot::{AxisScale, PlotArea, PlotSeries, bars, plot_in};
+use novamind_report::plot::{AxisScale, PlotArea, PlotSeries, horizontal_bars, plot_in};
 use novamind_report::svg::{AxisScales, ScaledChart, standalone_svg};
 
 /// A graph with one or more named series.
@@ -72,7 +72,7 @@ impl Graph {
         let mut text = wrap_text(&self.title, width).join("\n") + "\n";
         match (self.form, self.series.first()) {
             (GraphForm::Bars, Some(series)) => {
-                text += &bars(&merge_bars(&series.points), width);
+                text += &horizontal_bars(&merge_bars(&series.points), width);
                 text += &format!("{} by {}\n", self.y_axis.label, self.x_axis.label);
             }
             _ => {

@@ -37,10 +37,10 @@ impl LabTable {
     /// Formats the table as text. Lines have at most `width` columns.
     fn to_text(&self, width: usize) -> String {
         let full = TextLayout::new(self, false);
-        let sheet = if full.fits(width) { full } else { TextLayout::new(self, true).narrow(width) };
+        let sheet = if full.fits(width) { full } else { TextLayout::new(self, true).narrow_columns(width) };
         // If the row names do not fit into every panel, numbers identify the rows.
         let is_nameless = sheet.column_panels(width).len() > 1
-            && sheet.row_name_columns(width) < sheet.identifying_columns();
+            && sheet.row_name_columns(width) < sheet.count_identifying_columns();
         let numbers = Column::text("number", "#");
         let columns: Vec<Column> = std::iter::once(numbers).chain(self.columns.iter().cloned()).collect();
         let sheet = if is_nameless { sheet.with_row_numbers(&columns) } else { sheet };
@@ -89,7 +89,7 @@ impl<'a> TextLayout<'a> {
 
     /// Narrows the widest text columns until the table fits. If the table cannot fit, narrows only the columns that
     /// name the rows, so that each other column fits next to these columns.
-    fn narrow(mut self, width: usize) -> TextLayout<'a> {
+    fn narrow_columns(mut self, width: usize) -> TextLayout<'a> {
         let least = |at: usize| match self.columns[at].kind {
             ColumnKind::Text => self.widths[at].min(MIN_TEXT_WIDTH),
             ColumnKind::Number(_) | ColumnKind::Interval(_) | ColumnKind::Sparkline => self.widths[at],
@@ -98,9 +98,10 @@ impl<'a> TextLayout<'a> {
         let has_room = (0..self.columns.len()).map(least).sum::<usize>() + gaps <= width;
         let (among, reserved) = match has_room {
             true => (self.columns.len(), 0),
-            false => {
-                (self.identifying_columns(), self.widest_column_from(self.identifying_columns()) + COLUMN_GAP)
-            }
+            false => (
+                self.count_identifying_columns(),
+                self.widest_column_from(self.count_identifying_columns()) + COLUMN_GAP,
+            ),
         };
         while self.width_of_first(among) - COLUMN_GAP.min(self.width_of_first(among)) + reserved > width {
             let words = (0..among).filter(|at| self.columns[*at].kind == ColumnKind::Text);
@@ -128,7 +129,7 @@ impl<'a> TextLayout<'a> {
     }
 
     /// Returns how many leading text columns are needed to identify each row. Returns 1 if all of them are not sufficient.
-    fn identifying_columns(&self) -> usize {
+    fn count_identifying_columns(&self) -> usize {
         let is_words =
             |at: &usize| self.columns.get(*at).is_some_and(|column| column.kind == ColumnKind::Text);
         let words = (0..self.columns.len()).take_while(is_words).count();
@@ -143,7 +144,7 @@ impl<'a> TextLayout<'a> {
     /// Returns the number of leading columns that name a row in each panel. Returns 1 if these columns leave no room
     /// for another column.
     fn row_name_columns(&self, width: usize) -> usize {
-        let telling = self.identifying_columns();
+        let telling = self.count_identifying_columns();
         if self.width_of_first(telling) + self.widest_column_from(telling) <= width { telling } else { 1 }
     }
 

@@ -13,8 +13,9 @@ impl MetricsDay<'_> {
     pub(super) fn push_market(&self, list: &mut Vec<DailyValue>) {
         let market = &self.xray.world().market;
         let today = market.competitors.iter().filter(|event| event.day == self.report.figures.day);
-        let total =
-            |value: fn(&novamind_world::market::competitors::Event) -> f64| today.clone().map(value).sum();
+        let total = |value: fn(&novamind_world::market::competitors::CompetitorEvent) -> f64| {
+            today.clone().map(value).sum()
+        };
         push_sum(list, "comp_events_cum", total(|_| 1.0));
         push_sum(list, "comp_boost_cum", total(|event| event.boost));
         push_sum(list, "comp_sampled_cum", total(|event| event.sampled));

@@ -48,7 +48,7 @@ struct DailyValue {
 
 /// Collects the daily figures of a run.
 #[derive(Default)]
-pub struct Collector {
+pub struct MetricsCollector {
     /// Days whose figures are kept; `None` to keep all days.
     recorded_days: Option<Vec<u32>>,
     sums: Vec<f64>,
@@ -66,15 +66,15 @@ pub struct Collector {
     is_disabled: bool,
 }
 
-impl Collector {
+impl MetricsCollector {
     /// Creates a collector that collects nothing.
-    pub fn disabled() -> Collector {
-        Collector { is_disabled: true, ..Collector::default() }
+    pub fn disabled() -> MetricsCollector {
+        MetricsCollector { is_disabled: true, ..MetricsCollector::default() }
     }
 
     /// Creates a collector for the days in `wanted`, or for all days.
-    pub fn new(wanted: Option<Vec<u32>>) -> Collector {
-        Collector { recorded_days: wanted, ..Collector::default() }
+    pub fn new(wanted: Option<Vec<u32>>) -> MetricsCollector {
+        MetricsCollector { recorded_days: wanted, ..MetricsCollector::default() }
     }
 
     /// Adds the figures of a day.

@@ -9,7 +9,7 @@ use toml::Table;
 
 #[cfg(test)]
 pub use rule_based::PriceBook;
-pub use rule_based::{CapacityRule, OperationsRule, RuleBased, Target};
+pub use rule_based::{CapacityRule, OperationsRule, RuleBased, TargetGroups};
 
 use super::enterprise_answers::EnterpriseRule;
 use novamind_record::folder::configuration::Configuration;
@@ -23,7 +23,7 @@ pub struct Policy {
     /// Description of the policy.
     pub description: String,
     /// Settings of the run at its start. The command line overrides these settings.
-    pub start: Start,
+    pub start: PolicyStart,
     /// The weekly routine of the paper's baseline.
     pub rule_based: Option<RuleBased>,
     /// Tool calls on given days.
@@ -35,7 +35,7 @@ pub struct Policy {
 /// The settings of a run at its start.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Start {
+pub struct PolicyStart {
     /// Cash on day 0, dollars.
     pub cash: Option<f64>,
     /// Whether demand surges occur; `None` to use the scenario's value.
@@ -85,7 +85,7 @@ struct PolicyFile {
     #[serde(default)]
     description: String,
     #[serde(default)]
-    start: Start,
+    start: PolicyStart,
     rule_based: Option<toml::Spanned<RuleBased>>,
     #[serde(default)]
     call: Vec<toml::Spanned<CallEntry>>,

@@ -14,9 +14,9 @@ pub struct RuleBased {
     /// Prices, model tiers and quotas.
     pub price_book: PriceBook,
     /// Groups that receive targeted development and ads.
-    pub target: Target,
+    pub target: TargetGroups,
     /// Budgets of the target groups.
-    pub spend: Spend,
+    pub spend: TargetBudgets,
     /// Cash above which spending is on, dollars; -1 for always.
     pub cash_floor: f64,
     /// General development while spending is on, $ per day.
@@ -30,12 +30,12 @@ pub struct RuleBased {
 impl Default for RuleBased {
     fn default() -> Self {
         RuleBased {
-            price_book: PriceBook::Named(BookName::Mid),
-            target: Target::S1Only,
-            spend: Spend::Named(SpendName::Heavy),
+            price_book: PriceBook::Named(PriceBookName::Mid),
+            target: TargetGroups::S1Only,
+            spend: TargetBudgets::Named(BudgetPackage::Heavy),
             cash_floor: 100_000.0,
             global_development: 200.0,
-            operations: OperationsRule::Named(OperationsName::Subscribers),
+            operations: OperationsRule::Named(OperationsRuleName::Subscribers),
             capacity: CapacityRule::Utilisation,
         }
     }
@@ -47,7 +47,7 @@ impl RuleBased {
     /// # Errors
     /// Returns a message that names the key with an invalid amount.
     pub(super) fn validated(self) -> Result<RuleBased, String> {
-        let amounts = |spend: &Spend| {
+        let amounts = |spend: &TargetBudgets| {
             let (s1, s3) = spend.budgets();
             [s1.development, s1.ads, s3.development, s3.ads]
         };
@@ -75,7 +75,7 @@ impl RuleBased {
 #[serde(untagged, expecting = "price_book must be cheap, mid or a table of prices, tiers and quotas by plan")]
 pub enum PriceBook {
     /// A price book of the paper.
-    Named(BookName),
+    Named(PriceBookName),
     /// A custom price book.
     Own {
         /// List prices, $ per month.
@@ -90,7 +90,7 @@ pub enum PriceBook {
 /// The paper's price books.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum BookName {
+pub enum PriceBookName {
     /// Plan A $8 / T1 / 50K, B $18 / T2 / 200K, C $40 / T3 / 1M: price, model tier and quota.
     Cheap,
     /// Plan A $12 / T1 / 60K, B $25 / T2 / 250K, C $55 / T4 / 1.2M: price, model tier and quota.
@@ -127,12 +127,12 @@ impl PriceBook {
     /// Returns the prices, model tiers and quotas of the plans.
     pub fn prices_tiers_and_quotas(&self) -> (PerPlan<f64>, PerPlan<u8>, PerPlan<u64>) {
         match self {
-            PriceBook::Named(BookName::Cheap) => (
+            PriceBook::Named(PriceBookName::Cheap) => (
                 PerPlan { a: 8.0, b: 18.0, c: 40.0 },
                 PerPlan { a: 1, b: 2, c: 3 },
                 PerPlan { a: 50_000, b: 200_000, c: 1_000_000 },
             ),
-            PriceBook::Named(BookName::Mid) => (
+            PriceBook::Named(PriceBookName::Mid) => (
                 PerPlan { a: 12.0, b: 25.0, c: 55.0 },
                 PerPlan { a: 1, b: 2, c: 4 },
                 PerPlan { a: 60_000, b: 250_000, c: 1_200_000 },
@@ -145,7 +145,7 @@ impl PriceBook {
 /// The groups that receive targeted development and ads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Target {
+pub enum TargetGroups {
     /// Only group S1.
     S1Only,
     /// Group S1, and group S3 from day 30 on.
@@ -157,24 +157,24 @@ pub enum Target {
 /// The budgets of the target groups.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "spend must be light, medium, heavy or a table with the budgets of S1 and S3")]
-pub enum Spend {
+pub enum TargetBudgets {
     /// A budget package of the paper.
-    Named(SpendName),
+    Named(BudgetPackage),
     /// Custom budgets per group.
     Own {
         /// Budgets of group S1.
         #[serde(rename = "S1")]
-        s1: Budget,
+        s1: GroupBudget,
         /// Budgets of group S3.
         #[serde(rename = "S3")]
-        s3: Budget,
+        s3: GroupBudget,
     },
 }
 
 /// The paper's budget packages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SpendName {
+pub enum BudgetPackage {
     /// Development and ads per day: $2,000 and $250 for S1, $1,500 and $600 for S3.
     Light,
     /// Development and ads per day: $4,000 and $500 for S1, $3,000 and $1,200 for S3.
@@ -186,24 +186,24 @@ pub enum SpendName {
 /// The budgets of one group, $ per day.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Budget {
+pub struct GroupBudget {
     /// Targeted development budget of the group.
     pub development: f64,
     /// Advertising budget of the group.
     pub ads: f64,
 }
 
-impl Spend {
+impl TargetBudgets {
     /// Returns the budgets of groups S1 and S3.
-    pub fn budgets(&self) -> (Budget, Budget) {
+    pub fn budgets(&self) -> (GroupBudget, GroupBudget) {
         let package = |s1: (f64, f64), s3: (f64, f64)| {
-            (Budget { development: s1.0, ads: s1.1 }, Budget { development: s3.0, ads: s3.1 })
+            (GroupBudget { development: s1.0, ads: s1.1 }, GroupBudget { development: s3.0, ads: s3.1 })
         };
         match self {
-            Spend::Named(SpendName::Light) => package((2000.0, 250.0), (1500.0, 600.0)),
-            Spend::Named(SpendName::Medium) => package((4000.0, 500.0), (3000.0, 1200.0)),
-            Spend::Named(SpendName::Heavy) => package((6000.0, 750.0), (4500.0, 1800.0)),
-            Spend::Own { s1, s3 } => (*s1, *s3),
+            TargetBudgets::Named(BudgetPackage::Light) => package((2000.0, 250.0), (1500.0, 600.0)),
+            TargetBudgets::Named(BudgetPackage::Medium) => package((4000.0, 500.0), (3000.0, 1200.0)),
+            TargetBudgets::Named(BudgetPackage::Heavy) => package((6000.0, 750.0), (4500.0, 1800.0)),
+            TargetBudgets::Own { s1, s3 } => (*s1, *s3),
         }
     }
 }
@@ -213,7 +213,7 @@ impl Spend {
 #[serde(untagged, expecting = "operations must be subscribers or an amount of dollars a day")]
 pub enum OperationsRule {
     /// A rule by name: max(100, 0.05 * active subscriptions), $ per day.
-    Named(OperationsName),
+    Named(OperationsRuleName),
     /// A fixed budget, $ per day.
     Fixed(f64),
 }
@@ -221,7 +221,7 @@ pub enum OperationsRule {
 /// The name of a rule for the operations budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum OperationsName {
+pub enum OperationsRuleName {
     /// A budget proportional to the number of subscribers.
     Subscribers,
 }

@@ -7,16 +7,16 @@ mod report;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::metrics::Collector;
+use super::metrics::MetricsCollector;
 use super::policy::Policy;
-use super::runner::{RunEnd, RunError, RunSpec, play};
+use super::runner::{RunEnd, RunError, RunSpec, play_policy};
 use novamind_base::statistics::SampleStatistics;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_record::trajectory::{Line, find_policy};
 use novamind_report::measures::{survival_days, tool_use};
-use novamind_report::ranking::{compare_results, count_beaten, published_results};
-use novamind_report::ranking_eligibility::{PUBLISHED_SEED, RankingObstacle, describe_not_ranked};
+use novamind_report::ranking::{compare_results, count_published_below, published_results};
+use novamind_report::ranking_eligibility::{PUBLISHED_SEED, RankingObstacle, explain_unranked_runs};
 use novamind_session::Session;
 
 #[cfg(feature = "server")]
@@ -71,7 +71,7 @@ pub enum ResultsGrouping {
 
 /// The kind of player in a row. The kind is part of the row's key, because a participant's label can equal another name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum RowSource {
+pub enum PlayerKind {
     /// A participant with a label.
     Participant,
     /// A participant without a label.
@@ -86,26 +86,26 @@ pub enum RowSource {
     PublishedBaseline,
 }
 
-impl RowSource {
+impl PlayerKind {
     /// Returns the source of the row as text.
     pub fn describe(self) -> &'static str {
         match self {
-            RowSource::Participant => "own",
-            RowSource::Unnamed => "own, unnamed",
-            RowSource::Policy => "own policy",
-            RowSource::IdleCompany => "reference",
-            RowSource::PublishedAgent | RowSource::PublishedBaseline => "published",
+            PlayerKind::Participant => "own",
+            PlayerKind::Unnamed => "own, unnamed",
+            PlayerKind::Policy => "own policy",
+            PlayerKind::IdleCompany => "reference",
+            PlayerKind::PublishedAgent | PlayerKind::PublishedBaseline => "published",
         }
     }
 }
 
 impl ResultsGrouping {
-    fn row_source(self, run: &FinishedRun) -> Option<(RowSource, String)> {
-        let policy = run.policy.clone().map(|name| (RowSource::Policy, name));
-        let participant = run.participant.clone().map(|label| (RowSource::Participant, label));
+    fn row_source(self, run: &FinishedRun) -> Option<(PlayerKind, String)> {
+        let policy = run.policy.clone().map(|name| (PlayerKind::Policy, name));
+        let participant = run.participant.clone().map(|label| (PlayerKind::Participant, label));
         match self {
             ResultsGrouping::Participant => {
-                Some(participant.or(policy).unwrap_or((RowSource::Unnamed, UNNAMED_ROW.to_owned())))
+                Some(participant.or(policy).unwrap_or((PlayerKind::Unnamed, UNNAMED_ROW.to_owned())))
             }
             ResultsGrouping::Policy => policy,
         }
@@ -118,7 +118,7 @@ pub struct ResultsRow {
     /// Display name of the player.
     pub name: String,
     /// Kind of the player.
-    pub source: RowSource,
+    pub source: PlayerKind,
     /// Number of runs of the player.
     pub runs: u32,
     /// Number of bankruptcies; `None` if not published.
@@ -162,7 +162,7 @@ const IDLE_ROW: &str = "idle company";
 /// Fails if the run cannot start.
 pub fn play_idle_company(policy: &Policy, configuration: &Configuration) -> Result<FinishedRun, RunError> {
     let spec = RunSpec { surges: Some(true), ..RunSpec::for_seed(PUBLISHED_SEED) };
-    let outcome = play(policy, &spec, configuration, &mut Collector::disabled())?;
+    let outcome = play_policy(policy, &spec, configuration, &mut MetricsCollector::disabled())?;
     Ok(FinishedRun {
         run: String::new(),
         participant: None,
@@ -184,7 +184,7 @@ impl ResultsTable {
         idle: &FinishedRun,
         by: ResultsGrouping,
     ) -> ResultsTable {
-        let mut groups: BTreeMap<(RowSource, String), Vec<&FinishedRun>> = BTreeMap::new();
+        let mut groups: BTreeMap<(PlayerKind, String), Vec<&FinishedRun>> = BTreeMap::new();
         let mut played_by_people = 0;
         for run in runs {
             match by.row_source(run) {
@@ -209,7 +209,7 @@ impl ResultsTable {
             .filter_map(|(player, finished_runs)| results_row(player, &finished_runs))
             .collect();
         rows.extend(
-            results_row((RowSource::IdleCompany, IDLE_ROW.to_owned()), &[idle])
+            results_row((PlayerKind::IdleCompany, IDLE_ROW.to_owned()), &[idle])
                 .map(|row| ResultsRow { best_run: None, ..row }),
         );
         rows.extend(published_rows());
@@ -218,8 +218,8 @@ impl ResultsTable {
             compare_results(result(other), result(one)).then_with(|| one.name.cmp(&other.name))
         });
         let mut notes = table_notes();
-        notes.extend(describe_not_ranked(left_out));
-        if rows.iter().any(|row| row.source == RowSource::Policy) {
+        notes.extend(explain_unranked_runs(left_out));
+        if rows.iter().any(|row| row.source == PlayerKind::Policy) {
             notes.push("Policies are distinguished only by the names in their files.".to_owned());
         }
         notes.extend(again);
@@ -245,7 +245,7 @@ fn best_run<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
     runs.iter().copied().max_by(|one, other| order(one, other))
 }
 
-fn results_row((player, name): (RowSource, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
+fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
     let best = best_run(runs)?;
     let lives: Vec<f64> = runs.iter().map(|run| f64::from(run.survival_days)).collect();
     let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
@@ -260,7 +260,7 @@ fn results_row((player, name): (RowSource, String), runs: &[&FinishedRun]) -> Op
         mean_survival_days: Some(SampleStatistics::from_values(&lives).mean),
         std_survival_days: (lives.len() > 1).then(|| population_std(&lives)),
         calls_per_week: Some(SampleStatistics::from_values(&calls).mean),
-        beaten_count: count_beaten(best.score).0,
+        beaten_count: count_published_below(best.score).0,
     })
 }
 
@@ -277,7 +277,7 @@ fn published_rows() -> Vec<ResultsRow> {
         .iter()
         .map(|agent| ResultsRow {
             name: agent.name.clone(),
-            source: RowSource::PublishedAgent,
+            source: PlayerKind::PublishedAgent,
             runs: agent.runs,
             bankruptcies: Some(agent.bankruptcies),
             best_cash: agent.best_cash,
@@ -286,12 +286,12 @@ fn published_rows() -> Vec<ResultsRow> {
             mean_survival_days: Some(agent.mean_survival_days),
             std_survival_days: Some(agent.std_survival_days),
             calls_per_week: Some(agent.turns_per_week),
-            beaten_count: count_beaten(agent.best_cash).0,
+            beaten_count: count_published_below(agent.best_cash).0,
         })
         .collect();
     rows.push(ResultsRow {
         name: "rule-based baseline".to_owned(),
-        source: RowSource::PublishedBaseline,
+        source: PlayerKind::PublishedBaseline,
         runs: 1,
         bankruptcies: None,
         best_cash: paper.rule_based_baseline,
@@ -300,7 +300,7 @@ fn published_rows() -> Vec<ResultsRow> {
         mean_survival_days: None,
         std_survival_days: None,
         calls_per_week: None,
-        beaten_count: count_beaten(paper.rule_based_baseline).0,
+        beaten_count: count_published_below(paper.rule_based_baseline).0,
     });
     rows
 }
@@ -323,7 +323,7 @@ fn table_notes() -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn run(name: &str, who: Option<&str>, score: f64, days: u32) -> FinishedRun {
+    fn finished_run(name: &str, who: Option<&str>, score: f64, days: u32) -> FinishedRun {
         FinishedRun {
             run: name.to_owned(),
             participant: who.map(str::to_owned),
@@ -342,14 +342,14 @@ mod tests {
 
     #[test]
     fn runs_are_grouped_and_the_best_is_chosen_by_cash_then_survival() {
-        let idle = run("", None, 900_000.0, 500);
+        let idle = finished_run("", None, 900_000.0, 500);
         let runs = [
-            run("a1", Some("P01"), 0.0, 385),
-            run("a2", Some("P01"), 3e6, 500),
-            run("a3", Some("P01"), 2e6, 500),
-            run("b1", Some("P02"), 0.0, 120),
-            run("b2", Some("P02"), 0.0, 131),
-            FinishedRun { policy: Some("mine".to_owned()), ..run("d1", None, 1.0, 500) },
+            finished_run("a1", Some("P01"), 0.0, 385),
+            finished_run("a2", Some("P01"), 3e6, 500),
+            finished_run("a3", Some("P01"), 2e6, 500),
+            finished_run("b1", Some("P02"), 0.0, 120),
+            finished_run("b2", Some("P02"), 0.0, 131),
+            FinishedRun { policy: Some("mine".to_owned()), ..finished_run("d1", None, 1.0, 500) },
         ];
         let table = ResultsTable::new(
             &runs,
@@ -368,10 +368,11 @@ mod tests {
         assert!(table.notes.iter().any(|note| note.contains("28 days instead of 500")), "{:?}", table.notes);
         assert!(table.rows.is_sorted_by(|one, other| one.best_cash >= other.best_cash));
         let policies = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Policy);
-        assert_eq!(find_row(&policies, "mine").source, RowSource::Policy);
+        assert_eq!(find_row(&policies, "mine").source, PlayerKind::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
         // A participant's runs are never merged with a policy's runs or with published runs that have the same name.
-        let named_so = [run("e1", Some("mine"), 9e6, 500), run("e2", Some("idle company"), 8e6, 500)];
+        let named_so =
+            [finished_run("e1", Some("mine"), 9e6, 500), finished_run("e2", Some("idle company"), 8e6, 500)];
         let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
         let table = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Participant);
         let of = |name: &str| {

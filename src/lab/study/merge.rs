@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-use super::shard::{Shard, ShardHead};
+use super::shard::{Shard, ShardHeader};
 
 /// The reasons why shards cannot be merged, with file names.
 #[derive(Debug)]
@@ -40,9 +40,9 @@ impl ShardSet {
     /// Fails if a file is not a shard, is damaged or belongs to another study, or if a shard is missing or present twice.
     pub fn find(places: &[PathBuf]) -> Result<ShardSet, MergeError> {
         let mut problems = Vec::new();
-        let (mut found, mut damaged): (Vec<(PathBuf, ShardHead)>, Vec<ShardHead>) = Default::default();
+        let (mut found, mut damaged): (Vec<(PathBuf, ShardHeader)>, Vec<ShardHeader>) = Default::default();
         for file in shard_files(places)? {
-            match read_head(&file) {
+            match read_and_verify_shard(&file) {
                 Ok(ShardState::Intact(head)) => found.push((file, head)),
                 Ok(ShardState::Damaged(head)) => {
                     problems.push(format!("{} is damaged: rerun shard {}", file.display(), head.part));
@@ -77,10 +77,10 @@ impl ShardSet {
             }
         }
         let is_there = |shard: &usize| {
-            let is_same_shard = |head: &ShardHead| head.digest == study.digest && head.part.shard == *shard;
+            let is_same_shard = |head: &ShardHeader| head.digest == study.digest && head.part.shard == *shard;
             by_number.contains_key(shard) || damaged.iter().any(is_same_shard)
         };
-        let name = |shard| ShardHead::file_name(&study.study, Shard { shard, of: study.part.of });
+        let name = |shard| ShardHeader::file_name(&study.study, Shard { shard, of: study.part.of });
         let missing: Vec<String> = (1..=study.part.of).filter(|shard| !is_there(shard)).map(name).collect();
         if !missing.is_empty() {
             problems.push(format!("missing: {}", abbreviate_names(&missing)));
@@ -194,13 +194,13 @@ fn is_named_as_shard(path: &Path) -> bool {
 /// The state of a shard file with a valid first line.
 enum ShardState {
     /// The rows match the checksum in the first line.
-    Intact(ShardHead),
+    Intact(ShardHeader),
     /// The rows do not match the checksum in the first line.
-    Damaged(ShardHead),
+    Damaged(ShardHeader),
 }
 
 /// Reads the first line of a shard file and compares the rows with the checksum.
-fn read_head(file: &Path) -> Result<ShardState, String> {
+fn read_and_verify_shard(file: &Path) -> Result<ShardState, String> {
     if std::fs::metadata(file).is_ok_and(|found| !found.is_file()) {
         return Err("it is not a file".to_owned());
     }
@@ -208,7 +208,7 @@ fn read_head(file: &Path) -> Result<ShardState, String> {
     // The first line of a shard is short, so the read is limited. A file without line terminators is not a shard.
     let mut line = Vec::new();
     reader.by_ref().take(4096).read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
-    let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHead::parse(line.trim_end()));
+    let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHeader::parse(line.trim_end()));
     let head = head.ok_or("it is not a shard of a study")?;
     let mut hasher = blake3::Hasher::new();
     io::copy(&mut reader, &mut hasher).map_err(|error| error.to_string())?;

@@ -14,6 +14,6 @@ mod tests;
 
 pub use definition::StudyPlan;
 pub use merge::{MergeError, ShardSet};
-pub use shard::{Shard, ShardHead, parse_shard};
+pub use shard::{Shard, ShardHeader, parse_shard};
 pub use summary::{describe_size, equal_arm_warnings, equal_outcome_warnings, study_summary};
 pub use table::{column_names, rows};

@@ -50,7 +50,7 @@ impl Shard {
 
 /// The description of a shard in the first line of its file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShardHead {
+pub struct ShardHeader {
     /// Name of the study.
     pub study: String,
     /// Digest of everything on which the rows depend: program, mechanics, parameters, policies, seeds and columns.
@@ -62,10 +62,10 @@ pub struct ShardHead {
     pub checksum: String,
 }
 
-impl ShardHead {
+impl ShardHeader {
     /// Returns the content of a shard file: first line, header and rows.
     pub fn with_checksum(study: &str, digest: &str, part: Shard, rows: &str) -> String {
-        let head = ShardHead {
+        let head = ShardHeader {
             study: study.to_owned(),
             digest: digest.to_owned(),
             part,
@@ -75,8 +75,8 @@ impl ShardHead {
     }
 
     /// Parses the first line of a shard file. Returns `None` if the line has another format.
-    pub(super) fn parse(line: &str) -> Option<ShardHead> {
-        let head: ShardHead = serde_json::from_str(line.strip_prefix(SHARD_PREFIX)?).ok()?;
+    pub(super) fn parse(line: &str) -> Option<ShardHeader> {
+        let head: ShardHeader = serde_json::from_str(line.strip_prefix(SHARD_PREFIX)?).ok()?;
         (head.part.shard >= 1 && head.part.shard <= head.part.of && head.part.of <= MAX_SHARDS)
             .then_some(head)
     }

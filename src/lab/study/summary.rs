@@ -1,7 +1,7 @@
 //! Summary of a study by arm.
 
 use super::StudyPlan;
-use crate::experiment::{Experiment, RunResult, groups_of_equal};
+use crate::experiment::{Experiment, RunResult, group_equal_items};
 use crate::lab_report::{
     AxisScale, CellValue, Column, Graph, GraphAxis, GraphForm, LabReport, LabTable, Measure, Series,
 };
@@ -76,7 +76,7 @@ pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
 /// Fails if a scenario is unknown or a parameter is invalid.
 pub fn equal_arm_warnings(plan: &StudyPlan, configuration: &Configuration) -> Result<Vec<String>, RunError> {
     let warning = |arms: &Vec<usize>| format!("these arms are identical: {}", arm_names(plan, arms));
-    Ok(plan.experiment.equal_arms(configuration)?.iter().map(warning).collect())
+    Ok(plan.experiment.find_equal_arms(configuration)?.iter().map(warning).collect())
 }
 
 /// Returns a warning for each group of arms whose runs ended in the same state for every seed. `results` contains all
@@ -90,7 +90,7 @@ pub fn equal_outcome_warnings(plan: &StudyPlan, results: &[RunResult]) -> Vec<St
             arm_names(plan, arms)
         )
     };
-    groups_of_equal(by_arm).iter().map(warning).collect()
+    group_equal_items(by_arm).iter().map(warning).collect()
 }
 
 /// Lists the names of the first arms and the number of the remaining arms.

@@ -186,8 +186,8 @@ fn write_shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (Strin
     let write = |shard| {
         let part = Shard { shard, of };
         let text: String = part.run_numbers(runs).into_iter().map(|number| rows(number + 1)).collect();
-        let path = folder.join(ShardHead::file_name("s", part));
-        fs::write(&path, ShardHead::with_checksum("s", "d", part, &format!("run,what\n{text}")))
+        let path = folder.join(ShardHeader::file_name("s", part));
+        fs::write(&path, ShardHeader::with_checksum("s", "d", part, &format!("run,what\n{text}")))
             .expect("a file");
         path
     };
@@ -231,13 +231,13 @@ fn mismatched_shards_are_rejected_by_name() {
     let mut with_twin = files.clone();
     with_twin.push(twin.clone());
     fails(&with_twin, &["twin.csv", "s.2-of-4.csv", "both shard 2 of 4"]);
-    let foreign = ShardHead::with_checksum("s", "other", Shard { shard: 4, of: 4 }, "run,what\n");
+    let foreign = ShardHeader::with_checksum("s", "other", Shard { shard: 4, of: 4 }, "run,what\n");
     fs::write(&twin, foreign).expect("a file");
     fails(
         &[files[..3].to_vec(), vec![twin.clone()]].concat(),
         &["twin.csv belongs to another version of s", "missing: s.4-of-4.csv"],
     );
-    let other = ShardHead::with_checksum("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
+    let other = ShardHeader::with_checksum("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
     fs::write(&twin, other).expect("a file");
     fails(&[files.clone(), vec![twin.clone()]].concat(), &["twin.csv belongs to the study t"]);
     fs::write(&twin, "run,what\n1,row 0\n").expect("a file");
@@ -256,7 +256,7 @@ fn mismatched_shards_are_rejected_by_name() {
 }
 
 #[test]
-fn guide_study_is_valid() {
+fn study_in_the_guide_is_valid() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/laboratory/examples/copying.toml");
     let plan = StudyPlan::read(&path, false, &Configuration::bundled()).expect("a study");
     assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as stated in its first line");

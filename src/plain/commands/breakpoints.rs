@@ -94,7 +94,7 @@ impl Interpreter {
                 let mut data = run.week.to_json();
                 data["from"] = run.from.into();
                 let hit = |condition: &Condition, number: u32, judged: &ConditionState| {
-                    let mut hit = judged_to_json(judged);
+                    let mut hit = condition_state_to_json(judged);
                     hit["number"] = number.into();
                     hit["condition"] = condition.to_string().into();
                     hit
@@ -116,7 +116,7 @@ impl Interpreter {
     }
 
     /// Executes `since`, `since N` and `since CONDITION`.
-    pub(super) fn run_back(
+    pub(super) fn run_since(
         &mut self,
         word: &str,
         rest: &str,
@@ -145,7 +145,7 @@ impl Interpreter {
             }
             Ok(found) => {
                 let lines: Vec<String> = found.iter().flat_map(describe_condition_history).collect();
-                let data: Vec<Value> = found.iter().map(look_back_to_json).collect();
+                let data: Vec<Value> = found.iter().map(condition_history_to_json).collect();
                 CommandResponse::success(word, lines.join("\n"), json!({ "conditions": data }))
             }
             Err(refusal) => CommandResponse::rejected(word, refusal),
@@ -153,12 +153,12 @@ impl Interpreter {
     }
 
     /// Executes `find CONDITION`.
-    pub(super) fn find_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
+    pub(super) fn run_find(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         self.run_debug_command("find", || InspectionCommand::parse_find(rest, column))
     }
 
     /// Executes `who FIGURE [DAY]`.
-    pub(super) fn find_writers(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
+    pub(super) fn run_who(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         self.run_debug_command("who", || InspectionCommand::parse_who(rest, column))
     }
 }
@@ -168,11 +168,11 @@ fn strip_comment(text: &str) -> &str {
 }
 
 fn parse_condition(text: &str, column: usize) -> Result<Condition, ParseError> {
-    text.parse().map_err(|problem| at_column(problem, column))
+    text.parse().map_err(|problem| to_line_error(problem, column))
 }
 
 /// Converts an error in the rest of a line that begins at `column` to an error with columns of the whole line.
-fn at_column(problem: ConditionParseError, column: usize) -> ParseError {
+fn to_line_error(problem: ConditionParseError, column: usize) -> ParseError {
     ParseError { text: problem.message, column: column + problem.column - 1 }
 }
 
@@ -196,24 +196,24 @@ fn breakpoint_to_json(breakpoint: &Breakpoint) -> Value {
     json!({ "number": breakpoint.number, "condition": breakpoint.condition.to_string() })
 }
 
-pub(super) fn judged_to_json(condition_state: &ConditionState) -> Value {
+pub(super) fn condition_state_to_json(condition_state: &ConditionState) -> Value {
     json!({
         "day": condition_state.day, "value": condition_state.value.map(json_number), "before": condition_state.before.map(json_number),
         "true": condition_state.is_true, "true_before": condition_state.was_true,
     })
 }
 
-fn look_back_to_json(condition_history: &ConditionHistory) -> Value {
+fn condition_history_to_json(condition_history: &ConditionHistory) -> Value {
     json!({
         "condition": condition_history.condition.to_string(),
-        "today": judged_to_json(&condition_history.today),
-        "last_true": condition_history.last_true.as_ref().map(judged_to_json),
-        "last_false": condition_history.last_false.as_ref().map(judged_to_json),
+        "today": condition_state_to_json(&condition_history.today),
+        "last_true": condition_history.last_true.as_ref().map(condition_state_to_json),
+        "last_false": condition_history.last_false.as_ref().map(condition_state_to_json),
         "since": condition_history.unchanged_since(),
     })
 }
 
-pub(super) fn writers_to_json(figure_writes: &FigureWrites) -> Value {
+pub(super) fn figure_writes_to_json(figure_writes: &FigureWrites) -> Value {
     let write = |write: &FigureWrite| {
         let mut data = json!({
             "by": describe_source(write), "amount": write.amount(), "before": write.before, "after": write.after,

@@ -25,7 +25,7 @@ impl Interpreter {
             let text = "check needs a call, for example check set_prices B=30".to_owned();
             return Err(ParseError { text, column: line.chars().count() });
         };
-        let tool = find_tool(&word).ok_or_else(|| not_a_tool(&word, column))?;
+        let tool = find_tool(&word).ok_or_else(|| not_a_tool_error(&word, column))?;
         let arguments = parse_call_arguments(tool, &arguments)?;
         Ok(match self.session.preview_call(tool.spec().name(), &arguments) {
             Ok(preview) => self.preview_response(&preview, &arguments),
@@ -101,7 +101,7 @@ impl Interpreter {
 }
 
 /// Returns the error for a word that is not the name of a tool.
-fn not_a_tool(word: &str, column: usize) -> ParseError {
+fn not_a_tool_error(word: &str, column: usize) -> ParseError {
     if !COMMANDS.iter().any(|(name, _)| *name == grammar::current_name(word)) {
         return unknown_command(word, column);
     }

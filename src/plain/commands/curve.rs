@@ -75,7 +75,7 @@ fn curve_response(curve_explorer: &CurveExplorer, product: Option<(f64, f64)>) -
                     .lines()
                     .map(str::to_owned),
             );
-            curve_explorer.outcome(&curve_explorer.plans)
+            curve_explorer.outcome_for_plans(&curve_explorer.plans)
         }
     };
     if product.is_none() {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::super::grammar::ParseError;
 use super::super::response::CommandResponse;
 use super::Interpreter;
-use super::breakpoints::{judged_to_json, writers_to_json};
+use super::breakpoints::{condition_state_to_json, figure_writes_to_json};
 use novamind_report::inspection::{InspectionCommand, InspectionOutput, difference_to_json};
 
 impl Interpreter {
@@ -28,10 +28,10 @@ impl Interpreter {
 fn result_to_json(found: &InspectionOutput) -> Value {
     match found {
         InspectionOutput::Days(condition, found, _) => {
-            let days: Vec<Value> = found.iter().map(judged_to_json).collect();
+            let days: Vec<Value> = found.iter().map(condition_state_to_json).collect();
             json!({ "condition": condition.to_string(), "days": days })
         }
-        InspectionOutput::Writes(figure_writes) => writers_to_json(figure_writes),
+        InspectionOutput::Writes(figure_writes) => figure_writes_to_json(figure_writes),
         InspectionOutput::Difference(one, other, found) => {
             json!({ "days": [one, other], "difference": difference_to_json(found) })
         }

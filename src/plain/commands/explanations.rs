@@ -102,21 +102,21 @@ mod tests {
     use novamind_session::{NewRun, Session};
 
     /// Collects the field names in a response, except the keys of maps by group.
-    fn fields(value: &Value, found: &mut Vec<String>) {
+    fn collect_field_names(value: &Value, found: &mut Vec<String>) {
         match value {
             Value::Object(map) => map.iter().for_each(|(name, value)| {
                 if Group::parse(name).is_none() {
                     found.push(name.clone());
                 }
-                fields(value, found);
+                collect_field_names(value, found);
             }),
-            Value::Array(items) => items.iter().for_each(|item| fields(item, found)),
+            Value::Array(items) => items.iter().for_each(|item| collect_field_names(item, found)),
             _ => {}
         }
     }
 
     /// Returns the labels of a dashboard: words before a colon, headings and column heads, except plans.
-    fn labels(dashboard: &str) -> Vec<String> {
+    fn dashboard_labels(dashboard: &str) -> Vec<String> {
         let mut found = Vec::new();
         for line in dashboard.lines() {
             if let Some(title) = line.strip_prefix("--- ").and_then(|rest| rest.strip_suffix(" ---")) {
@@ -142,7 +142,7 @@ mod tests {
         for week in 0..10 {
             let forecasts = run.company().naive_forecasts();
             let week = run.advance(&format!("week {week}"), &forecasts, Via::Script, &mut |_| {});
-            words.extend(labels(&week.expect("a week").dashboard));
+            words.extend(dashboard_labels(&week.expect("a week").dashboard));
         }
         for label in ["Your posts", "Enterprise Lost", "Group bonus", "Settings", "Dev"] {
             assert!(words.iter().any(|word| word == label), "{label}: {words:?}");
@@ -152,7 +152,7 @@ mod tests {
             ("get_group_insights", json!({"group_id": "E1"})),
             ("get_market_overview", json!({})),
         ] {
-            fields(&run.call(tool, &arguments, Via::Script).expect(tool).to_json(), &mut words);
+            collect_field_names(&run.call(tool, &arguments, Via::Script).expect(tool).to_json(), &mut words);
         }
         assert!(words.iter().any(|word| word == "cycle_phase"), "the economy is published: {words:?}");
         words.push("as_of".to_owned());

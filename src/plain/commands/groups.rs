@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::{Interpreter, argument_error};
-use novamind_base::formatting::{cents, dollars, grouped_number};
+use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number};
 use novamind_base::similar_names;
 use novamind_report::fit::{Fit, FitCriterion, LeadFlow, PlanFit, fits};
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
@@ -90,7 +90,7 @@ fn select_groups<'a>(
 
 /// Returns the result of a tool with ranges and dates instead of single estimates, and with the true means of R&D
 /// projects. Returns `None` if the result contains neither.
-pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
+pub(super) fn answer_with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
     match answer {
         novamind_tools::Answer::GetGroupInsights(insights) => {
             let all = fits(session);
@@ -168,7 +168,7 @@ fn cost_to_json(pair: &LeadCost) -> Value {
 }
 
 fn cost_line(pair: &LeadCost) -> String {
-    let each = |value: Option<f64>| value.map_or("–".to_owned(), cents);
+    let each = |value: Option<f64>| value.map_or("–".to_owned(), dollars_and_cents);
     let words = |spell: &AdWindow| {
         format!("{} a lead, {} a first bill", each(spell.cost_per_lead()), each(spell.cost_per_bill()))
     };

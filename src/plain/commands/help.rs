@@ -9,7 +9,7 @@ use super::{
     rules, xray,
 };
 use novamind_base::similar_names;
-use novamind_session::ErrorBands;
+use novamind_session::ErrorIntervals;
 use novamind_tools::{ParameterNumbers, ToolKind};
 
 const NEEDS_HELP: &str = "\
@@ -159,7 +159,7 @@ next                                     asks at a terminal; simulates the week 
 Naive forecasts: income, compute and lead costs continue as in the last four weeks, at the costs set now.";
     match led {
         true => forms.to_owned(),
-        false => format!("{forms} {}.", ErrorBands::bundled().describe_coverage()),
+        false => format!("{forms} {}.", ErrorIntervals::bundled().describe_coverage()),
     }
 }
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::{Interpreter, argument_error};
-use novamind_base::formatting::{cents, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_report::funnel::{Funnel, funnels};
 use novamind_report::pluralize;
 use novamind_rules::{Filter, ThreadContext};
@@ -15,7 +15,7 @@ use novamind_session::EnterpriseNames;
 use novamind_session::identifiers::Plan;
 
 /// Maximum number of threads in the text response. The JSON data contains all threads.
-const LISTED_THREADS: usize = 20;
+const MAX_LISTED_THREADS: usize = 20;
 /// A thread is urgent if at most this number of days is left.
 const URGENT_DAYS: u32 = 2;
 
@@ -141,13 +141,13 @@ fn group_line(group: &str, threads: &[&ThreadContext]) -> String {
     let most = asked.iter().copied().fold(0.0, f64::max);
     match asked.len() {
         0 => line + ", none names a price",
-        1 => line + &format!(", 1 names a price, {}", cents(most)),
+        1 => line + &format!(", 1 names a price, {}", dollars_and_cents(most)),
         many => {
             line + &format!(
                 ", {} name a price, {} to {}",
                 grouped_number(many as f64, 0),
-                cents(least),
-                cents(most)
+                dollars_and_cents(least),
+                dollars_and_cents(most)
             )
         }
     }
@@ -155,7 +155,7 @@ fn group_line(group: &str, threads: &[&ThreadContext]) -> String {
 
 /// Describes the listed threads, one sentence each, and the command that lists the remaining threads.
 fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &EnterpriseNames) -> Vec<String> {
-    let number = if wanted.all { waiting.len() } else { waiting.len().min(LISTED_THREADS) };
+    let number = if wanted.all { waiting.len() } else { waiting.len().min(MAX_LISTED_THREADS) };
     if number == 0 {
         return Vec::new();
     }
@@ -201,8 +201,8 @@ fn describe_thread(thread: &ThreadContext, names: &EnterpriseNames) -> String {
 /// Describes what the enterprise asked for: a price, a plan, or both.
 pub(super) fn describe_request(thread: &ThreadContext) -> Option<String> {
     match (thread.waiting.asked, thread.asked_plan) {
-        (Some(price), Some(plan)) => Some(format!("asks {} for plan {plan}", cents(price))),
-        (Some(price), None) => Some(format!("asks {}", cents(price))),
+        (Some(price), Some(plan)) => Some(format!("asks {} for plan {plan}", dollars_and_cents(price))),
+        (Some(price), None) => Some(format!("asks {}", dollars_and_cents(price))),
         (None, Some(plan)) => Some(format!("asks the price of plan {plan}")),
         (None, None) => None,
     }
@@ -210,7 +210,7 @@ pub(super) fn describe_request(thread: &ThreadContext) -> Option<String> {
 
 /// Formats an offer, for example `plan B at $30.00 or plan C at $55.00`.
 pub(super) fn describe_offer(offered: &[(Plan, f64)]) -> String {
-    let line = |(plan, price): &(Plan, f64)| format!("plan {plan} at {}", cents(*price));
+    let line = |(plan, price): &(Plan, f64)| format!("plan {plan} at {}", dollars_and_cents(*price));
     offered.iter().map(line).collect::<Vec<_>>().join(" or ")
 }
 
@@ -246,7 +246,7 @@ mod tests {
         assert!(groups[0].starts_with("E1: 341 threads, 17,050 seats, "), "{groups:?}");
         assert!(groups[0].ends_with(", 1 asks a price, $20.00") && groups[1].ends_with("none asks a price"));
         let lines = thread_lines(&waiting, &ThreadSelection::default(), &names);
-        assert_eq!(lines.len(), 1 + LISTED_THREADS + 2);
+        assert_eq!(lines.len(), 1 + MAX_LISTED_THREADS + 2);
         assert!(
             lines[1].contains("50 seats, plan change, 2 days left, asks $20.00 for plan B, no offer yet")
         );

@@ -6,7 +6,7 @@ use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::{Interpreter, argument_error};
 use novamind_course::{
-    Debrief, DecisionComparison, LessonStatus, PlayedPart, retry_step, start_part, submit_guess, take_hint,
+    Debrief, DecisionComparison, FinishedPart, LessonStatus, retry_step, start_part, submit_guess, take_hint,
 };
 use novamind_report::debrief::debrief_paragraphs;
 use novamind_report::lesson::{describe_page, parse_guess};
@@ -30,14 +30,14 @@ impl Interpreter {
             Some(page) => {
                 CommandResponse::success(command, describe_page(&page).join("\n"), lesson_to_json(&page))
             }
-            None => CommandResponse::rejected(command, not_a_lesson()),
+            None => CommandResponse::rejected(command, not_a_lesson_rejection()),
         }
     }
 
     fn next_part(&mut self) -> CommandResponse {
         let next = LessonStatus::from_session(&mut self.session).map(|page| page.next_part);
         let begun = match next {
-            None => Err(not_a_lesson()),
+            None => Err(not_a_lesson_rejection()),
             Some(None) => Err(Rejection::new("no_part", "there is no next part, or this part is not over")),
             Some(Some(part)) => start_part(&self.session, part as usize - 1),
         };
@@ -51,7 +51,7 @@ impl Interpreter {
         };
         let written = only.value.as_str().map_or_else(|| only.value.to_string(), str::to_owned);
         if self.session.lesson().is_none() {
-            return Ok(CommandResponse::rejected("guess", not_a_lesson()));
+            return Ok(CommandResponse::rejected("guess", not_a_lesson_rejection()));
         }
         // If the step has no question, the session rejects any answer.
         let question = LessonStatus::from_session(&mut self.session).and_then(|page| page.question);
@@ -92,7 +92,7 @@ impl Interpreter {
 
     /// Executes `debrief`.
     pub(super) fn debrief(&mut self) -> CommandResponse {
-        match PlayedPart::from_session(&self.session) {
+        match FinishedPart::from_session(&self.session) {
             Ok(played) => {
                 let debrief = played.debrief(calls_for_waiting_threads);
                 CommandResponse::success(
@@ -116,7 +116,7 @@ impl Interpreter {
     }
 }
 
-fn not_a_lesson() -> Rejection {
+fn not_a_lesson_rejection() -> Rejection {
     Rejection::new(
         "not_in_a_lesson",
         "this run is not part of a lesson; novamind lesson list shows the lessons",

@@ -17,7 +17,7 @@ use novamind_report::cost_review::{identical_plan_lines, money_lines};
 use novamind_report::deals::describe_deals;
 use novamind_report::decision_periods::describe_change;
 use novamind_report::describe_cash_change;
-use novamind_report::parameters::describe_parameter_entry;
+use novamind_report::parameters::describe_recorded_parameter_change;
 use novamind_report::peak::PeakProjection;
 use novamind_report::research::late_project_lines;
 use novamind_session::{EnterpriseNames, JournalEntry, SettingChange, undone_call_lines};
@@ -140,7 +140,7 @@ impl Interpreter {
         let last = &journal[journal.len().saturating_sub(count as usize)..];
         let mut text: String = last
             .iter()
-            .map(|entry| entry_line(entry, &undone, self.session.company().company_names()) + "\n")
+            .map(|entry| format_history_entry(entry, &undone, self.session.company().company_names()) + "\n")
             .collect();
         if text.is_empty() {
             text = "no actions yet".to_owned();
@@ -167,7 +167,7 @@ pub fn describe_setting_change(change: &SettingChange) -> String {
     describe_change(change)
 }
 
-fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &EnterpriseNames) -> String {
+fn format_history_entry(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &EnterpriseNames) -> String {
     match entry {
         JournalEntry::Call { seq, day, tool, args, reversal } => {
             let remark = match reversal {
@@ -180,7 +180,7 @@ fn entry_line(entry: &JournalEntry, undone: &BTreeSet<u64>, names: &EnterpriseNa
             format!("day {day:>3}  {tool}{remark} {words}")
         }
         JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
-            format!("day {day:>3}  {}", describe_parameter_entry(key, [old, new], *from_day))
+            format!("day {day:>3}  {}", describe_recorded_parameter_change(key, [old, new], *from_day))
         }
         JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
             let naive = if filled_naively[0] { ", naive" } else { "" };

@@ -11,7 +11,7 @@ use novamind_session::IntervalPosition;
 use novamind_tools::Rejection;
 
 /// Maximum number of changed figures in the text.
-const LISTED_MOVES: usize = 6;
+const MAX_LISTED_CHANGES: usize = 6;
 
 impl Interpreter {
     pub(super) fn report(
@@ -47,7 +47,7 @@ impl Interpreter {
             "best_tried_channel_share": measures.channels.as_ref().and_then(|skill| skill.share),
             "truly_best_channel_share": measures.truly_best.as_ref().map(|best| best.share),
             "targeted_development_share": measures.targeted_development,
-            "forecasts": story.shows_calibration().then_some(&measures.forecasts),
+            "forecasts": story.shows_forecast_scores().then_some(&measures.forecasts),
             "calls_per_week": measures.tools.per_week,
             "planning_words_per_rationale": measures.planning.planning_each,
             "report": report_to_markdown(&story),
@@ -77,7 +77,7 @@ fn describe_week(report: &WeekReport) -> String {
     if !report.decisions.is_empty() {
         lines.push(format!("decisions before the week: {}", report.decisions.join("; ")));
     }
-    for moved in report.moved_figures.iter().take(LISTED_MOVES) {
+    for moved in report.moved_figures.iter().take(MAX_LISTED_CHANGES) {
         let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);
         let standing = moved.change.describe_rarity();
         if !standing.is_empty() {

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::super::response::CommandResponse;
 use super::Interpreter;
-use novamind_base::formatting::{cents, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_database::text::align_columns;
 use novamind_record::trajectory::record::Via;
 use novamind_rules::{RuleBatch, RuleOutcome, ThreadContext};
@@ -12,7 +12,7 @@ use novamind_session::EnterpriseNames;
 use novamind_tools::{Rejection, ToolId};
 
 /// Maximum number of threads in the text of a preview. The JSON data contains all threads.
-const LISTED_THREADS: usize = 20;
+const MAX_LISTED_THREADS: usize = 20;
 
 pub const HELP: &str = "\
 rules RULES         preview the answer to each waiting thread; nothing is sent
@@ -95,11 +95,11 @@ fn preview_response(batch: &RuleBatch, names: &EnterpriseNames) -> CommandRespon
     if !meant.is_empty() {
         let head = ["rule", "company", "group", "seats", "asked", "last offer", "left", "sends"];
         let rows: Vec<Vec<String>> =
-            meant.iter().take(LISTED_THREADS).map(|ruled| preview_row(ruled, names)).collect();
+            meant.iter().take(MAX_LISTED_THREADS).map(|ruled| preview_row(ruled, names)).collect();
         lines.push(align_columns(&head.map(str::to_owned), &rows).trim_end().to_owned());
     }
-    if meant.len() > LISTED_THREADS {
-        lines.push(format!("and {} more", grouped_number((meant.len() - LISTED_THREADS) as f64, 0)));
+    if meant.len() > MAX_LISTED_THREADS {
+        lines.push(format!("and {} more", grouped_number((meant.len() - MAX_LISTED_THREADS) as f64, 0)));
     }
     lines.push("nothing was sent; to send, type rules send …".to_owned());
     let threads: Vec<Value> = batch.threads.iter().map(|ruled| ruled.to_json(names)).collect();
@@ -111,14 +111,17 @@ fn preview_row(ruled: &RuleOutcome, names: &EnterpriseNames) -> Vec<String> {
     let thread = &ruled.thread;
     let waiting_thread = &thread.waiting;
     let plan = thread.asked_plan.map_or(String::new(), |plan| format!("{plan} "));
-    let last: Vec<String> =
-        waiting_thread.last_offer.iter().map(|(plan, price)| format!("{plan} {}", cents(*price))).collect();
+    let last: Vec<String> = waiting_thread
+        .last_offer
+        .iter()
+        .map(|(plan, price)| format!("{plan} {}", dollars_and_cents(*price)))
+        .collect();
     vec![
         ruled.rule_index.map_or(String::new(), |at| (at + 1).to_string()),
         names.name_with_number(waiting_thread.customer),
         waiting_thread.group.to_owned(),
         waiting_thread.seats.to_string(),
-        waiting_thread.asked.map_or(String::new(), |asked| format!("{plan}{}", cents(asked))),
+        waiting_thread.asked.map_or(String::new(), |asked| format!("{plan}{}", dollars_and_cents(asked))),
         last.join(" or "),
         waiting_thread.days_left.to_string(),
         ruled.describe_reply(),

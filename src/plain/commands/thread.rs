@@ -6,7 +6,7 @@ use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::inbox::{describe_offer, describe_request};
 use super::{Interpreter, argument_error, optional_count};
-use novamind_base::formatting::{cents, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_report::pluralize;
 use novamind_rules::{ThreadContext, parse_offer};
@@ -106,7 +106,11 @@ fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     }
     parts.push(match text_at(row, 6) {
         "subscribed" => {
-            format!("subscribes to plan {} at {} a seat", text_at(row, 7), cents(number_at(row, 8)))
+            format!(
+                "subscribes to plan {} at {} a seat",
+                text_at(row, 7),
+                dollars_and_cents(number_at(row, 8))
+            )
         }
         "lead" => "not subscribed yet".to_owned(),
         other => format!("subscription {other}"),
@@ -121,7 +125,7 @@ fn describe_turn(row: &[Cell]) -> Option<String> {
     let text = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
         ("agent", _) => format!("you offered {}", describe_offer(&offers)),
-        ("customer", _) if words.is_empty() => format!("they asked for {}", cents(price?)),
+        ("customer", _) if words.is_empty() => format!("they asked for {}", dollars_and_cents(price?)),
         ("customer", _) => format!("they wrote: {words}"),
         _ if words.is_empty() => return None,
         _ => words.to_owned(),

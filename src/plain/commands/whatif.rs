@@ -12,7 +12,7 @@ use novamind_insight::{
     BranchComparison, BranchFigures, DecisionEdit, Futures, RecordedDecision, WhatIf, cause_analysis_folder,
     continue_unless_stopped, create_branch_with_decisions, record_what_if_inspection, related_runs,
 };
-use novamind_record::trajectory::record::LeavingCause;
+use novamind_record::trajectory::record::DetachCause;
 use novamind_report::whatif::{
     branch_line, branch_name, comparison_table, describe_bankruptcies, describe_decisions, difference_line,
     futures_heading, futures_table, heading, related_run_line,
@@ -42,7 +42,11 @@ struct WhatIfQuestion {
 impl Interpreter {
     /// Executes `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, and `whatif
     /// file PATH`.
-    pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
+    pub(super) fn execute_what_if(
+        &mut self,
+        words: &str,
+        column: usize,
+    ) -> Result<CommandResponse, ParseError> {
         // Check the permission before parsing the question.
         if let Err(refusal) = cause_analysis_folder(&self.session) {
             return Ok(CommandResponse::rejected("whatif", refusal));
@@ -54,7 +58,7 @@ impl Interpreter {
             let problem = |text: String| ParseError { text, column: column + "file ".len() };
             let text = self.read_question_file(Path::new(path.trim()));
             let text = text.map_err(|why| problem(format!("{} cannot be read: {why}", path.trim())))?;
-            return parse_question(&question_from_file(&text), 0)
+            return parse_question(&convert_question_file(&text), 0)
                 .map(|question| self.compare(&question))
                 .map_err(|wrong| problem(wrong.text));
         }
@@ -117,7 +121,7 @@ impl Interpreter {
     }
 
     fn compare(&mut self, question: &WhatIfQuestion) -> CommandResponse {
-        let stop = self.watch.enter_stoppable();
+        let stop = self.watch.enter_simulation();
         let go_on = |_, _| continue_unless_stopped(&stop);
         let WhatIfQuestion { from, until, futures, alternatives } = question;
         let is_recorded = record_what_if_inspection(&mut self.session, *from);
@@ -189,7 +193,7 @@ impl Interpreter {
     /// Continues in a branch in which the decisions of this run are replayed with edits.
     fn branch_keeping_decisions(&mut self, week: u32, decided: &[DecisionEdit]) -> CommandResponse {
         let mode = self.session.manifest().mode.branch_mode();
-        let stop = self.watch.enter_stoppable();
+        let stop = self.watch.enter_simulation();
         let mut go_on = |_| continue_unless_stopped(&stop);
         let adopted = create_branch_with_decisions(&self.session, week, decided, mode, &mut go_on);
         self.watch.set_phase(Phase::Working);
@@ -225,7 +229,7 @@ impl Interpreter {
 
     /// Switches the interpreter to another run. Returns the id and the day of the other run.
     pub(super) fn switch_to_run(&mut self, other: Session) -> (String, u32) {
-        self.session.activity().detach(LeavingCause::Quit);
+        self.session.activity().detach(DetachCause::Quit);
         let _ = self.session.save();
         self.session = other;
         self.session.set_rule_evaluator(calls_for_waiting_threads);
@@ -276,7 +280,7 @@ fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> 
 
 /// Converts the text of a question file to a question. The first line contains the words before the colon, each later
 /// line an alternative.
-fn question_from_file(text: &str) -> String {
+fn convert_question_file(text: &str) -> String {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().unwrap_or_default().trim_end_matches(':');
     format!("{first}: {}", lines.collect::<Vec<_>>().join(" | "))
@@ -412,7 +416,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_question_names_weeks_futures_and_alternatives() {
+    fn parse_question_reads_weeks_futures_and_alternatives() {
         let edit = |text: &str| text.parse::<DecisionEdit>().expect(text);
         let asked = parse_question("from 20 until 40 futures: set_prices * 0.9; drop 7 | keep set_prices", 1);
         let expected = WhatIfQuestion {
@@ -423,7 +427,7 @@ mod tests {
         };
         assert_eq!(asked, Ok(expected.clone()));
         let file = "# cheaper\nfrom 20 until 40 futures:\nset_prices * 0.9; drop 7\n\nkeep set_prices\n";
-        assert_eq!(parse_question(&question_from_file(file), 1), Ok(expected));
+        assert_eq!(parse_question(&convert_question_file(file), 1), Ok(expected));
         assert_eq!(parse_question("from 3", 1).map(|if_question| if_question.alternatives), Ok(Vec::new()));
     }
 

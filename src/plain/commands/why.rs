@@ -23,7 +23,7 @@ impl Interpreter {
             ParseError { text: problem.message, column: column + problem.column - 1 }
         })?;
         self.record_view(&format!("why {words}"), &[]);
-        let stop = self.watch.enter_stoppable();
+        let stop = self.watch.enter_simulation();
         let folder = begin_cause_analysis(&mut self.session, &week_question);
         let answer = folder.and_then(|folder| {
             self.cached_causes
@@ -64,7 +64,7 @@ fn why_to_json(why: &ChangeExplanation) -> Value {
         "week": why.week,
         "before": why.before,
         "after": why.after,
-        "change": why.change(),
+        "change": why.total_change(),
         "causes": cause_lines(why).iter().map(cause).collect::<Vec<_>>(),
         "simulations": why.simulation_count,
     })

@@ -46,14 +46,14 @@ impl Interpreter {
         }
         let (view, rest) = parse_view(arguments)?;
         let shown = match view {
-            "leads" => self.lead_equation(rest)?,
+            "leads" => self.show_lead_equation(rest)?,
             "quality" => self.show_quality(rest)?,
             "satisfaction" => self.show_satisfaction(rest)?,
             "reputation" => self.show_reputation(rest)?,
             "spillover" => self.show_spillover(rest)?,
             "rivals" => self.show_competitors(rest)?,
             "drift" => self.show_drift(rest)?,
-            "streams" => self.streams(rest)?,
+            "streams" => self.show_streams(rest)?,
             _ => return Err(unknown_view(view, &arguments[0])),
         };
         Ok(shown.unwrap_or_else(|refusal| CommandResponse::rejected("xray", refusal)))
@@ -68,7 +68,7 @@ impl Interpreter {
                 Err(text) => return Ok(Err(ParseError { text: text.to_owned(), column })),
             };
             // After the ticket is issued, a signal stops the query even if the query has not started.
-            let ticket = interrupt.ticket();
+            let ticket = interrupt.issue_ticket();
             self.watch.enter_query(interrupt);
             self.session.inspect().query_hidden_tables_with_ticket(ticket, sql, day).map(Ok)
         });
@@ -82,11 +82,11 @@ impl Interpreter {
         }
     }
 
-    fn lead_equation(
+    fn show_lead_equation(
         &mut self,
         arguments: &[Argument],
     ) -> Result<Result<CommandResponse, Rejection>, ParseError> {
-        let held = arguments.iter().filter(|argument| argument.key.is_some()).map(parse_held_factor);
+        let held = arguments.iter().filter(|argument| argument.key.is_some()).map(parse_fixed_factor);
         let held: Vec<(LeadFactor, f64)> = held.collect::<Result<_, _>>()?;
         let plain: Vec<&Argument> = arguments.iter().filter(|argument| argument.key.is_none()).collect();
         let (group, day) = parse_group_and_day("leads", &plain)?;
@@ -187,7 +187,7 @@ fn parse_whole_number(argument: &Argument) -> Result<u32, ParseError> {
 }
 
 /// Parses a factor with a fixed value, for example `R=1`.
-fn parse_held_factor(argument: &Argument) -> Result<(LeadFactor, f64), ParseError> {
+fn parse_fixed_factor(argument: &Argument) -> Result<(LeadFactor, f64), ParseError> {
     let name = argument.key.as_deref().unwrap_or_default();
     let wrong = |text: String| ParseError { text, column: argument.column };
     let factor = LeadFactor::parse(name).ok_or_else(|| {

@@ -15,7 +15,7 @@ impl CategoryTotals {
     }
 
     /// Returns the total of a category, in dollars.
-    pub fn total_of(&self, category: Category) -> f64 {
+    pub fn category_total(&self, category: Category) -> f64 {
         self.0[category as usize]
     }
 
@@ -25,10 +25,10 @@ impl CategoryTotals {
     }
 
     /// Returns each category with a nonzero total, and its total in dollars.
-    pub fn entries(&self) -> impl Iterator<Item = (Category, f64)> + '_ {
+    pub fn nonzero_totals(&self) -> impl Iterator<Item = (Category, f64)> + '_ {
         Category::ALL
             .into_iter()
-            .map(|category| (category, self.total_of(category)))
+            .map(|category| (category, self.category_total(category)))
             .filter(|(_, sum)| *sum != 0.0)
     }
 }

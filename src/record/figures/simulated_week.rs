@@ -46,7 +46,7 @@ impl SimulatedWeek {
     pub fn without_purchases(&self) -> SimulatedWeek {
         let mut figures = self.figures;
         for category in PURCHASE_CATEGORIES {
-            let paid = figures.booked.total_of(category);
+            let paid = figures.booked.category_total(category);
             figures.booked.add(category, -paid);
             figures.cash_change -= paid;
         }
@@ -72,17 +72,17 @@ impl SimulatedWeek {
 
     /// Returns the income of the week, in dollars.
     pub fn income(&self) -> f64 {
-        self.figures.booked.entries().map(|(_, dollars)| dollars.max(0.0)).sum()
+        self.figures.booked.nonzero_totals().map(|(_, dollars)| dollars.max(0.0)).sum()
     }
 
     /// Returns the costs of the week as a positive amount, in dollars.
     pub fn costs(&self) -> f64 {
-        self.figures.booked.entries().map(|(_, dollars)| (-dollars).max(0.0)).sum()
+        self.figures.booked.nonzero_totals().map(|(_, dollars)| (-dollars).max(0.0)).sum()
     }
 
     /// Returns the week's costs in a category as a positive amount, in dollars.
-    pub fn costs_of(&self, category: Category) -> f64 {
+    pub fn category_costs(&self, category: Category) -> f64 {
         // Subtracting from 0.0 avoids negative zero.
-        0.0 - self.figures.booked.total_of(category)
+        0.0 - self.figures.booked.category_total(category)
     }
 }

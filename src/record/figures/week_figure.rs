@@ -94,16 +94,16 @@ define_figures! {
     Reputation = "reputation", Level, None, Some(|group| group.figures.reputation);
     Income = "income", Dollars, Some(SimulatedWeek::income), None;
     Costs = "costs", Dollars, Some(SimulatedWeek::costs), None;
-    AdRevenue = "ad revenue", Dollars, Some(|week| week.figures.booked.total_of(Category::AdRevenue)), None;
-    Compute = "compute", Dollars, Some(|week| week.costs_of(Category::Compute)), None;
-    Capacity = "capacity", Dollars, Some(|week| week.costs_of(Category::Capacity)), None;
-    Advertising = "advertising", Dollars, Some(|week| week.costs_of(Category::Advertising)), None;
-    LeadCosts = "lead costs", Dollars, Some(|week| week.costs_of(Category::LeadAcquisitionCost)), None;
-    Operations = "operations", Dollars, Some(|week| week.costs_of(Category::Operations)), None;
-    Development = "development", Dollars, Some(|week| week.costs_of(Category::Development)), None;
-    Research = "R&D", Dollars, Some(|week| week.costs_of(Category::ResearchProject)), None;
-    MarketResearch = "market research", Dollars, Some(|week| week.costs_of(Category::MarketResearch)), None;
-    GroupStudies = "group studies", Dollars, Some(|week| week.costs_of(Category::GroupResearch)), None;
+    AdRevenue = "ad revenue", Dollars, Some(|week| week.figures.booked.category_total(Category::AdRevenue)), None;
+    Compute = "compute", Dollars, Some(|week| week.category_costs(Category::Compute)), None;
+    Capacity = "capacity", Dollars, Some(|week| week.category_costs(Category::Capacity)), None;
+    Advertising = "advertising", Dollars, Some(|week| week.category_costs(Category::Advertising)), None;
+    LeadCosts = "lead costs", Dollars, Some(|week| week.category_costs(Category::LeadAcquisitionCost)), None;
+    Operations = "operations", Dollars, Some(|week| week.category_costs(Category::Operations)), None;
+    Development = "development", Dollars, Some(|week| week.category_costs(Category::Development)), None;
+    Research = "R&D", Dollars, Some(|week| week.category_costs(Category::ResearchProject)), None;
+    MarketResearch = "market research", Dollars, Some(|week| week.category_costs(Category::MarketResearch)), None;
+    GroupStudies = "group studies", Dollars, Some(|week| week.category_costs(Category::GroupResearch)), None;
 }
 
 impl WeekFigure {

@@ -10,13 +10,13 @@ use crate::consent::Consent;
 use crate::error::RunError;
 use crate::files::write_atomically;
 use crate::mode::Mode;
-use crate::rules::{ResultsShown, SessionRules};
+use crate::rules::{ResultsDisclosure, SessionRules};
 use crate::stamp::HandoutStamp;
 use crate::stamp::LessonStamp;
 use crate::stamp::{EarlierRun, StudyStamp};
 use crate::trajectory::record::{Parent, Start, first_mechanics};
 use crate::trajectory::{Line, Record};
-use novamind_voice::model::settings::ModelStamp;
+use novamind_voice::model::settings::RecordedModelSettings;
 use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
 use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources};
@@ -76,7 +76,7 @@ pub struct Manifest {
     pub handout: Option<HandoutStamp>,
     /// Language model that words posts and messages, if one is used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub voice: Option<ModelStamp>,
+    pub voice: Option<RecordedModelSettings>,
     /// Session rules; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,
@@ -151,7 +151,7 @@ impl Manifest {
             return Err(damaged("the trajectory does not begin with the start of a run"));
         };
         let start = start.as_ref().clone();
-        let earlier_runs = count_same_world(&start.earlier_runs, start.seed, &start.scenario);
+        let earlier_runs = count_runs_with_same_seed(&start.earlier_runs, start.seed, &start.scenario);
         Manifest {
             format: start.format,
             version: start.version,
@@ -199,7 +199,7 @@ impl Manifest {
     pub fn session_rules(&self) -> SessionRules {
         let rules = self.recorded_rules();
         match self.is_practice() {
-            true => SessionRules { results: ResultsShown::None, ..rules },
+            true => SessionRules { results: ResultsDisclosure::None, ..rules },
             false => rules,
         }
     }
@@ -251,7 +251,7 @@ impl Manifest {
 }
 
 /// Returns the number of earlier runs with this seed and scenario.
-pub fn count_same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
+pub fn count_runs_with_same_seed(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
     earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
 }
 
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn other_parameters_mechanics_and_formats_are_rejected() {
+    fn manifest_rejects_other_parameters_mechanics_and_formats() {
         let folder = tempfile::tempdir().expect("a folder");
         let mut manifest = test_manifest(&Params::bundled());
         manifest.parameters_digest = "0000000000000000".to_owned();

@@ -43,14 +43,14 @@ pub fn read_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
         if closing.iter().any(|kind| text.contains(kind))
             && let Some(line) = Line::parse_unchecked(text.as_bytes())
         {
-            preview.add_closing(line.day, &line.record);
+            preview.add_closed_days(line.day, &line.record);
         }
     }
     Ok(preview)
 }
 
 impl RunPreview {
-    fn add_closing(&mut self, day: u32, record: &Record) {
+    fn add_closed_days(&mut self, day: u32, record: &Record) {
         let cash = match record {
             Record::Week(closing) | Record::Step(closing) => closing.cash,
             Record::End(end) => end.cash,
@@ -60,7 +60,7 @@ impl RunPreview {
             Some(last) if last.0 == day => last.1 = cash,
             _ => self.cash.push((day, cash)),
         }
-        let Some(figures) = record.closing().map(|closing| &closing.figures) else { return };
+        let Some(figures) = record.closed_days().map(|closing| &closing.figures) else { return };
         if let Some(count) = figures.get("individual_subscribers").and_then(Value::as_u64) {
             self.subscribers = count;
         }

@@ -419,7 +419,7 @@ pub struct ReferencePlay {
 
 impl ReferencePlay {
     /// Returns the description of the play for a part.
-    pub fn text_of(&self, part: usize) -> &str {
+    pub fn part_description(&self, part: usize) -> &str {
         self.texts.get(part).unwrap_or(&self.text)
     }
 

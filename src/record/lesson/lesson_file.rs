@@ -10,7 +10,7 @@ use crate::error::RunError;
 use crate::figures::FigureUnit;
 use crate::files::write_atomically;
 use crate::folder::configuration::Configuration;
-use novamind_base::formatting::{cents, grouped_number, percent, short_dollars};
+use novamind_base::formatting::{dollars_and_cents, grouped_number, percent, short_dollars};
 use novamind_world::params::{ParameterError, ParameterSource};
 
 /// File name of the lesson plan in a run folder.
@@ -163,7 +163,7 @@ impl Lesson {
     }
 
     /// Returns a copy of the lesson in which the figure's part has the scenario and parameters of the figure.
-    pub fn with_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
+    pub fn with_figure_parameters(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
         if figure.scenario.is_none() && figure.parameters.is_empty() {
             return self.clone();
         }
@@ -213,7 +213,7 @@ impl MeasuredFigure {
                 FigureUnit::Share | FigureUnit::PreciseShare => percent(value, 0),
                 FigureUnit::Count | FigureUnit::Level => grouped_number(value, 0),
             },
-            NumberSource::Sql(_) if self.unit == "$" && value.abs() < 1000.0 => cents(value),
+            NumberSource::Sql(_) if self.unit == "$" && value.abs() < 1000.0 => dollars_and_cents(value),
             NumberSource::Sql(_) if self.unit == "$" => short_dollars(value),
             NumberSource::Sql(_) if self.unit == "%" => percent(value, 0),
             NumberSource::Sql(_) if self.unit == "day" => grouped_number(value, 0),

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn measurement_is_a_figure_or_a_statement() {
+    fn measurement_requires_a_figure_or_a_statement() {
         assert_eq!(parse(Some("cash"), None, None).expect("cash").source, NumberSource::Cash);
         let sum = parse(Some("payments"), None, Some("sum")).expect("payments");
         assert_eq!(

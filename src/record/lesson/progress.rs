@@ -41,7 +41,7 @@ impl LessonPart {
     }
 
     /// Returns the index of the step that follows `weeks` simulated weeks, or `None` if all steps are over.
-    pub fn step_after(&self, weeks: u32) -> Option<usize> {
+    pub fn step_at_week(&self, weeks: u32) -> Option<usize> {
         (0..self.steps.len()).find(|step| weeks < self.step_weeks(*step).1)
     }
 }
@@ -112,7 +112,7 @@ impl LessonProgress {
     /// # Errors
     /// The rejection `guess_first`.
     pub fn check_guess_submitted(&self, weeks: u32) -> Result<(), Rejection> {
-        let step = self.current_part().step_after(weeks).filter(|step| self.awaits_guess(*step));
+        let step = self.current_part().step_at_week(weeks).filter(|step| self.awaits_guess(*step));
         let guess = step.and_then(|step| self.step(step)).and_then(|step| step.guess.as_ref());
         match guess {
             Some(guess) => Err(Rejection::new(
@@ -156,16 +156,16 @@ impl LessonProgress {
 
     /// Returns how many hints of a step were requested.
     pub fn hint_count(&self, step: usize) -> usize {
-        self.events_of(LessonEvent::Hint, step).count()
+        self.events_of_step(LessonEvent::Hint, step).count()
     }
 
     /// Returns the goal results of a step, in order. The list is empty before the step is over.
     pub fn goal_results(&self, step: usize) -> Vec<&LessonNote> {
-        self.events_of(LessonEvent::Goal, step).collect()
+        self.events_of_step(LessonEvent::Goal, step).collect()
     }
 
     /// Returns whether the student reached every goal of every step.
-    pub fn has_reached_all(&self) -> bool {
+    pub fn has_reached_all_goals(&self) -> bool {
         let wanted: usize = self.current_part().steps.iter().map(|step| step.goals.len()).sum();
         let reached =
             |(_, note): &&(u32, LessonNote)| note.event == LessonEvent::Goal && note.met == Some(true);
@@ -173,7 +173,7 @@ impl LessonProgress {
     }
 
     /// Returns the names of the triggered pitfalls, in the order in which they were triggered.
-    pub fn met_pitfalls(&self) -> Vec<&str> {
+    pub fn triggered_pitfall_names(&self) -> Vec<&str> {
         let pitfalls = self.events.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
         pitfalls.filter_map(|(_, note)| note.name.as_deref()).collect()
     }
@@ -186,13 +186,17 @@ impl LessonProgress {
         }
     }
 
-    fn events_of(&self, event: LessonEvent, step: usize) -> impl DoubleEndedIterator<Item = &LessonNote> {
+    fn events_of_step(
+        &self,
+        event: LessonEvent,
+        step: usize,
+    ) -> impl DoubleEndedIterator<Item = &LessonNote> {
         let number = step as u32 + 1;
         let is_it = move |note: &&LessonNote| note.event == event && note.step == number;
         self.events.iter().map(|(_, note)| note).filter(is_it)
     }
 
     fn last_event(&self, event: LessonEvent, step: usize) -> Option<&LessonNote> {
-        self.events_of(event, step).next_back()
+        self.events_of_step(event, step).next_back()
     }
 }

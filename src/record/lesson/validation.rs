@@ -106,7 +106,7 @@ fn find_figure_defect(lesson: &Lesson) -> Option<LessonDefect> {
             Some(part) if measured_figure.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
                 format!("the part has weeks 1 to {}", part.weeks())
             }
-            Some(part) => match figure_world_error(part, measured_figure) {
+            Some(part) => match figure_parameters_error(part, measured_figure) {
                 Some(problem) => problem,
                 None => continue,
             },
@@ -121,7 +121,7 @@ fn find_figure_defect(lesson: &Lesson) -> Option<LessonDefect> {
 }
 
 /// Returns the error in the scenario or parameters of a measured figure, if any.
-fn figure_world_error(part: &LessonPart, measured_figure: &MeasuredFigure) -> Option<String> {
+fn figure_parameters_error(part: &LessonPart, measured_figure: &MeasuredFigure) -> Option<String> {
     if measured_figure.scenario.is_none() && measured_figure.parameters.is_empty() {
         return None;
     }

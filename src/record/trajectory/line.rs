@@ -90,7 +90,7 @@ impl Line {
 
     /// Returns whether the line closes simulated days: a week, or single days of a debug run.
     pub fn closes_days(&self) -> bool {
-        self.record.closing().is_some()
+        self.record.closed_days().is_some()
     }
 
     /// Returns whether this first line declares that every line of the run has a checksum.

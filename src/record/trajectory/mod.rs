@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_fields_fail_and_unknown_fields_are_kept() {
+    fn record_parse_rejects_missing_fields_and_keeps_unknown_fields() {
         for (kind, example) in schema_examples() {
             let (seq, previous) =
                 (example["seq"].as_u64().expect("a number"), example["prev"].as_str().expect("a hash"));

@@ -2,11 +2,11 @@
 
 use serde_json::{Map, Value, json};
 
-use super::selling::{GroupOffers, MissingAspect};
+use super::selling::{GroupOffers, OfferDeficit};
 use super::{ActionItem, ActionTarget, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, pluralize};
 use crate::lead_costs::{AdWindow, LeadCost, lead_costs_by_pair};
-use novamind_base::formatting::{cents, json_number};
+use novamind_base::formatting::{dollars_and_cents, json_number};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
 
@@ -34,12 +34,12 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
             format_money(ads)
         );
         // If no deficit of the current offers is known, only the cost of advertising can be reported.
-        let (text, proposal, place) = match offers.missing_aspect() {
-            missing @ (MissingAspect::Quota | MissingAspect::Quality) => {
-                let (remedy, proposal, place) = offers.remedy(missing, ads * RISK_DAYS)?;
+        let (text, proposal, place) = match offers.main_deficit() {
+            missing @ (OfferDeficit::Quota | OfferDeficit::Quality) => {
+                let (remedy, proposal, place) = offers.propose_remedy(missing, ads * RISK_DAYS)?;
                 (format!("{text}; {remedy}"), Some(proposal), place)
             }
-            MissingAspect::Price | MissingAspect::Balance => {
+            OfferDeficit::Price | OfferDeficit::Balance => {
                 let saved = format!("removing these ads saves {} a day", format_money(ads));
                 (text, Some(saved), target_without_ads(situation, estimates.group, |_| true))
             }
@@ -57,7 +57,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
 }
 
 /// Finds pairs of channel and group whose cost per lead has risen strongly.
-pub(super) fn lead_costs(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
+pub(super) fn rising_lead_costs(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     lead_costs_by_pair(situation.groups).iter().filter_map(|pair| expensive_leads(situation, pair)).collect()
 }
 
@@ -73,8 +73,8 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         "{} × {group}: in the last {} {}, in weeks {first} to {last} {}",
         channel.id(),
         pluralize(pair.recent.weeks.1 + 1 - pair.recent.weeks.0, "week"),
-        describe_window(&pair.recent),
-        describe_window(&before)
+        describe_lead_costs(&pair.recent),
+        describe_lead_costs(&before)
     );
     Some(ActionItem {
         problem: Problem::LeadCost(channel, group),
@@ -88,8 +88,8 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
 }
 
 /// Formats the cost per lead and the cost per first bill: `$372 a lead, $410 a first bill`.
-fn describe_window(spell: &AdWindow) -> String {
-    let dollars = |value: f64| if value < 100.0 { cents(value) } else { format_money(value) };
+fn describe_lead_costs(spell: &AdWindow) -> String {
+    let dollars = |value: f64| if value < 100.0 { dollars_and_cents(value) } else { format_money(value) };
     let lead = match spell.cost_per_lead() {
         Some(each) => format!("{} a lead", dollars(each)),
         None => format!("no lead for {}", format_money(spell.spend)),

@@ -106,13 +106,13 @@ fn largest_budget(situation: &DiagnosisContext<'_>) -> SpendingBudget {
     let (name, dollars, place) =
         largest.filter(|budget| budget.1 > 0.0).unwrap_or(("", 0.0, ActionTarget::Ledger));
     // Uses the sum of the amounts in the form, because each amount is rounded down.
-    let kept = if let ActionTarget::Call(_, arguments) = &place { sum_of_numbers(arguments) } else { 0.0 };
+    let kept = if let ActionTarget::Call(_, arguments) = &place { sum_numbers(arguments) } else { 0.0 };
     SpendingBudget { name, dollars, reduced_dollars: kept, target: place }
 }
 
-fn sum_of_numbers(arguments: &Value) -> f64 {
+fn sum_numbers(arguments: &Value) -> f64 {
     match arguments {
-        Value::Object(fields) => fields.values().map(sum_of_numbers).sum(),
+        Value::Object(fields) => fields.values().map(sum_numbers).sum(),
         other => other.as_f64().unwrap_or(0.0),
     }
 }
@@ -132,7 +132,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
         if subscribers == 0 || cost <= revenue {
             return None;
         }
-        let (proposal, place) = cheaper_option(situation, plan, now, a_month, revenue);
+        let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue);
         Some(ActionItem {
             problem: Problem::Margin,
             text: format!(
@@ -151,7 +151,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
 }
 
 /// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a smaller quota.
-fn cheaper_option(
+fn propose_cheaper_setting(
     situation: &DiagnosisContext<'_>,
     plan: Plan,
     now: &ModelTier,

@@ -171,11 +171,11 @@ impl<'a> DiagnosisContext<'a> {
         self.estimates.iter().filter(|estimate| !estimate.group.is_enterprise())
     }
 
-    fn estimate(&self, group: Group) -> Option<&Estimates> {
+    fn group_estimates(&self, group: Group) -> Option<&Estimates> {
         self.estimates.iter().find(|estimate| estimate.group == group)
     }
 
-    fn quality(&self, group: Group) -> Option<&DeliveredQuality> {
+    fn group_quality(&self, group: Group) -> Option<&DeliveredQuality> {
         self.quality.iter().find(|quality| quality.group == group)
     }
 }
@@ -190,11 +190,11 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     let mut found: Vec<ActionItem> = Vec::new();
     found.extend(cash::runway(&situation));
     found.extend(retention::expiring_threads(&situation));
-    found.extend(selling::nothing_on_sale(&situation));
-    found.extend(selling::no_leads(&situation));
-    found.extend(selling::no_sales(&situation));
+    found.extend(selling::missing_offers(&situation));
+    found.extend(selling::missing_leads(&situation));
+    found.extend(selling::groups_without_sales(&situation));
     found.extend(advertising::groups_without_requests(&situation));
-    found.extend(advertising::lead_costs(&situation));
+    found.extend(advertising::rising_lead_costs(&situation));
     found.extend(cash::unprofitable_plans(&situation));
     found.extend(service::capacity(&situation));
     found.extend(service::outages(&situation));
@@ -208,7 +208,7 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
         |tool: ToolId| session.lesson().is_some_and(|lesson_progress| !lesson_progress.has_tool(tool));
     found.retain(|need| !matches!(need.target, ActionTarget::Call(tool, _) if is_locked(tool)));
     if !session.rules().advice {
-        found.iter_mut().for_each(ActionItem::remove_advice);
+        found.iter_mut().for_each(ActionItem::remove_proposals);
     }
     found.sort_by(|left, right| {
         let order = (!left.is_urgent).cmp(&!right.is_urgent);
@@ -218,7 +218,7 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
 }
 
 impl ActionItem {
-    fn remove_advice(&mut self) {
+    fn remove_proposals(&mut self) {
         self.proposal = None;
         if let ActionTarget::Call(_, arguments) = &mut self.target {
             *arguments = Value::Null;

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::fit::TrueValueRange;
 use crate::formatting::{format_money, format_whole, pluralize};
-use novamind_base::formatting::{cents, json_number, percent};
+use novamind_base::formatting::{dollars_and_cents, json_number, percent};
 use novamind_session::identifiers::{Channel, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
@@ -22,7 +22,7 @@ const OUTDATED_STUDY_DAYS: u32 = 28;
 const TRIAL_AD_SPEND: f64 = 50.0;
 
 /// Reports a problem if no plan has a price, or if plans with a price have a quota of 0.
-pub(super) fn nothing_on_sale(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+pub(super) fn missing_offers(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let core = &situation.settings;
     let priced: Vec<Plan> = Plan::ALL.into_iter().filter(|plan| core.prices[*plan] > 0.0).collect();
     if priced.is_empty() {
@@ -56,7 +56,7 @@ pub(super) fn nothing_on_sale(situation: &DiagnosisContext<'_>) -> Option<Action
         proposal: Some(format!(
             "{} units a day cover {group}, which uses about {} (at most {})",
             format_whole(quota),
-            format_whole(situation.estimate(group)?.usage),
+            format_whole(situation.group_estimates(group)?.usage),
             format_whole(use_a_day)
         )),
         target: ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(arguments)),
@@ -98,7 +98,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
 }
 
 /// Reports a problem if no advertising is paid and no subscribers bring word of mouth.
-pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+pub(super) fn missing_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let lead_count =
         situation.last_week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
     let silent = situation.observation.subscribers + situation.observation.seats == 0;
@@ -140,7 +140,7 @@ pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
 /// Returns the highest quality that a plan delivers to a group today.
 fn best_delivered_quality(situation: &DiagnosisContext<'_>, group: Group) -> f64 {
     let delivered = |quality: &DeliveredQuality| Plan::ALL.map(|plan| quality.by_plan[plan]);
-    situation.quality(group).map_or(0.0, |quality| delivered(quality).into_iter().fold(0.0, f64::max))
+    situation.group_quality(group).map_or(0.0, |quality| delivered(quality).into_iter().fold(0.0, f64::max))
 }
 
 /// Returns the quality that the best model tier would deliver to a group today.
@@ -148,12 +148,12 @@ fn best_possible_quality(situation: &DiagnosisContext<'_>, group: Group) -> f64 
     let models = &situation.terms.models;
     let best = models.iter().map(|model| model.multiplier).fold(0.0, f64::max);
     let now = models.iter().find(|model| model.tier == situation.settings.tiers[Plan::A]);
-    let delivered = situation.quality(group).map(|quality| quality.by_plan[Plan::A]);
+    let delivered = situation.group_quality(group).map(|quality| quality.by_plan[Plan::A]);
     delivered.zip(now).map_or(0.0, |(delivered, now)| delivered / now.multiplier * best)
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MissingAspect {
+pub(super) enum OfferDeficit {
     Price,
     Quota,
     Quality,
@@ -162,7 +162,7 @@ pub(super) enum MissingAspect {
 }
 
 /// Finds groups of individuals whose leads do not sign up.
-pub(super) fn no_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
+pub(super) fn groups_without_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let on_sale = Plan::ALL
         .into_iter()
         .any(|plan| situation.settings.prices[plan] > 0.0 && situation.settings.quotas[plan].units() != 0.0);
@@ -174,18 +174,22 @@ pub(super) fn no_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     situation
         .individuals()
         .filter(few)
-        .filter_map(|estimates| no_sale(situation, estimates, &week[estimates.group]))
+        .filter_map(|estimates| group_without_sales(situation, estimates, &week[estimates.group]))
         .collect()
 }
 
-fn no_sale(situation: &DiagnosisContext<'_>, estimates: &Estimates, week: &GroupWeek) -> Option<ActionItem> {
+fn group_without_sales(
+    situation: &DiagnosisContext<'_>,
+    estimates: &Estimates,
+    week: &GroupWeek,
+) -> Option<ActionItem> {
     let offers = GroupOffers::new(situation, estimates)?;
-    let missing = offers.missing_aspect();
+    let missing = offers.main_deficit();
     let signed = if week.signed == 0 { "none".to_owned() } else { format_whole(f64::from(week.signed)) };
     let share = percent(week.conversion()?, 1);
     let price = offers.lowest_price().min(estimates.budget);
     let at_risk = f64::from(week.leads - week.signed) * RISK_DAYS / 7.0 * price;
-    let (remedy, proposal, place) = offers.remedy(missing, at_risk)?;
+    let (remedy, proposal, place) = offers.propose_remedy(missing, at_risk)?;
     Some(ActionItem {
         problem: Problem::NoSales(estimates.group),
         text: format!(
@@ -212,7 +216,7 @@ impl<'a> GroupOffers<'a> {
         situation: &'a DiagnosisContext<'a>,
         estimates: &'a Estimates,
     ) -> Option<GroupOffers<'a>> {
-        Some(GroupOffers { situation, estimates, quality: situation.quality(estimates.group)? })
+        Some(GroupOffers { situation, estimates, quality: situation.group_quality(estimates.group)? })
     }
 
     fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
@@ -276,14 +280,14 @@ impl<'a> GroupOffers<'a> {
         }
     }
 
-    pub(super) fn missing_aspect(&self) -> MissingAspect {
+    pub(super) fn main_deficit(&self) -> OfferDeficit {
         match self.best_plan() {
-            None => MissingAspect::Price,
-            Some(plan) if self.quota_coverage(plan) < MIN_QUOTA_COVERAGE => MissingAspect::Quota,
+            None => OfferDeficit::Price,
+            Some(plan) if self.quota_coverage(plan) < MIN_QUOTA_COVERAGE => OfferDeficit::Quota,
             Some(plan) if self.quality.by_plan[plan] < self.estimates.required_quality => {
-                MissingAspect::Quality
+                OfferDeficit::Quality
             }
-            Some(_) => MissingAspect::Balance,
+            Some(_) => OfferDeficit::Balance,
         }
     }
 
@@ -294,14 +298,14 @@ impl<'a> GroupOffers<'a> {
 
     /// Returns the description of a deficit, a proposed solution and its target. Proposes a new market study first if
     /// the estimate is outdated.
-    pub(super) fn remedy(
+    pub(super) fn propose_remedy(
         &self,
-        missing: MissingAspect,
+        missing: OfferDeficit,
         at_risk: f64,
     ) -> Option<(String, String, ActionTarget)> {
-        let (text, proposal, place) = self.direct_remedy(missing, at_risk)?;
-        match self.renewed_study(at_risk) {
-            Some((study, place)) if matches!(missing, MissingAspect::Quality | MissingAspect::Balance) => {
+        let (text, proposal, place) = self.propose_direct_remedy(missing, at_risk)?;
+        match self.propose_study(at_risk) {
+            Some((study, place)) if matches!(missing, OfferDeficit::Quality | OfferDeficit::Balance) => {
                 Some((text, study, place))
             }
             _ => Some((text, proposal, place)),
@@ -310,7 +314,7 @@ impl<'a> GroupOffers<'a> {
 
     /// Proposes a market study that updates estimates older than four weeks, if its cost does not exceed the money at
     /// risk. Returns `None` if a study is already running.
-    fn renewed_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
+    fn propose_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
         let (estimates, day) = (self.estimates, self.situation.observation.day);
         let is_studied = || {
             self.situation
@@ -337,13 +341,17 @@ impl<'a> GroupOffers<'a> {
         Some((text, ActionTarget::Call(ToolId::ResearchGroup, arguments)))
     }
 
-    fn direct_remedy(&self, missing: MissingAspect, at_risk: f64) -> Option<(String, String, ActionTarget)> {
+    fn propose_direct_remedy(
+        &self,
+        missing: OfferDeficit,
+        at_risk: f64,
+    ) -> Option<(String, String, ActionTarget)> {
         let (estimates, group) = (self.estimates, self.estimates.group);
         let floor = TrueValueRange::from_estimate(estimates.required_quality, estimates.max_relative_error)
             .format_quality();
         let as_of = format!("as of day {}", estimates.as_of);
         match missing {
-            MissingAspect::Price => {
+            OfferDeficit::Price => {
                 let least = estimates.true_range(estimates.budget).0;
                 let price = least.floor().max(1.0);
                 let plan =
@@ -359,7 +367,7 @@ impl<'a> GroupOffers<'a> {
                     ActionTarget::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
                 ))
             }
-            MissingAspect::Quota => {
+            OfferDeficit::Quota => {
                 let plan = self.best_plan()?;
                 let quota = round_up_to_two_digits(estimates.account_usage_range().1);
                 let quotas: Map<String, Value> = Plan::ALL
@@ -380,14 +388,14 @@ impl<'a> GroupOffers<'a> {
                     ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
                 ))
             }
-            MissingAspect::Quality => {
+            OfferDeficit::Quality => {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let text = format!(
                     "quality: {}; required on average: {floor} ({as_of})",
                     self.describe_best_plan(plan, delivered)
                 );
-                let (proposal, place) = better_quality(
+                let (proposal, place) = propose_better_quality(
                     self.situation,
                     group,
                     plan,
@@ -397,8 +405,8 @@ impl<'a> GroupOffers<'a> {
                 Some((text, proposal, place))
             }
             // Last week's leads did not see an offer that changed today, so their decisions do not apply to this offer.
-            MissingAspect::Balance if self.was_changed_today() => None,
-            MissingAspect::Balance => {
+            OfferDeficit::Balance if self.was_changed_today() => None,
+            OfferDeficit::Balance => {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
@@ -406,7 +414,7 @@ impl<'a> GroupOffers<'a> {
                     format_money(self.price(plan))
                 );
                 let remedy = "only a lower price or higher quality can win them";
-                Some(match better_model(self.situation, group, plan, delivered, delivered) {
+                Some(match propose_better_model(self.situation, group, plan, delivered, delivered) {
                     Some((model, place)) => (problem, format!("{remedy}: {model}"), place),
                     None => (problem, remedy.to_owned(), ActionTarget::Group(group)),
                 })
@@ -416,7 +424,7 @@ impl<'a> GroupOffers<'a> {
 }
 
 /// Proposes the lowest model tier above the current tier that delivers sufficient quality and whose compute the price covers.
-fn better_model(
+fn propose_better_model(
     situation: &DiagnosisContext<'_>,
     group: Group,
     plan: Plan,
@@ -428,7 +436,7 @@ fn better_model(
     let product = delivered / now.multiplier;
     // Does not propose a model tier whose compute costs more than the plan earns. Enterprises are excluded because
     // they negotiate their price.
-    let used = situation.estimate(group)?.account_usage().min(situation.settings.quotas[plan].units())
+    let used = situation.group_estimates(group)?.account_usage().min(situation.settings.quotas[plan].units())
         * DAYS_PER_MONTH;
     let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
     let better = models.iter().filter(|model| model.tier > now.tier && pays(model.unit_cost));
@@ -438,8 +446,8 @@ fn better_model(
             "model tier {} delivers {:.4} on {plan} at {} per 1,000 units rather than {}",
             enough.tier,
             product * enough.multiplier,
-            cents(enough.unit_cost * 1_000.0),
-            cents(now.unit_cost * 1_000.0)
+            dollars_and_cents(enough.unit_cost * 1_000.0),
+            dollars_and_cents(now.unit_cost * 1_000.0)
         ),
         ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): enough.tier })),
     ))
@@ -447,30 +455,31 @@ fn better_model(
 
 /// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group if
 /// its cost does not exceed the money at risk.
-fn better_quality(
+fn propose_better_quality(
     situation: &DiagnosisContext<'_>,
     group: Group,
     plan: Plan,
     (delivered, floor): (f64, f64),
     at_risk: f64,
 ) -> Option<(String, ActionTarget)> {
-    if let Some(model) = better_model(situation, group, plan, delivered, floor) {
+    if let Some(model) = propose_better_model(situation, group, plan, delivered, floor) {
         return Some(model);
     }
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
-    const DEVELOPMENT_DOLLARS: f64 = 5_000.0;
+    const PROPOSED_DEVELOPMENT_SPEND: f64 = 5_000.0;
     // Proposes nothing if the group already receives this budget: the higher quality then only takes time.
     let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
-    if spend.get(&group).is_some_and(|spend| *spend >= DEVELOPMENT_DOLLARS) {
+    if spend.get(&group).is_some_and(|spend| *spend >= PROPOSED_DEVELOPMENT_SPEND) {
         return None;
     }
-    let gain = situation.session.company().targeted_development_gain(DEVELOPMENT_DOLLARS) * now.multiplier;
+    let gain =
+        situation.session.company().targeted_development_gain(PROPOSED_DEVELOPMENT_SPEND) * now.multiplier;
     let days = ((floor - delivered) / gain).ceil();
     // Settings stay in force for at least a week.
-    let cost = DEVELOPMENT_DOLLARS * days.max(7.0);
+    let cost = PROPOSED_DEVELOPMENT_SPEND * days.max(7.0);
     let reached = format!(
         "development for {group} at {} a day reaches that quality in {}, for {} in total",
-        format_money(DEVELOPMENT_DOLLARS),
+        format_money(PROPOSED_DEVELOPMENT_SPEND),
         pluralize(days as u32, "day"),
         format_money(cost)
     );
@@ -483,7 +492,7 @@ fn better_quality(
         }
         false => reached,
     };
-    spend.insert(group, DEVELOPMENT_DOLLARS);
+    spend.insert(group, PROPOSED_DEVELOPMENT_SPEND);
     let spend: Map<String, Value> =
         spend.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars))).collect();
     Some((text, ActionTarget::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": spend }))))

@@ -17,7 +17,7 @@ const MAX_OUTAGE_SHARE: f64 = 0.01;
 /// Highest share of subscribers waiting for support that is not reported.
 const MAX_BACKLOG_SHARE: f64 = 0.02;
 /// Number of days in which the proposed operations clear the backlog.
-const DAYS_TO_CLEAR: f64 = 7.0;
+const BACKLOG_CLEARANCE_DAYS: f64 = 7.0;
 
 /// Reports a problem if usage exceeds capacity or will soon exceed it.
 pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
@@ -137,7 +137,7 @@ pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     // Subscribers with an open issue do not open a second one, so more issues are opened after the backlog is cleared.
     let free = (people - f64::from(week.open_issues)).max(1.0);
     let inflow = opened * people / free;
-    let needed = inflow + f64::from(week.open_issues) / DAYS_TO_CLEAR;
+    let needed = inflow + f64::from(week.open_issues) / BACKLOG_CLEARANCE_DAYS;
     let dollars = round_up_to_two_digits((needed - base) / per_dollar);
     if dollars <= operations {
         return None;

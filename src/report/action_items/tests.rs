@@ -51,7 +51,7 @@ fn advance_weeks(session: &mut Session, weeks: usize) {
 
 /// Returns the first action item, after checking that the tool accepts the proposed arguments.
 #[track_caller]
-fn first_item(session: &Session) -> ActionItem {
+fn first_action_item(session: &Session) -> ActionItem {
     let all = action_items(session);
     let first = all.first().unwrap_or_else(|| panic!("no need was found")).clone();
     for need in &all {
@@ -66,8 +66,8 @@ fn first_item(session: &Session) -> ActionItem {
 }
 
 #[track_caller]
-fn assert_first(session: &Session, problem: Problem, words: &[&str]) -> ActionItem {
-    let need = first_item(session);
+fn assert_first_problem(session: &Session, problem: Problem, words: &[&str]) -> ActionItem {
+    let need = first_action_item(session);
     assert_eq!(need.problem, problem, "{:#?}", action_items(session));
     for word in words {
         assert!(need.describe().contains(word), "{word} is missing: {}", need.describe());
@@ -81,7 +81,7 @@ fn group(id: &str) -> Group {
 
 #[test]
 fn missing_prices_are_found() {
-    let need = assert_first(
+    let need = assert_first_problem(
         &play_company(3, 1e6, &[], 0),
         Problem::NoPrice,
         &["no plan has a price", "mean budgets a month: S1 $", "the form proposes half of each estimate"],
@@ -103,7 +103,7 @@ fn zero_quotas_are_found() {
     let calls = healthy_calls_with(&[("set_usage_quotas", json!({"A": 0, "B": 0, "C": 0}))]);
     for weeks in [0, 2] {
         let session = play_company(3, 1e6, &calls, weeks);
-        assert_first(
+        assert_first_problem(
             &session,
             Problem::NoQuota,
             &["plans A, B, C have a price and a quota of 0", "units a day cover"],
@@ -115,7 +115,7 @@ fn zero_quotas_are_found() {
         &healthy_calls_with(&[("set_usage_quotas", json!({"A": 2_000, "B": 0, "C": 9_000}))]),
         0,
     );
-    let need = assert_first(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
+    let need = assert_first_problem(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
     let ActionTarget::Call(ToolId::SetUsageQuotas, arguments) = &need.target else { panic!("{need:?}") };
     assert_eq!(
         (&arguments["A"], &arguments["C"]),
@@ -128,7 +128,7 @@ fn zero_quotas_are_found() {
 fn missing_leads_are_found() {
     let calls = healthy_calls_with(&[("set_targeted_ad_spend", json!({"targeted_spend": {}}))]);
     for weeks in [0, 1] {
-        assert_first(
+        assert_first_problem(
             &play_company(3, 1e6, &calls, weeks),
             Problem::NoLeads,
             &["no leads", "$50 a day per channel"],
@@ -144,7 +144,7 @@ fn prices_above_every_budget_are_found() {
         &healthy_calls_with(&[("set_prices", json!({"A": 900, "B": 950, "C": 990}))]),
         2,
     );
-    let need = assert_first(
+    let need = assert_first_problem(
         &session,
         Problem::NoSales(group("S1")),
         &["none signed", "price: the lowest is $900 for A"],
@@ -156,14 +156,14 @@ fn prices_above_every_budget_are_found() {
 }
 
 #[test]
-fn quality_below_the_floor_is_found() {
+fn quality_below_the_requirement_is_found() {
     let calls = healthy_calls_with(&[
         ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
         ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
         ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
     ]);
     let session = play_company(7, 1e6, &calls, 2);
-    let need = assert_first(
+    let need = assert_first_problem(
         &session,
         Problem::NoSales(group("S2")),
         &["quality: the best within their estimated budget of $"],
@@ -179,7 +179,7 @@ fn quality_below_the_floor_is_found() {
 }
 
 #[test]
-fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
+fn plan_with_higher_quality_but_too_small_quota_is_named() {
     let calls = healthy_calls_with(&[
         ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
         ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
@@ -199,7 +199,7 @@ fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
         delivered_quality.by_plan[Plan::B],
         delivered_quality.by_plan[Plan::C]
     );
-    assert_first(
+    assert_first_problem(
         &session,
         Problem::NoSales(group("S2")),
         &[named.as_str(), "but its quota is too small for them"],
@@ -234,7 +234,7 @@ fn offers_changed_today_are_not_diagnosed() {
 fn too_small_quota_is_named_if_quality_suffices() {
     let calls = healthy_calls_with(&[("set_usage_quotas", json!({"A": 4, "B": 4, "C": 4}))]);
     let session = play_company(7, 1e6, &calls, 3);
-    assert_first(&session, Problem::NoSales(group("S1")), &["quota: 4 units a day on"]);
+    assert_first_problem(&session, Problem::NoSales(group("S1")), &["quota: 4 units a day on"]);
 }
 
 #[test]
@@ -244,16 +244,19 @@ fn unprofitable_plan_is_found() {
         ("set_model_tiers", json!({"A": 5, "B": 1, "C": 1})),
     ]);
     let session = play_company(3, 3e6, &calls, 8);
-    let need = assert_first(&session, Problem::Margin, &["plan A loses money", "model tier"]);
+    let need = assert_first_problem(&session, Problem::Margin, &["plan A loses money", "model tier"]);
     let ActionTarget::Call(ToolId::SetModelTiers, arguments) = &need.target else { panic!("{need:?}") };
     assert!(arguments["A"].as_u64().is_some_and(|tier| tier < 5));
 }
 
 #[test]
-fn overload_names_the_tier_that_covers_the_busiest_day_and_its_price() {
+fn overload_item_names_a_sufficient_tier_and_its_price() {
     let session = play_company(3, 2e6, &healthy_calls_with(&[("set_capacity_tier", json!({"tier": 0}))]), 5);
-    let need =
-        assert_first(&session, Problem::Overload, &["above the 50,000 of capacity tier 0", " a day, $"]);
+    let need = assert_first_problem(
+        &session,
+        Problem::Overload,
+        &["above the 50,000 of capacity tier 0", " a day, $"],
+    );
     let busiest = session.weeks().last().expect("a week").busiest_day as f64;
     let ActionTarget::Call(ToolId::SetCapacityTier, arguments) = &need.target else { panic!("{need:?}") };
     let tier = arguments["tier"].as_u64().expect("a tier");
@@ -263,7 +266,7 @@ fn overload_names_the_tier_that_covers_the_busiest_day_and_its_price() {
 }
 
 #[test]
-fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
+fn outages_are_reported_with_the_operations_spend_that_reduces_them() {
     // Targeted operations resolve issues but do not change the frequency of outages.
     let calls = healthy_calls_with(&[
         ("set_daily_spend", json!({"operations": 0, "development": 100})),
@@ -277,8 +280,11 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
         advance_weeks(&mut session, 1);
     }
     let words = "with operations at $0 a day, 3.0% of days have one";
-    let need =
-        assert_first(&session, Problem::Outages, &["outages took", words, "$350 a day reduce this to 1.5%"]);
+    let need = assert_first_problem(
+        &session,
+        Problem::Outages,
+        &["outages took", words, "$350 a day reduce this to 1.5%"],
+    );
     let ActionTarget::Call(ToolId::SetDailySpend, arguments) = &need.target else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
     let share = session.company().outage_share(dollars);
@@ -299,7 +305,7 @@ fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
 }
 
 #[test]
-fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
+fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
     let calls = healthy_calls_with(&[("set_daily_spend", json!({"operations": 0, "development": 100}))]);
     let mut session = play_company(3, 3e6, &calls, 9);
     for _ in 0..6 {
@@ -308,7 +314,7 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
         }
         advance_weeks(&mut session, 1);
     }
-    let need = assert_first(
+    let need = assert_first_problem(
         &session,
         Problem::Backlog,
         &["waiting for support", "without a backlog, and the backlog in "],
@@ -336,12 +342,12 @@ fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
 }
 
 #[test]
-fn churn_wave_names_the_preceding_change() {
+fn churn_wave_item_names_the_preceding_change() {
     let mut session = play_company(3, 3e6, &healthy_calls(), 14);
     let higher = json!({"A": 45, "B": 70, "C": 120});
     session.call("set_prices", &higher, Via::Script).expect("higher prices");
     advance_weeks(&mut session, 1);
-    let need = assert_first(
+    let need = assert_first_problem(
         &session,
         Problem::Churn(group("S1")),
         &["cancelled last week", "you changed price A: 11 → 45"],
@@ -351,7 +357,7 @@ fn churn_wave_names_the_preceding_change() {
 }
 
 #[test]
-fn expiring_threads_link_to_the_largest() {
+fn expiring_threads_item_links_to_the_most_valuable_thread() {
     let mut session = play_company(
         11,
         3e7,
@@ -373,7 +379,7 @@ fn expiring_threads_link_to_the_largest() {
         advance_weeks(&mut session, 1);
     }
     let waiting = session.company().observe().waiting;
-    let need = assert_first(
+    let need = assert_first_problem(
         &session,
         Problem::Threads,
         &["enterprises wait for an answer", "their threads end by day"],
@@ -383,11 +389,11 @@ fn expiring_threads_link_to_the_largest() {
 }
 
 #[test]
-fn short_runway_ranks_first() {
+fn short_runway_is_the_first_action_item() {
     let session = play_company(3, 400_000.0, &healthy_calls(), 1);
     let seen = session.company().observe();
     assert!(seen.runway_weeks.is_some_and(|weeks| (2.0..6.0).contains(&weeks)), "{:?}", seen.runway_weeks);
-    let need = assert_first(
+    let need = assert_first_problem(
         &session,
         Problem::Runway,
         &["cash lasts", "the largest budget is targeted development"],
@@ -432,11 +438,11 @@ fn enterprises_without_suitable_plan_are_found() {
 }
 
 #[test]
-fn table_budget_is_shown_as_in_the_form() {
+fn budgets_in_texts_match_the_form() {
     let each = json!({"S1": 99, "S2": 99, "S3": 99, "E1": 2_999, "E2": 2_999});
     let ads = json!({"targeted_spend": {"linkedin": each, "social_media": each}});
     let session = play_company(3, 400_000.0, &healthy_calls_with(&[("set_targeted_ad_spend", ads)]), 1);
-    let need = assert_first(&session, Problem::Runway, &["the largest budget is advertising"]);
+    let need = assert_first_problem(&session, Problem::Runway, &["the largest budget is advertising"]);
     let ActionTarget::Call(ToolId::SetTargetedAdSpend, arguments) = &need.target else { panic!("{need:?}") };
     let mut mended = session;
     mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
@@ -481,7 +487,7 @@ fn advertising_to_enterprises_without_requests_is_found() {
 }
 
 #[test]
-fn expensive_leads_name_their_earlier_cost() {
+fn expensive_leads_item_names_the_earlier_cost() {
     // A small market is soon saturated, so the same budget brings fewer leads.
     let ads = json!({"targeted_spend": {"content_marketing": {"S1": 6_000}, "social_media": {"S2": 100}}});
     let new = NewRun {
@@ -517,7 +523,7 @@ fn expensive_leads_name_their_earlier_cost() {
     assert!(now >= 2.0 * before, "{now} {before}");
     let cost_text = |each: f64| {
         if each < 100.0 {
-            novamind_base::formatting::cents(each)
+            novamind_base::formatting::dollars_and_cents(each)
         } else {
             crate::formatting::format_money(each)
         }
@@ -535,7 +541,7 @@ fn expensive_leads_name_their_earlier_cost() {
 }
 
 #[test]
-fn baseline_run_gets_no_advice() {
+fn baseline_run_receives_no_proposals() {
     let new = NewRun {
         mode: Mode::Baseline,
         participant: Some("P1".to_owned()),
@@ -552,7 +558,7 @@ fn baseline_run_gets_no_advice() {
 }
 
 #[test]
-fn best_plan_is_named_and_other_development_is_kept() {
+fn quality_item_names_the_best_plan_and_keeps_other_development() {
     let calls = healthy_calls_with(&[
         ("set_usage_quotas", json!({"A": 10, "B": 90_000_000, "C": 90_000_000})),
         ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),

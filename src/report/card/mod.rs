@@ -127,7 +127,7 @@ mod tests {
         }
     }
 
-    fn cash_of_ledger(session: &mut Session, last: u32) -> Vec<f64> {
+    fn ledger_cash(session: &mut Session, last: u32) -> Vec<f64> {
         let until = |day| format!("SELECT total(amount) FROM ledger WHERE day <= {day}");
         (0..=last).map(|day| query_number(session, &until(day))).collect()
     }
@@ -137,7 +137,7 @@ mod tests {
         let mut session = test_kit::finished_run();
         let report = RunReport::from_session(&session);
         let card = Card::from_report(&report);
-        let cash = cash_of_ledger(&mut session, 35);
+        let cash = ledger_cash(&mut session, 35);
         assert_eq!(card.cash_by_day.len(), cash.len());
         for (day, (shown, booked)) in card.cash_by_day.iter().zip(&cash).enumerate() {
             assert!((shown - booked).abs() < 0.005, "day {day}: {shown} and {booked}");

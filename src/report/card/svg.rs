@@ -128,7 +128,7 @@ fn draw_curve(svg: &mut String, card: &Card) {
 mod tests {
     use super::*;
 
-    fn card(cash: &[f64], marks: &[u32]) -> Card {
+    fn sample_card(cash: &[f64], marks: &[u32]) -> Card {
         let fact = |value: &str| LabeledFigure { value: value.to_owned(), name: "n".to_owned() };
         Card {
             headline: "h".to_owned(),
@@ -143,8 +143,8 @@ mod tests {
     }
 
     #[test]
-    fn curve_follows_cash() {
-        let svg = draw(&card(&[100.0, 50.0, 0.0, 25.0], &[0, 2]));
+    fn card_curve_follows_cash() {
+        let svg = draw(&sample_card(&[100.0, 50.0, 0.0, 25.0], &[0, 2]));
         assert!(svg.contains("points=\"60.0,200.0 420.0,300.0 780.0,400.0 1140.0,350.0\""), "{svg}");
         assert!(
             svg.contains("cx=\"60.0\" cy=\"200.0\"") && svg.contains("cx=\"780.0\" cy=\"400.0\""),
@@ -154,9 +154,9 @@ mod tests {
     }
 
     #[test]
-    fn every_run_can_be_drawn() {
+    fn card_is_drawn_for_every_run() {
         for cash in [&[][..], &[-3.0][..], &[0.0, 0.0][..], &[1e9; 700][..]] {
-            let svg = draw(&card(cash, &[0, 900]));
+            let svg = draw(&sample_card(cash, &[0, 900]));
             assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.ends_with("</svg>\n"), "{svg}");
         }
     }

@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn column_heights_match_cash() {
+    fn card_column_heights_match_cash() {
         let cash: Vec<f64> = (0..66).map(|day| f64::from(day) * 10.0).collect();
         let lines = curve_lines(&cash);
         assert_eq!(lines.len(), CURVE_ROWS + 2);
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn bankruptcy_and_empty_runs_are_drawn() {
+    fn card_draws_bankrupt_and_empty_runs() {
         for cash in [&[][..], &[1e6][..], &[1e6, -5.0][..], &[-1.0, -2.0][..]] {
             assert_eq!(curve_lines(cash).len(), CURVE_ROWS + 2);
         }

@@ -40,7 +40,7 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
                 GuessForm::Choice { choices, .. } => choices,
                 GuessForm::Number { .. } => &[],
             };
-            let answers = first_attempts(view, part).filter_map(|run| {
+            let answers = first_tries(view, part).filter_map(|run| {
                 let step = run.evidence.steps.get(step)?;
                 Some((run.label.as_str(), step.guess?, step.outcome?))
             });
@@ -51,7 +51,7 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
 }
 
 /// Returns the first run of each student in a part. Guesses of later tries are ignored because the student knows the outcome.
-fn first_attempts<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
+fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
     let of_part: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
     let firsts: Vec<&ClassRun> =

@@ -137,7 +137,7 @@ fn ranking_table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String 
              </td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
             at + 1,
             escape_html(&student.name),
-            student.max_attempt(),
+            student.max_try(),
             student.hint_count(),
             student.format_goals(),
             escape_html(&student.format_pitfalls())

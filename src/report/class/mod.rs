@@ -15,7 +15,7 @@ pub use guesses::{ClassQuestion, PitfallCount, class_questions, pitfall_counts};
 pub use html::class_to_html;
 pub use ranking::{RankedStudent, rank_students};
 pub use table::{column_descriptions, rows};
-pub use text::{class_to_text, describe_collection, describe_state, format_score};
+pub use text::{class_to_text, describe_collection, describe_submission_count, format_score};
 
 use novamind_base::similar_names;
 use novamind_course::{
@@ -65,7 +65,7 @@ impl ClassView<'_> {
     /// Returns an error if no student has the label, or no run has the decision or the figure.
     pub fn check(&self) -> Result<(), String> {
         if let Some(label) = &self.display.highlighted_student
-            && self.class.student(label).is_none()
+            && self.class.student_by_label(label).is_none()
         {
             let labels = self.class.students.iter().map(|student| student.label.as_str());
             return Err(unknown_name_message("student", label, similar_names(label, labels)));

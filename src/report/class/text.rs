@@ -84,11 +84,11 @@ pub fn describe_collection(view: &ClassView<'_>) -> String {
 }
 
 fn headline(view: &ClassView<'_>) -> String {
-    format!("{} · {}", view.title(), describe_state(view))
+    format!("{} · {}", view.title(), describe_submission_count(view))
 }
 
 /// Summarizes the number of students and submissions.
-pub fn describe_state(view: &ClassView<'_>) -> String {
+pub fn describe_submission_count(view: &ClassView<'_>) -> String {
     let students = view.class.students.len() as u32;
     let of = |verdict: RunVerdict| view.collection.runs.iter().filter(|run| run.verdict == verdict).count();
     let verdicts = [
@@ -154,7 +154,7 @@ fn ranking_text(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
             "{:>4}  {:<width$}  {score:>12}  {:>5}  {:>5}  {:>5}  {}",
             at + 1,
             student.name,
-            student.max_attempt(),
+            student.max_try(),
             student.hint_count(),
             student.format_goals(),
             student.format_pitfalls()
@@ -175,7 +175,7 @@ pub fn format_score(view: &ClassView<'_>, student: &RankedStudent<'_>) -> String
 
 impl RankedStudent<'_> {
     /// Returns the highest try number of the counted runs.
-    pub fn max_attempt(&self) -> u32 {
+    pub fn max_try(&self) -> u32 {
         self.runs.iter().map(|run| run.evidence.tries).max().unwrap_or(0)
     }
 

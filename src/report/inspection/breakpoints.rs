@@ -4,8 +4,8 @@ use super::clean_up_numbers;
 use crate::formatting::pluralize;
 use novamind_base::formatting::decimal_literal;
 use novamind_insight::{
-    Breakpoint, BreakpointHit, BreakpointRun, Condition, ConditionHistory, ConditionState, Direction,
-    Relation, StillTrueBreakpoint,
+    Breakpoint, BreakpointHit, BreakpointRun, ComparisonOperator, Condition, ConditionHistory,
+    ConditionState, Direction, StillTrueBreakpoint,
 };
 
 const MIN_DECIMALS: usize = 4;
@@ -100,7 +100,11 @@ pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<S
 }
 
 /// Lists the days on which a condition became true. Marks days on which the condition's figure had its first value.
-pub fn describe_found_days(condition: &Condition, found: &[ConditionState], last_day: u32) -> Vec<String> {
+pub fn describe_condition_days(
+    condition: &Condition,
+    found: &[ConditionState],
+    last_day: u32,
+) -> Vec<String> {
     let days = pluralize(last_day, "day");
     let head = match found.iter().filter(|condition_state| condition_state.becomes_true()).count() {
         0 => format!("{condition} became true on none of {days}"),
@@ -148,12 +152,12 @@ fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String
     }
 }
 
-fn opposite_symbol(relation: Relation) -> &'static str {
+fn opposite_symbol(relation: ComparisonOperator) -> &'static str {
     match relation {
-        Relation::Above => Relation::AtMost.symbol(),
-        Relation::AtLeast => Relation::Below.symbol(),
-        Relation::Below => Relation::AtLeast.symbol(),
-        Relation::AtMost => Relation::Above.symbol(),
+        ComparisonOperator::Above => ComparisonOperator::AtMost.symbol(),
+        ComparisonOperator::AtLeast => ComparisonOperator::Below.symbol(),
+        ComparisonOperator::Below => ComparisonOperator::AtLeast.symbol(),
+        ComparisonOperator::AtMost => ComparisonOperator::Above.symbol(),
     }
 }
 

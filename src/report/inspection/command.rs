@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use super::{describe_day_difference, describe_found_days, describe_writes};
+use super::{describe_condition_days, describe_day_difference, describe_writes};
 use crate::parameters::{describe_changed_parameter, describe_changed_parameters};
 use novamind_base::formatting::arguments::{Argument, LineParser, ParseError};
 use novamind_base::similar_names;
@@ -211,7 +211,9 @@ impl InspectionOutput {
     /// Returns the result of the command as lines of text.
     pub fn describe(&self) -> Vec<String> {
         match self {
-            InspectionOutput::Days(condition, found, last) => describe_found_days(condition, found, *last),
+            InspectionOutput::Days(condition, found, last) => {
+                describe_condition_days(condition, found, *last)
+            }
             InspectionOutput::Writes(figure_writes) => describe_writes(figure_writes),
             InspectionOutput::Difference(one, other, found) => describe_day_difference(found, (*one, *other)),
             InspectionOutput::Parameters(changed) => describe_changed_parameters(changed),
@@ -233,7 +235,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn commands_are_parsed() {
+    fn parse_accepts_every_command() {
         let read = |line: &str| {
             InspectionCommand::parse(line).unwrap_or_else(|problem| panic!("{line}: {problem:?}"))
         };
@@ -270,7 +272,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_line_panics(first in "find|who|diff|set|x", rest in "\\PC{0,40}") {
+        fn parse_never_panics(first in "find|who|diff|set|x", rest in "\\PC{0,40}") {
             let _ = InspectionCommand::parse(&format!("{first} {rest}"));
         }
     }

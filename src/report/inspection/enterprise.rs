@@ -11,7 +11,7 @@ pub fn describe_enterprise(view: &EnterpriseView) -> Vec<String> {
     let EnterpriseView { customer, group, day, days } = view;
     let mut lines = vec![format!("enterprise {customer} · {group} · day {day}")];
     let before = lines.len();
-    view.threads_of_day().for_each(|thread_day| lines.extend(describe_thread(thread_day)));
+    view.threads_on_shown_day().for_each(|thread_day| lines.extend(describe_thread(thread_day)));
     if lines.len() == before {
         lines.push(match days.last() {
             Some(last) => format!("no thread was open on day {day}; the last one was on day {}", last.day),

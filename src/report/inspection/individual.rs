@@ -18,7 +18,7 @@ pub fn describe_individual(view: &IndividualView) -> Vec<String> {
     let first = &view.signup;
     let arrival = format!("arrived on day {} through {}", first.day, first.source.id());
     let mut lines = vec![format!("customer {} · {} · {arrival}", view.customer, view.group), headline(view)];
-    let Some(individual_day) = view.day_shown() else {
+    let Some(individual_day) = view.shown_state() else {
         lines.extend(describe_signup(first));
         return clean_up_numbers(lines);
     };
@@ -45,7 +45,7 @@ pub fn describe_individual(view: &IndividualView) -> Vec<String> {
 
 /// Describes the decision of the individual on a day, and the terms that would have changed the decision.
 fn headline(view: &IndividualView) -> String {
-    let Some(individual_day) = view.day_shown() else { return signup_headline(view) };
+    let Some(individual_day) = view.shown_state() else { return signup_headline(view) };
     let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &individual_day.weighed_decision;
     let day = individual_day.day;
     match (individual_day.outcome, choice) {

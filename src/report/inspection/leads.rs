@@ -29,7 +29,7 @@ pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)])
     });
     if !held.is_empty() {
         let held_at: Vec<String> = held.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
-        let with = lead_equation.expected_with(held);
+        let with = lead_equation.expected_leads_with(held);
         lines.push(format!(
             "with {}: λ {with:.2} rather than {:.2}",
             held_at.join(", "),

@@ -15,7 +15,9 @@ mod spillover;
 mod streams;
 mod writes;
 
-pub use breakpoints::{describe_breakpoints, describe_condition_history, describe_found_days, describe_stop};
+pub use breakpoints::{
+    describe_breakpoints, describe_condition_days, describe_condition_history, describe_stop,
+};
 pub use command::{InspectionCommand, InspectionOutput};
 pub use difference::{describe_day_difference, describe_run_difference, difference_to_json};
 pub use enterprise::describe_enterprise;

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zeros_have_no_sign_and_numbers_are_short() {
+    fn clean_up_line_removes_signs_of_zeros_and_shortens_numbers() {
         for (text, expected) in [
             ("from S3 -0.0000, then", "from S3 0.0000, then"),
             ("-0 of S1→S2-0 -0.10 (-0.00)", "0 of S1→S2-0 -0.10 (0.00)"),

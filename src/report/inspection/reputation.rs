@@ -1,7 +1,7 @@
 //! Text for the causes of a reputation change.
 
 use super::{clean_up_numbers, describe_recent_days, indented_table};
-use novamind_insight::{ChangeThresholds, DepartureEffect, ReputationEquation, SubscriberContribution};
+use novamind_insight::{CancellationEffect, ChangeThresholds, ReputationEquation, SubscriberContribution};
 use novamind_session::SpilloverEffect;
 use novamind_session::identifiers::Group;
 
@@ -10,8 +10,8 @@ pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<Stri
     let ReputationEquation { group, day, before, after, thresholds: least, .. } = reputation_equation;
     let plain = |name: &str, value: f64| vec![name.to_owned(), format!("{value:.8}")];
     let mut rows = vec![plain("before", *before)];
-    rows.extend(departures_row("cancellations", &reputation_equation.individual_departures));
-    rows.extend(departures_row("lost enterprises", &reputation_equation.enterprise_departures));
+    rows.extend(lost_customers_row("cancellations", &reputation_equation.individual_departures));
+    rows.extend(lost_customers_row("lost enterprises", &reputation_equation.enterprise_departures));
     rows.push(term_row(
         &describe_contribution(&reputation_equation.contribution, least),
         reputation_equation.contribution.applied_change(),
@@ -42,7 +42,7 @@ fn term_row(name: &str, value: f64) -> Vec<String> {
     vec![name.to_owned(), format!("{value:+.8}")]
 }
 
-fn departures_row(name: &str, departure_effect: &DepartureEffect) -> Option<Vec<String>> {
+fn lost_customers_row(name: &str, departure_effect: &CancellationEffect) -> Option<Vec<String>> {
     (departure_effect.count > 0)
         .then(|| term_row(&format!("{} {name}", departure_effect.count), departure_effect.change))
 }

@@ -9,7 +9,11 @@ pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Ve
     let SatisfactionEquation { group, day, weight, departed: left, joined, subscribers, .. } =
         *satisfaction_equation;
     let mut lines = vec![format!("satisfaction of {group} on day {day}")];
-    match (satisfaction_equation.before(), satisfaction_equation.after(), satisfaction_equation.instant()) {
+    match (
+        satisfaction_equation.before(),
+        satisfaction_equation.after(),
+        satisfaction_equation.instant_satisfaction(),
+    ) {
         (Some(before), Some(after), Some(instant)) => {
             lines.push(format!(
                 "  {:.2} × before {before:.4} + {weight:.2} × perceived today {instant:.4} = after {after:.4} \

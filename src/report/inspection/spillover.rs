@@ -58,7 +58,7 @@ impl SpilloverMap {
             true => Vec::new(),
             false => known.iter().copied().filter(is_target).collect(),
         };
-        let cell = |from: Group, to: Group| match spillover.between(from, to) {
+        let cell = |from: Group, to: Group| match spillover.spillover_between(from, to) {
             Some(spill) if spill.counts => SpilloverCell::Applied(spill.change, heat_level(&spill, largest)),
             Some(_) => SpilloverCell::Dropped,
             None => SpilloverCell::NoWeight,

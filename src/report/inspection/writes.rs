@@ -2,7 +2,7 @@
 
 use super::{clean_up_numbers, indented_table};
 use crate::formatting::{category_name, format_whole};
-use novamind_base::formatting::{cents, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_insight::{FigureWrite, FigureWrites, WriteSource, WriteTarget};
 use novamind_session::{EndCause, ReputationCause};
 
@@ -38,13 +38,13 @@ pub fn describe_source(write: &FigureWrite) -> String {
             format!("spillover from {}", spill.source)
         }
         WriteSource::LedgerEntries(category) => category_name(category).to_owned(),
-        WriteSource::Cancellations(cause) => format!("cancelled: {}", end_cause_name(cause)),
+        WriteSource::Cancellations(cause) => format!("cancelled: {}", subscription_end_cause_name(cause)),
         WriteSource::Signups(source) => format!("signed up: {}", source.id()),
         WriteSource::FirstDeals => "first deals".to_owned(),
     }
 }
 
-fn end_cause_name(cause: EndCause) -> &'static str {
+fn subscription_end_cause_name(cause: EndCause) -> &'static str {
     match cause {
         EndCause::Involuntary => "payment failed",
         EndCause::Quality => "no plan acceptable, low satisfaction",
@@ -82,7 +82,7 @@ fn write_notes(target: WriteTarget, write: &FigureWrite) -> String {
 fn format_value(target: WriteTarget, value: f64) -> String {
     match target {
         WriteTarget::Reputation(_) => format!("{value:.9}"),
-        WriteTarget::Cash => cents(value),
+        WriteTarget::Cash => dollars_and_cents(value),
         WriteTarget::Subscribers(_) => grouped_number(value, 0),
     }
 }
@@ -90,7 +90,7 @@ fn format_value(target: WriteTarget, value: f64) -> String {
 fn format_amount(target: WriteTarget, amount: f64) -> String {
     let written = match target {
         WriteTarget::Reputation(_) => return format!("{amount:+.9}"),
-        WriteTarget::Cash => cents(amount),
+        WriteTarget::Cash => dollars_and_cents(amount),
         WriteTarget::Subscribers(_) => grouped_number(amount, 0),
     };
     if amount > 0.0 { format!("+{written}") } else { written }

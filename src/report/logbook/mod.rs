@@ -20,9 +20,9 @@ use super::measures::{BehaviorMeasures, WordCounts};
 use novamind_record::consent::Consent;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
-use novamind_record::trajectory::record::{FiledForecast, RunEndReason};
+use novamind_record::trajectory::record::{RunEndReason, SubmittedForecast};
 use novamind_record::trajectory::{Line, Record, find_end, find_policy};
-use novamind_session::{Attendance, ModelStamp, ScoredForecast, Session, SessionCount, TimeSpent};
+use novamind_session::{Attendance, RecordedModelSettings, ScoredForecast, Session, SessionCount, TimeSpent};
 use timeline::{Timeline, WeekSpan};
 
 /// Log of a run and of the player's actions in it.
@@ -55,7 +55,7 @@ pub struct Logbook {
     /// Whether the parameters differ, or differed on some days, from the bundled scenario of the same name.
     pub has_own_parameters: bool,
     /// The language model that was used as voice; `None` for the built-in voice.
-    pub voice: Option<ModelStamp>,
+    pub voice: Option<RecordedModelSettings>,
     /// Number of earlier runs with the same seed and scenario on the machine.
     pub earlier_runs: u32,
     /// ID of the parent run, if the run is a branch.
@@ -248,9 +248,10 @@ fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
     decisions.extend(decided.iter().flat_map(|week_decisions| week_decisions.purchases.iter().cloned()));
     let cash = session.cash_by_day();
     let own_rationale = span.rationale.as_deref().filter(|_| !span.filed_at_limit);
-    let scored = |filed: &FiledForecast| ScoredForecast::new(span.decision_day, &filed.to_forecast(), cash);
+    let scored =
+        |filed: &SubmittedForecast| ScoredForecast::new(span.decision_day, &filed.to_forecast(), cash);
     WeekRecord {
-        week: novamind_session::week_of(span.day),
+        week: novamind_session::week_of_day(span.day),
         decision_day: span.decision_day,
         day: span.day,
         days_run: span.days_run,
@@ -294,7 +295,7 @@ mod tests {
     use crate::test_kit;
 
     #[test]
-    fn logbook_counts_activity() {
+    fn logbook_counts_player_actions() {
         let (session, lines) = test_kit::recorded_run();
         let book = Logbook::new(&session, &lines, &[]);
         assert_eq!((book.weeks.len(), book.day, book.participant.as_deref()), (2, 14, Some("P 07")));
@@ -317,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn median_is_computed() {
+    fn median_of_seconds_is_computed() {
         assert_eq!(median(vec![]), None);
         assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median(vec![4.0, 1.0]), Some(2.5));

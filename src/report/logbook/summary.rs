@@ -6,7 +6,7 @@ use super::{Logbook, PlayerEffort, WeekRecord};
 use crate::formatting::{format_money, format_whole, pluralize};
 use crate::page::{Block, NamedValue, Page, Table};
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_session::{MIN_BREAK_SECONDS, ModelStamp, TimeSpent};
+use novamind_session::{MIN_BREAK_SECONDS, RecordedModelSettings, TimeSpent};
 
 /// Returns the summary of a session as a page.
 pub fn session_page(book: &Logbook) -> Page {
@@ -38,7 +38,7 @@ pub fn session_page(book: &Logbook) -> Page {
         format!("scenario {}", book.scenario),
         format!("seed {}", book.seed),
     ];
-    tags.extend(book.voice.iter().map(ModelStamp::describe));
+    tags.extend(book.voice.iter().map(RecordedModelSettings::describe));
     tags.extend(book.parent.iter().map(|parent| format!("branch of {parent}")));
     Page {
         title: format!("NovaMind · session {}", book.run),

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use super::PlayerEffort;
 use novamind_record::clock::format_moment;
 use novamind_record::trajectory::record::{
-    Activity, Closing, FiledForecast, LimitEvent, Outcome, Reversal, ScreenView,
+    Activity, ClosedDays, LimitEvent, Outcome, Reversal, ScreenView, SubmittedForecast,
 };
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Attendance, AttendedWeek, Attention, MIN_BREAK_SECONDS};
@@ -33,7 +33,7 @@ pub(super) struct WeekSpan {
     pub decided_at: String,
     pub effort: PlayerEffort,
     pub rationale: Option<String>,
-    pub forecasts: Vec<FiledForecast>,
+    pub forecasts: Vec<SubmittedForecast>,
     /// Whether at least one forecast is naive; `None` if no forecast was filed.
     pub filled_naively: Option<bool>,
     /// Whether a time limit filed the week, without a rationale from the player.
@@ -167,7 +167,7 @@ impl Timeline {
         }
     }
 
-    fn close_week(&mut self, line: &Line, closing: &Closing) {
+    fn close_week(&mut self, line: &Line, closing: &ClosedDays) {
         let mut span = std::mem::take(&mut self.open);
         span.day = line.day;
         span.days_run = closing.days_run;
@@ -194,11 +194,11 @@ mod tests {
         all.iter().enumerate().map(line).collect()
     }
 
-    fn start() -> Record {
+    fn start_line() -> Record {
         Record::Unknown("start".to_owned())
     }
 
-    fn call() -> Record {
+    fn call_line() -> Record {
         let outcome = Outcome::Accepted(json!({}));
         Record::Call(Call {
             tool: novamind_tools::ToolId::SetPrices.into(),
@@ -211,18 +211,18 @@ mod tests {
         })
     }
 
-    fn memo() -> Record {
+    fn memo_line() -> Record {
         Record::Memo(Memo { digest: String::new(), length: 0 })
     }
 
-    fn advance() -> Record {
+    fn advance_line() -> Record {
         let (rationale, forecasts, calculations) = ("wait".to_owned(), Vec::new(), Vec::new());
         Record::Advance(Advance { rationale, forecasts, via: Via::Form, calculations, request: None })
     }
 
-    fn week() -> Record {
+    fn week_line() -> Record {
         let (figures, state_hash, parts) = Default::default();
-        Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
+        Record::Week(ClosedDays { days_run: 7, figures, cash: 0.0, state_hash, parts })
     }
 
     #[test]
@@ -240,11 +240,11 @@ mod tests {
             took_ms: 1.0,
         };
         let timeline = Timeline::from_lines(&lines(&[
-            ("10:00:00", start()),
-            ("10:05:00", call()),
+            ("10:00:00", start_line()),
+            ("10:05:00", call_line()),
             ("10:30:00", Record::Activity(Activity::View(view))),
-            ("10:31:00", advance()),
-            ("10:32:00", week()),
+            ("10:31:00", advance_line()),
+            ("10:32:00", week_line()),
             ("10:33:00", Record::Query(query)),
         ]));
         let effort = &timeline.spans[0].effort;
@@ -267,9 +267,9 @@ mod tests {
             }))
         };
         let timeline = Timeline::from_lines(&lines(&[
-            ("10:00:00", start()),
-            ("10:01:00", advance()),
-            ("10:01:30", week()),
+            ("10:00:00", start_line()),
+            ("10:01:00", advance_line()),
+            ("10:01:30", week_line()),
             ("10:03:30", view(180_000)),
             ("10:04:00", view(20_000)),
         ]));
@@ -281,10 +281,10 @@ mod tests {
     #[test]
     fn clock_set_back_does_not_reduce_time() {
         let timeline = Timeline::from_lines(&lines(&[
-            ("10:00:00", start()),
-            ("10:01:00", memo()),
-            ("09:00:00", memo()),
-            ("09:02:00", memo()),
+            ("10:00:00", start_line()),
+            ("10:01:00", memo_line()),
+            ("09:00:00", memo_line()),
+            ("09:02:00", memo_line()),
         ]));
         assert_eq!((timeline.open.effort.time.active_seconds(), timeline.clock_set_back), (180.0, 1));
     }
@@ -292,12 +292,12 @@ mod tests {
     #[test]
     fn inherited_weeks_are_marked_and_have_no_time() {
         let timeline = Timeline::from_lines(&lines(&[
-            ("10:00:00", start()),
-            ("10:00:01", advance()),
-            ("10:00:02", week()),
+            ("10:00:00", start_line()),
+            ("10:00:01", advance_line()),
+            ("10:00:02", week_line()),
             ("10:00:03", Record::Branch(Branch { from: None })),
-            ("10:01:03", advance()),
-            ("10:01:04", week()),
+            ("10:01:03", advance_line()),
+            ("10:01:04", week_line()),
         ]));
         let seen: Vec<(bool, f64)> = timeline
             .spans

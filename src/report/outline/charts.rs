@@ -230,7 +230,7 @@ mod tests {
     use crate::test_kit::finished_run;
 
     #[test]
-    fn subscriber_points_are_at_week_ends() {
+    fn subscriber_chart_points_are_at_week_ends() {
         let session = finished_run();
         let Some(Block::Chart(chart)) = subscriber_chart(&RunReport::from_session(&session)) else {
             panic!("a chart")

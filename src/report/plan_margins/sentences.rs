@@ -4,7 +4,7 @@ use super::{
     DraftPlanTerms, MarginSetting, NO_USAGE_MESSAGE, PlanSales, PlanUsage, differs_by_a_cent, margin,
 };
 use crate::formatting::format_whole;
-use novamind_base::formatting::{cents, grouped_number, percent};
+use novamind_base::formatting::{dollars_and_cents, grouped_number, percent};
 use novamind_session::identifiers::{ByPlan, Plan};
 
 /// Describes the margins of every plan in sentences.
@@ -48,11 +48,14 @@ fn plan_sentences(
         set.tier,
         on_own(
             &|unit_cost| plan_usage.margin(unit_cost),
-            &format!("the {} a seat and month paid now", cents(paid))
+            &format!("the {} a seat and month paid now", dollars_and_cents(paid))
         )
     );
     if is_at_list {
-        line += &format!("; {}", on_own(&at_list, &format!("the list price of {}", cents(set.price))));
+        line += &format!(
+            "; {}",
+            on_own(&at_list, &format!("the list price of {}", dollars_and_cents(set.price)))
+        );
     }
     if lever == MarginSetting::Quota {
         let full =
@@ -77,7 +80,7 @@ fn plan_sentences(
 fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
     let describe_group = |(group, plan_usage): &(_, PlanUsage)| {
-        let paid = plan_usage.revenue_per_seat().map_or("nothing".to_owned(), cents);
+        let paid = plan_usage.revenue_per_seat().map_or("nothing".to_owned(), dollars_and_cents);
         format!(
             "{group} {}",
             describe_margin(unit_cost.and_then(|unit_cost| plan_usage.margin(unit_cost)), &paid)
@@ -122,7 +125,7 @@ mod tests {
     use crate::test_kit::play_weeks;
 
     #[test]
-    fn sentences_have_no_columns_or_brackets() {
+    fn margin_sentences_have_no_columns_or_brackets() {
         let session = play_weeks(6);
         let sales = PlanSales::load(&session).expect("a database");
         let core = &session.settings().core;
@@ -148,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn losses_are_combined_in_one_sentence() {
+    fn margin_sentences_combine_losses() {
         let text = other_models_sentence(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
         assert_eq!(text.as_deref(), Some("tier 1 50%, a loss on tiers 3, 4 and 5"));
         assert_eq!(other_models_sentence(&[]), None);

@@ -4,7 +4,7 @@ use super::column::{Column, columns};
 use super::rounded;
 use crate::logbook::Logbook;
 use novamind_record::trajectory::Line;
-use novamind_session::week_of;
+use novamind_session::week_of_day;
 
 pub(super) struct LocatedLine<'a> {
     pub line: &'a Line,
@@ -58,6 +58,6 @@ impl LocatedLine<'_> {
     /// Returns the week that is being decided. For a closing line, returns the closed week.
     pub fn week(&self) -> u32 {
         let is_closed = self.line.closes_days() || self.is_after_end || self.line.record.kind() == "end";
-        week_of(if is_closed { self.line.day } else { self.line.day + 1 })
+        week_of_day(if is_closed { self.line.day } else { self.line.day + 1 })
     }
 }

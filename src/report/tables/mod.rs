@@ -34,7 +34,7 @@ fn console_only<T>(run: &Logbook, value: T) -> Option<T> {
 
 /// Returns a value about screen views. Returns `None` for a run whose lines contain sessions but no console session.
 /// Old versions of the console recorded screen views but no sessions.
-fn recorded_screens_only<T>(run: &Logbook, value: T) -> Option<T> {
+fn screen_views_only_if_recorded<T>(run: &Logbook, value: T) -> Option<T> {
     if run.sittings.opened == 0 { Some(value) } else { console_only(run, value) }
 }
 
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_match_the_logbook() {
+    fn table_cells_match_the_logbook() {
         let (session, lines) = crate::test_kit::recorded_run();
         let book = Logbook::new(&session, &lines, &[]);
         let mut tables = StudyTables::default();

@@ -2,12 +2,12 @@
 
 use super::column::{Column, columns};
 use super::{
-    console_only, format_pairs, format_screen_seconds, format_tool_counts, recorded_screens_only, rounded,
-    score_at_horizon,
+    console_only, format_pairs, format_screen_seconds, format_tool_counts, rounded, score_at_horizon,
+    screen_views_only_if_recorded,
 };
 use crate::logbook::Logbook;
-use crate::measures::ChannelSkill;
-use novamind_record::consent::{ConsentGiven, ConsentMeans};
+use crate::measures::BestTriedChannelSpend;
+use novamind_record::consent::{ConsentDetails, ConsentMeans};
 use novamind_session::TimeSpent;
 
 fn scored_forecast_count(run: &Logbook, horizon_days: u32) -> u32 {
@@ -28,7 +28,7 @@ fn first_weeks_error(run: &Logbook, horizon_days: u32) -> Option<f64> {
 }
 
 /// Returns how consent was given, or `None` if the program did not show the consent text.
-fn consent_on_screen(run: &Logbook) -> Option<ConsentGiven> {
+fn consent_on_screen(run: &Logbook) -> Option<ConsentDetails> {
     run.consent
         .as_ref()
         .and_then(|consent| consent.given)
@@ -87,7 +87,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "undone", "count", "accepted calls that undid an earlier call" => run.total.undone;
         "queries", "count", "SQL queries" => run.total.queries;
         "queries_failed", "count", "queries that were rejected or failed" => run.total.queries_failed;
-        "views", "count", "views of screens (console only)" => recorded_screens_only(run, run.total.views);
+        "views", "count", "views of screens (console only)" => screen_views_only_if_recorded(run, run.total.views);
         "memos", "count", "changes to the notes" => run.total.memos;
         "sittings", "count", "number of times the program opened the run; 0 if not recorded (format 1, policies)"
             => run.sittings.opened;
@@ -121,7 +121,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "truly_best_channel_share_by_group", "group=share", "share of advertising on the channel with the highest yield, by group"
             => format_pairs(run.measures.truly_best.iter().flat_map(|best| best.groups.iter().map(|(name, value)| (name, *value))));
         "channels_tried", "per group", "mean number of paid channels over the advertised groups"
-            => run.measures.channels.as_ref().map(ChannelSkill::channels_tried);
+            => run.measures.channels.as_ref().map(BestTriedChannelSpend::mean_channels_tried);
         "best_tried_channel_share", "share", "share of advertising on the paid channel with the most leads per dollar, \
          over the groups with two paid channels and at least three leads from the best channel; visible to \
          players" => run.measures.channels.as_ref().and_then(|skill| skill.share);

@@ -1,7 +1,7 @@
 //! Columns of `weeks.csv`: a row for each week of a run.
 
 use super::column::{Column, columns};
-use super::{console_only, format_screen_seconds, format_tool_counts, recorded_screens_only};
+use super::{console_only, format_screen_seconds, format_tool_counts, screen_views_only_if_recorded};
 use crate::logbook::{Logbook, WeekRecord};
 use novamind_session::ScoredForecast;
 
@@ -72,7 +72,7 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "tools", "tool=count", "accepted calls by tool" => format_tool_counts(&row.week.effort);
         "queries", "count", "SQL queries" => row.week.effort.queries;
         "queries_failed", "count", "queries that were rejected or failed" => row.week.effort.queries_failed;
-        "views", "count", "views of screens (console only)" => recorded_screens_only(row.run, row.week.effort.views);
+        "views", "count", "views of screens (console only)" => screen_views_only_if_recorded(row.run, row.week.effort.views);
         "screens", "screen=seconds", "active time on each screen (console only)" => format_screen_seconds(&row.week.effort);
         "selects", "count", "objects opened: groups, threads, tools, posts, studies" => row.week.effort.selects;
         "dialogs_confirmed", "count", "dialogs confirmed (console only)"

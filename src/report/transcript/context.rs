@@ -26,7 +26,7 @@ pub(super) fn query_metadata(via: Option<QuerySource>, took_ms: f64, stopped: bo
     extra
 }
 
-pub(super) fn reversal_field(reversal: Option<Reversal>) -> Option<(String, Value)> {
+pub(super) fn undone_call_field(reversal: Option<Reversal>) -> Option<(String, Value)> {
     reversal.map(|reversal| match reversal {
         Reversal::Undoes(seq) => ("undoes".to_owned(), seq.into()),
         Reversal::Redoes(seq) => ("redoes".to_owned(), seq.into()),

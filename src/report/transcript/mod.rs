@@ -24,7 +24,7 @@ pub use python_script::to_python_script;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{
-    CalledTool, End, FiledForecast, Outcome, QuerySource, RejectionRecord,
+    CalledTool, End, Outcome, QuerySource, RejectionRecord, SubmittedForecast,
 };
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Playback, SeekTarget, Session, rows_to_json};
@@ -94,7 +94,7 @@ pub enum TranscriptAction {
         /// Rationale of the player.
         rationale: String,
         /// Forecasts that were filed before the week.
-        forecasts: Vec<FiledForecast>,
+        forecasts: Vec<SubmittedForecast>,
         /// Result of the week; `None` if the week did not end.
         result: Option<WeekResult>,
     },
@@ -127,7 +127,7 @@ impl Transcript {
         let mut transcript = Transcript {
             last_day_and_cash: (0, manifest.cash),
             manifest,
-            numbers: ParameterNumbers::for_params(playback.session().params()),
+            numbers: ParameterNumbers::from_params(playback.session().params()),
             opening_dashboard: opening,
             steps: Vec::new(),
             other_lines: Vec::new(),
@@ -148,7 +148,7 @@ impl Transcript {
         let transcript_action = match &line.record {
             Record::Call(call) => {
                 let mut extra = context::call_metadata(call.via, call.took_ms);
-                extra.extend(context::reversal_field(call.reversal));
+                extra.extend(context::undone_call_field(call.reversal));
                 let answer = match &call.outcome {
                     Outcome::Accepted(answer) => Ok(answer.clone()),
                     Outcome::Rejected(refusal) => Err(refusal.clone()),
@@ -245,8 +245,8 @@ impl Transcript {
     }
 }
 
-fn forecasts_as_json(forecasts: &[FiledForecast]) -> Value {
-    let one = |(key, filed): (&&str, &FiledForecast)| {
+fn forecasts_as_json(forecasts: &[SubmittedForecast]) -> Value {
+    let one = |(key, filed): (&&str, &SubmittedForecast)| {
         let value = json!({ "point": filed.point, "lower": filed.lower, "upper": filed.upper });
         ((*key).to_owned(), value)
     };

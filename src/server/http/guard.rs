@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn only_this_machine_and_only_with_the_token() {
+    fn rejection_for_allows_only_this_machine_with_the_token() {
         let open = RequestGuard { token: None };
         for host in ["127.0.0.1", "127.0.0.1:80", "localhost:1", "LOCALHOST", "[::1]:9", "[::1]"] {
             assert_eq!(open.rejection_for(&head(&[(HOST, host)])), None, "{host}");

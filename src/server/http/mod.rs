@@ -31,7 +31,7 @@ use shutdown::Shutdown;
 /// Maximum number of open connections. Additional connections are rejected with status 503.
 const MAX_CONNECTIONS: usize = 64;
 /// Maximum time before a rejected connection is closed.
-const REFUSED_CONNECTION_DEADLINE: Duration = Duration::from_secs(2);
+const REJECTED_CONNECTION_DEADLINE: Duration = Duration::from_secs(2);
 /// Time limit for the arrival of a request's headers.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
 /// Time limit for answering pending requests after a request to stop the server.
@@ -164,7 +164,7 @@ async fn accept_connections(
             if let Ok(place) = refusals.clone().try_acquire_owned() {
                 tokio::spawn(async move {
                     let _ =
-                        tokio::time::timeout(REFUSED_CONNECTION_DEADLINE, refuse_connection(stream)).await;
+                        tokio::time::timeout(REJECTED_CONNECTION_DEADLINE, reject_connection(stream)).await;
                     drop(place);
                 });
             }
@@ -195,7 +195,7 @@ async fn accept_connections(
 }
 
 /// Rejects a connection, and reads its input until it closes. Closing a connection with unread data can lose the response.
-async fn refuse_connection(mut stream: TcpStream) {
+async fn reject_connection(mut stream: TcpStream) {
     let message =
         format!("the server has {MAX_CONNECTIONS} open connections; send the request again in a second");
     let body = ApiResponse::invalid_request(ResponseStatus::Failed, "too_many_connections", message)
@@ -208,7 +208,7 @@ async fn refuse_connection(mut stream: TcpStream) {
     );
     // Some clients report a connection error if the response arrives before they have sent their request.
     let mut unread = [0; 4096];
-    let _ = tokio::time::timeout(REFUSED_CONNECTION_DEADLINE / 2, stream.read(&mut unread)).await;
+    let _ = tokio::time::timeout(REJECTED_CONNECTION_DEADLINE / 2, stream.read(&mut unread)).await;
     let answered = stream.write_all(format!("{head}{body}").as_bytes()).await;
     if answered.is_ok() && stream.shutdown().await.is_ok() {
         while matches!(stream.read(&mut unread).await, Ok(1..)) {}

@@ -149,21 +149,21 @@ async fn call(State(door): State<RouteState>, body: Body) -> Response {
     }
     let request = match fields.rejection.take() {
         Some(refusal) => ApiRequest::RejectedCall { tool, args, refusal },
-        None => ApiRequest::for_tool(&tool, args, fields.take("request_id")),
+        None => ApiRequest::from_tool_call(&tool, args, fields.take("request_id")),
     };
     to_http_response(&door.handle.send(request).await.into_tool_response())
 }
 
 async fn next_week(State(door): State<RouteState>, body: Body) -> Response {
     handle_with_body(&door, ToolId::NextWeek, body, |fields| {
-        ApiRequest::for_tool(ToolId::NextWeek.name(), fields.into_remaining(), Value::Null)
+        ApiRequest::from_tool_call(ToolId::NextWeek.name(), fields.into_remaining(), Value::Null)
     })
     .await
 }
 
 async fn query(State(door): State<RouteState>, body: Body) -> Response {
     handle_with_body(&door, ToolId::Query, body, |fields| {
-        ApiRequest::for_tool(ToolId::Query.name(), fields.into_remaining(), Value::Null)
+        ApiRequest::from_tool_call(ToolId::Query.name(), fields.into_remaining(), Value::Null)
     })
     .await
 }

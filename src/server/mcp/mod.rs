@@ -101,7 +101,7 @@ impl ServerHandler for McpServer {
         _: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
         let arguments = request.arguments.unwrap_or_default();
-        let request = ApiRequest::for_tool(&request.name, arguments.into(), serde_json::Value::Null);
+        let request = ApiRequest::from_tool_call(&request.name, arguments.into(), serde_json::Value::Null);
         Ok(tools::to_call_result(self.handle.send(request).await).into())
     }
 

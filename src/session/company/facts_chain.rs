@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use novamind_world::canonical::hash_of;
+use novamind_world::canonical::canonical_hash;
 use novamind_world::events::Facts;
 use novamind_world::state::{PartHash, combined_hash};
 
@@ -36,7 +36,7 @@ impl FactsChain {
         }
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.hash.as_bytes());
-        hasher.update(hash_of(facts).as_bytes());
+        hasher.update(canonical_hash(facts).as_bytes());
         self.hash = hasher.finalize();
     }
 

@@ -88,7 +88,7 @@ impl Feed {
     }
 
     /// Returns the texts of the posts in `facts`, which must be the newest posts of the feed.
-    pub(crate) fn texts_of(&self, facts: &Facts) -> Vec<String> {
+    pub(crate) fn newest_texts(&self, facts: &Facts) -> Vec<String> {
         let first = self.posts.len().saturating_sub(facts.posts.len());
         self.posts[first..].iter().map(|post| post.content.clone()).collect()
     }
@@ -141,7 +141,7 @@ pub(crate) fn build_entry(
         notices,
         readings: facts.readings.iter().map(novamind_voice::reading_text).collect(),
         turns: facts.turns.iter().map(|turn| novamind_voice::message(turn, personas)).collect(),
-        posts: feed.texts_of(facts),
+        posts: feed.newest_texts(facts),
         addresses: named
             .map(|customer| (customer, novamind_voice::enterprise_address(customer, &personas.email)))
             .collect(),

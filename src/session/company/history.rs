@@ -78,7 +78,7 @@ impl History {
         let repeated = |notice: &Notice| matches!(notice, Notice::LeadLossRepeated { .. });
         let kept_notices = facts.notices.iter().zip(notices).filter(|(notice, _)| !repeated(notice));
         self.notices.extend(kept_notices.map(|(_, text)| (figures.day, text.clone())));
-        groups::count_day(&mut self.current_groups, figures, facts, world);
+        groups::add_day_to_week(&mut self.current_groups, figures, facts, world);
         self.current_week.add_simulated_day(figures, facts, &self.call_ledger, params);
     }
 

@@ -79,12 +79,12 @@ impl IdempotentResponses {
         match self.by_id.get(&request.id) {
             None => Ok(None),
             Some((digest, answer)) if *digest == request.digest => Ok(Some(answer)),
-            Some(_) => Err(payload_mismatch()),
+            Some(_) => Err(payload_mismatch_rejection()),
         }
     }
 }
 
-pub(crate) fn payload_mismatch() -> Rejection {
+pub(crate) fn payload_mismatch_rejection() -> Rejection {
     let message = "this request_id belongs to an earlier request of this run with different contents; nothing was \
          changed. Use a new id for a new request";
     Rejection::for_field("request_id", "request_id_payload_mismatch", message)

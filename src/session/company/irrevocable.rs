@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Formatter};
 use serde::{Deserialize, Serialize};
 
 use super::simulation::Simulation;
-use novamind_base::formatting::{cents, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_world::command::ResolvedCommand;
 use novamind_world::enterprise::messages::OfferMessage;
 use novamind_world::events::Offering;
@@ -118,7 +118,10 @@ impl Simulation {
         let mut alike: BTreeMap<(Option<Group>, Vec<Plan>), Vec<&OfferMessage>> = BTreeMap::new();
         for offer_message in messages {
             let plans = offer_message.offerings.iter().map(|offering| offering.plan).collect();
-            alike.entry((self.group_of(offer_message.customer), plans)).or_default().push(offer_message);
+            alike
+                .entry((self.customer_group(offer_message.customer), plans))
+                .or_default()
+                .push(offer_message);
         }
         let joined = |((group, plans), offer_messages): ((Option<Group>, Vec<Plan>), Vec<&OfferMessage>)| {
             match offer_messages[..] {
@@ -153,14 +156,15 @@ impl Simulation {
     }
 
     fn offer_action(&self, message: &OfferMessage) -> IrrevocableAction {
-        let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
+        let offering =
+            |offering: &Offering| format!("{} {}", offering.plan, dollars_and_cents(offering.price));
         let offerings: Vec<String> = message.offerings.iter().map(offering).collect();
         let company = self.names.name_with_number(message.customer);
         IrrevocableAction::Single(format!("offered to {company}: {}", offerings.join(", ")))
     }
 
-    fn group_of(&self, customer: u32) -> Option<Group> {
-        self.world.enterprise.company(customer).map(|company| company.group)
+    fn customer_group(&self, customer: u32) -> Option<Group> {
+        self.world.enterprise.enterprise_customer(customer).map(|company| company.group)
     }
 }
 
@@ -180,8 +184,8 @@ fn price_range_of_offering(messages: &[&OfferMessage], at: usize) -> (Plan, f64,
 
 fn describe_offering(&(plan, least, most): &(Plan, f64, f64)) -> String {
     match least == most {
-        true => format!("{plan} at {}", cents(least)),
-        false => format!("{plan} at {} to {}", cents(least), cents(most)),
+        true => format!("{plan} at {}", dollars_and_cents(least)),
+        false => format!("{plan} at {} to {}", dollars_and_cents(least), dollars_and_cents(most)),
     }
 }
 
@@ -192,7 +196,7 @@ mod tests {
     use crate::play::Session;
     use novamind_record::folder::configuration::Configuration;
 
-    fn letter(customer: u32, offerings: &[(Plan, f64)]) -> OfferMessage {
+    fn offer_message_to(customer: u32, offerings: &[(Plan, f64)]) -> OfferMessage {
         let offerings =
             offerings.iter().map(|(plan, price)| Offering { plan: *plan, price: *price }).collect();
         OfferMessage {
@@ -207,22 +211,23 @@ mod tests {
     }
 
     #[test]
-    fn few_offers_are_listed_and_many_are_summarized_by_plan() {
+    fn irrevocable_actions_list_few_offers_and_summarize_many() {
         let session = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
         let descriptions = |messages: &[OfferMessage]| {
             let done =
                 session.simulation().irrevocable_actions(&ResolvedCommand::SendDeals(messages.to_vec()));
             done.iter().map(IrrevocableAction::to_string).collect::<Vec<_>>()
         };
-        let few: Vec<OfferMessage> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
+        let few: Vec<OfferMessage> =
+            (1..=5).map(|customer| offer_message_to(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(descriptions(&few).len(), 5);
         let named = |customer: u32| session.company().company_names().name_with_number(customer);
         assert_eq!(descriptions(&few)[0], format!("offered to {}: B $35.00", named(1)));
         let mut many: Vec<OfferMessage> =
-            (1..=3_569).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
+            (1..=3_569).map(|customer| offer_message_to(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(descriptions(&many), ["offered B at $35.00 to 3,569 companies"]);
-        many.push(letter(4_000, &[(Plan::B, 70.5)]));
-        many.push(letter(4_001, &[(Plan::A, 8.0), (Plan::C, 54.0)]));
+        many.push(offer_message_to(4_000, &[(Plan::B, 70.5)]));
+        many.push(offer_message_to(4_001, &[(Plan::A, 8.0), (Plan::C, 54.0)]));
         assert_eq!(
             descriptions(&many),
             [

@@ -55,7 +55,8 @@ impl NoticeParties {
                 })
                 .collect()
         };
-        let group = |customer: u32| world.enterprise.company(customer).map(|company| company.group);
+        let group =
+            |customer: u32| world.enterprise.enterprise_customer(customer).map(|company| company.group);
         let asking: Vec<NoticeCustomer> = facts
             .openings
             .iter()

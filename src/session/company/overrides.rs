@@ -94,14 +94,15 @@ impl Overrides {
         let number = change.seq;
         match change.from_day {
             None => {
-                now = params_with(&now, &change).map_err(|error| ParameterConflict { day: None, error })?
+                now = params_after_change(&now, &change)
+                    .map_err(|error| ParameterConflict { day: None, error })?
             }
             Some(day) => later.insert(later.partition_point(|other| other.from_day <= Some(day)), change),
         }
         let mut waiting: Vec<ScheduledChange> = Vec::with_capacity(later.len());
         for change in later {
             let before = waiting.last().map_or(&now, |last| &last.params);
-            let params = params_with(before, &change).map_err(|error| {
+            let params = params_after_change(before, &change).map_err(|error| {
                 let day = change.from_day.filter(|_| change.seq != number);
                 ParameterConflict { day, error }
             })?;
@@ -153,7 +154,7 @@ impl Overrides {
     }
 }
 
-fn params_with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, ParameterError> {
+fn params_after_change(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, ParameterError> {
     params.with(&change.key, change.value.clone()).map(Arc::new)
 }
 
@@ -199,7 +200,7 @@ pub(crate) struct DerivedValues {
 
 impl DerivedValues {
     pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<ParameterNumbers> {
-        self.numbers.get_or_init(|| ParameterNumbers::for_params(&simulation.params).into()).clone()
+        self.numbers.get_or_init(|| ParameterNumbers::from_params(&simulation.params).into()).clone()
     }
 
     /// Returns whether the parameters differ from the bundled scenario, or differed earlier in the run.
@@ -221,12 +222,12 @@ pub fn require_debug_mode(mode: Mode) -> Result<(), Rejection> {
 }
 
 /// Returns the rejection for an unknown parameter.
-pub fn unknown_parameter(error: ParameterError) -> Rejection {
+pub fn unknown_parameter_rejection(error: ParameterError) -> Rejection {
     Rejection::for_field(error.key, "parameter_unknown", error.problem)
 }
 
 /// Returns the rejection for a value that is not allowed.
-pub fn parameter_not_allowed(ParameterConflict { day, error }: ParameterConflict) -> Rejection {
+pub fn parameter_not_allowed_rejection(ParameterConflict { day, error }: ParameterConflict) -> Rejection {
     let message = match day {
         None => error.problem,
         Some(day) => format!("{} from day {day}, because of a change scheduled for that day", error.problem),

@@ -53,7 +53,7 @@ impl RecordedScores {
     }
 
     fn latest(&self, post: &OwnPost) -> Option<&JudgedPost> {
-        self.0.iter().rev().find(|judged| is_for_post(judged, post))
+        self.0.iter().rev().find(|judged| scores_match_post(judged, post))
     }
 
     pub(crate) fn covers(&self, post: &OwnPost, groups: &[Group]) -> bool {
@@ -74,6 +74,6 @@ impl RecordedScores {
     }
 }
 
-pub(crate) fn is_for_post(judged: &JudgedPost, post: &OwnPost) -> bool {
+pub(crate) fn scores_match_post(judged: &JudgedPost, post: &OwnPost) -> bool {
     judged.posted == post.day && judged.reply_to == post.reply_to && judged.content == post.content
 }

@@ -218,7 +218,7 @@ impl Simulation {
             ..
         } = self;
         let today = reusable_facts(facts, entries);
-        let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
+        let follow_up = FactsProcessor { feed, facts_chain, entries, params, streams };
         let ((figures, trace), ()) = rayon::join(
             || step_day_observed(world, &due, streams, fixed_inputs, today, &**watch),
             || follow_up.process(facts_before, day_before, None),
@@ -232,19 +232,23 @@ impl Simulation {
     /// changed a setting.
     pub fn process_call(&mut self, entries: EntryWriter<'_>, notices: Vec<String>, settings: Option<Value>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
-        FollowUp { feed, facts_chain, entries, params, streams }.process(facts, Some(notices), settings);
+        FactsProcessor { feed, facts_chain, entries, params, streams }.process(
+            facts,
+            Some(notices),
+            settings,
+        );
     }
 
     /// Processes the facts of the last day, if `last_day` contains its notices.
     pub fn process_last_day(&mut self, entries: EntryWriter<'_>, last_day: Option<Vec<String>>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
-        FollowUp { feed, facts_chain, entries, params, streams }.process(facts, last_day, None);
+        FactsProcessor { feed, facts_chain, entries, params, streams }.process(facts, last_day, None);
     }
 
     /// Processes the facts of the last day like [`Simulation::process_last_day`], and hashes the state in parallel.
     pub fn finish_days(&mut self, entries: EntryWriter<'_>, last_day: Option<Vec<String>>) -> StateHash {
         let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
-        let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
+        let follow_up = FactsProcessor { feed, facts_chain, entries, params, streams };
         let (parts, ()) = rayon::join(|| world.part_hashes(), || follow_up.process(facts, last_day, None));
         state_hash(parts, self.facts_chain.hash())
     }
@@ -259,7 +263,7 @@ fn reusable_facts<'a>(facts: &'a mut Arc<Facts>, entries: EntryWriter<'_>) -> &'
     Arc::make_mut(facts)
 }
 
-struct FollowUp<'a> {
+struct FactsProcessor<'a> {
     feed: &'a mut Feed,
     facts_chain: &'a mut FactsChain,
     entries: EntryWriter<'a>,
@@ -267,14 +271,14 @@ struct FollowUp<'a> {
     streams: &'a Streams,
 }
 
-impl FollowUp<'_> {
+impl FactsProcessor<'_> {
     /// Adds the facts to the feed, the hash chain and the database. The database writer shares the facts without
     /// copying them. Does nothing without `notices`.
     fn process(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
         let Some(notices) = notices else { return };
         self.feed.add_posts(facts, self.params, self.streams);
         self.facts_chain.add(facts);
-        let FollowUp { feed, params, entries, .. } = self;
+        let FactsProcessor { feed, params, entries, .. } = self;
         entries.send(|| ProjectionEntry { settings, ..build_entry(facts, notices, feed, params) });
     }
 }

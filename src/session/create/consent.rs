@@ -54,12 +54,12 @@ mod tests {
     use super::*;
     use crate::play::Session;
     use crate::play::open::Access;
-    use novamind_record::consent::ConsentGiven;
+    use novamind_record::consent::ConsentDetails;
     use novamind_record::folder::configuration::CONSENT_FILE;
     use novamind_record::mode::Mode;
 
     fn new(runs: &Path, participant: Option<&str>, agreed: bool, mode: Mode) -> NewRun {
-        let agreed = agreed.then(|| ConsentGiven::on_paper().given_now());
+        let agreed = agreed.then(|| ConsentDetails::on_paper().agree_now());
         let storage = Storage::Runs(runs.to_owned());
         let participant = participant.map(str::to_owned);
         NewRun { mode, participant, agreed, storage, days: Some(28), ..NewRun::default() }

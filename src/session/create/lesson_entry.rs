@@ -8,7 +8,7 @@ use novamind_record::stamp::LessonStamp;
 
 /// The lesson and part that a new run plays.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LessonEntry {
+pub struct LessonOptions {
     /// Lesson that the run plays.
     pub lesson: Arc<Lesson>,
     /// Part that the run plays, from 0.
@@ -17,7 +17,7 @@ pub struct LessonEntry {
     pub is_judged: bool,
 }
 
-impl LessonEntry {
+impl LessonOptions {
     pub(crate) fn stamp(&self) -> LessonStamp {
         let (name, digest) = (self.lesson.name.clone(), self.lesson.digest.clone());
         LessonStamp { name, digest, part: self.part as u32 + 1 }

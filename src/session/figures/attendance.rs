@@ -203,7 +203,7 @@ impl Attendance {
                 self.weeks.iter_mut().for_each(|week| week.is_inherited = true);
                 (self.week_start_ns, self.session_start_ns) = (self.end_ns, self.end_ns);
             }
-            record if record.closing().is_some() => {
+            record if record.closed_days().is_some() => {
                 self.weeks.push(AttendedWeek {
                     from: self.week_start_ns,
                     to: self.end_ns,
@@ -256,7 +256,7 @@ impl Attendance {
 
     /// Returns the time spent in the scope of a limit up to `moment`, in nanoseconds since 1970. Time without key
     /// presses counts as active until the program records the idle time.
-    pub fn spent_so_far(&self, scope: LimitScope, moment: i64) -> TimeSpent {
+    pub fn spent_until(&self, scope: LimitScope, moment: i64) -> TimeSpent {
         let from = match scope {
             LimitScope::Week => self.week_start_ns,
             LimitScope::Session => self.session_start_ns,
@@ -271,7 +271,8 @@ impl Attendance {
     /// Returns how the time since the last line was spent. `record` is the event of the next line, if there is one.
     fn classify_gap(&self, passed: i64, record: Option<&Record>) -> Attention {
         let long = passed > MIN_BREAK_NS;
-        let simulates = |record: &Record| record.closing().is_some() || matches!(record, Record::Voice(_));
+        let simulates =
+            |record: &Record| record.closed_days().is_some() || matches!(record, Record::Voice(_));
         if record.is_some_and(simulates) {
             return Attention::Simulating;
         }
@@ -404,10 +405,10 @@ impl AttendedWeek {
 mod tests {
     use super::*;
     use novamind_record::trajectory::record::{
-        Branch, Clock, Closing, HelpRequest, LeavingCause, PresenceEvent, ScreenView,
+        Branch, Clock, ClosedDays, DetachCause, HelpRequest, PresenceEvent, ScreenView,
     };
 
-    fn attendance_of(lines: &[(i64, Record)]) -> Attendance {
+    fn attendance_from_records(lines: &[(i64, Record)]) -> Attendance {
         let mut attendance = Attendance::default();
         lines.iter().for_each(|(seconds, record)| attendance.add_line(seconds * NS_PER_SECOND, record));
         attendance
@@ -416,7 +417,7 @@ mod tests {
     fn session_record(event: PresenceEvent, interface: Option<&str>, idle_ms: Option<u64>) -> Record {
         Record::Activity(Activity::Session(Box::new(Presence {
             event,
-            cause: (event == PresenceEvent::Closed).then_some(LeavingCause::Quit),
+            cause: (event == PresenceEvent::Closed).then_some(DetachCause::Quit),
             interface: interface.map(str::to_owned),
             machine: String::new(),
             boot: String::new(),
@@ -450,7 +451,7 @@ mod tests {
 
     fn week_record() -> Record {
         let (figures, state_hash, parts) = Default::default();
-        Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
+        Record::Week(ClosedDays { days_run: 7, figures, cash: 0.0, state_hash, parts })
     }
 
     /// Returns active, idle, away and paused seconds.
@@ -461,7 +462,7 @@ mod tests {
 
     #[test]
     fn long_gap_without_presence_is_a_break() {
-        let run = attendance_of(&[
+        let run = attendance_from_records(&[
             (0, help_record()),
             (600, help_record()),
             (1201, help_record()),
@@ -474,7 +475,7 @@ mod tests {
 
     #[test]
     fn idle_time_starts_at_the_last_key() {
-        let run = attendance_of(&[
+        let run = attendance_from_records(&[
             (0, opened_record("console")),
             (660, view_record()),
             (760, session_record(PresenceEvent::Idle, None, Some(120_000))),
@@ -482,13 +483,17 @@ mod tests {
             (1010, help_record()),
         ]);
         assert_eq!(seconds_by_kind(&run), [650.0, 360.0, 0.0, 0.0]);
-        let plain = attendance_of(&[(0, opened_record("plain")), (660, help_record()), (700, help_record())]);
+        let plain = attendance_from_records(&[
+            (0, opened_record("plain")),
+            (660, help_record()),
+            (700, help_record()),
+        ]);
         assert_eq!(seconds_by_kind(&plain), [40.0, 660.0, 0.0, 0.0], "plain mode does not watch keys");
     }
 
     #[test]
     fn closed_stopped_or_unfocused_program_counts_as_away() {
-        let run = attendance_of(&[
+        let run = attendance_from_records(&[
             (0, opened_record("console")),
             (10, presence_record(PresenceEvent::FocusLost)),
             (20, presence_record(PresenceEvent::FocusGained)),
@@ -511,7 +516,7 @@ mod tests {
 
     #[test]
     fn clock_stopped_while_detached_counts_as_paused() {
-        let run = attendance_of(&[
+        let run = attendance_from_records(&[
             (0, opened_record("console")),
             (5, clock_record(ClockEvent::Stopped)),
             (9, presence_record(PresenceEvent::Closed)),
@@ -524,7 +529,7 @@ mod tests {
 
     #[test]
     fn simulated_and_inherited_days_take_no_time() {
-        let run = attendance_of(&[
+        let run = attendance_from_records(&[
             (0, help_record()),
             (60, week_record()),
             (70, Record::Branch(Branch { from: None })),
@@ -534,7 +539,7 @@ mod tests {
             (103, view_record()),
         ]);
         assert_eq!(seconds_by_kind(&run), [13.0, 0.0, 0.0, 0.0]);
-        let at = |scope| run.spent_so_far(scope, 110 * NS_PER_SECOND).active_ms();
+        let at = |scope| run.spent_until(scope, 110 * NS_PER_SECOND).active_ms();
         let scopes = [LimitScope::Week, LimitScope::Session, LimitScope::Study].map(at);
         assert_eq!(scopes, [10_000, 15_000, 20_000]);
     }

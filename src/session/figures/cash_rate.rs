@@ -48,7 +48,7 @@ impl CashRate {
 
 /// Returns the income and the variable costs of a week as positive amounts.
 fn weekly_flows(week: &WeekFigures) -> (f64, f64) {
-    let of = |category| week.booked.total_of(category);
+    let of = |category| week.booked.category_total(category);
     (
         of(Category::SubscriptionPayment) + of(Category::AdRevenue),
         -(of(Category::Compute) + of(Category::LeadAcquisitionCost)),

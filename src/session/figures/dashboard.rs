@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::week::week_of;
+use super::week::week_of_day;
 use novamind_base::formatting::{dollars, grouped_number, percent, price, released_dollars, signed_dollars};
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::CalculationOutput;
@@ -31,7 +31,7 @@ pub fn delivered_quality(world: &World, params: &Params) -> Vec<DeliveredQuality
         .map(|group| DeliveredQuality {
             group,
             by_plan: ByPlan::from_fn(|plan| {
-                let multiplier = params.model(world.settings.core.tiers[plan]).quality_multiplier;
+                let multiplier = params.model_tier(world.settings.core.tiers[plan]).quality_multiplier;
                 world.product.quality(group, params) * multiplier
             }),
             group_bonus: world.product.group_bonus[group],
@@ -57,7 +57,7 @@ pub fn dashboard_text(
     calculated: &[CalculationOutput],
     waiting: WaitingLeads,
 ) -> String {
-    let mut text = format!("=== Week {} (day {}) ===\n", week_of(world.day), world.day);
+    let mut text = format!("=== Week {} (day {}) ===\n", week_of_day(world.day), world.day);
     header_block(&mut text, stocks);
     if let Some(week) = week {
         week_block(&mut text, week);

@@ -76,7 +76,7 @@ impl GroupWeek {
 }
 
 /// Adds the figures and facts of a day to the figures of its week.
-pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
+pub fn add_day_to_week(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
     let arrivals: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
     for arrival in arrivals.values() {
@@ -107,7 +107,7 @@ pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Fa
         }
     }
     for deal in facts.deals.iter().filter(|deal| deal.activated) {
-        if let Some(company) = world.enterprise.company(deal.customer) {
+        if let Some(company) = world.enterprise.enterprise_customer(deal.customer) {
             week[company.group].signed += 1;
         }
     }

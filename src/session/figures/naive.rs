@@ -84,7 +84,7 @@ impl GrowthStage {
 
 /// An interval around the predicted value, in shares of the expected flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ErrorBand {
+pub struct ErrorInterval {
     /// Stage of the companies to which the interval applies.
     pub stage: GrowthStage,
     /// Horizon of the forecasts, in days.
@@ -110,7 +110,7 @@ pub struct Coverage {
 
 /// Intervals and coverage from a back-test of naive forecasts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ErrorBands {
+pub struct ErrorIntervals {
     /// Number of policies in the back-test.
     pub policies: usize,
     /// Number of seeds per policy.
@@ -118,22 +118,22 @@ pub struct ErrorBands {
     /// Measured coverage by horizon.
     pub coverage: Vec<Coverage>,
     /// Intervals by horizon and stage.
-    pub bands: Vec<ErrorBand>,
+    pub bands: Vec<ErrorInterval>,
 }
 
-static BUNDLED: LazyLock<ErrorBands> = LazyLock::new(|| {
+static BUNDLED: LazyLock<ErrorIntervals> = LazyLock::new(|| {
     toml::from_str(include_str!("../../../assets/naive-bands.toml")).expect("the bundled bands are valid")
 });
 
-impl ErrorBands {
+impl ErrorIntervals {
     /// Returns the bundled intervals.
-    pub fn bundled() -> &'static ErrorBands {
+    pub fn bundled() -> &'static ErrorIntervals {
         &BUNDLED
     }
 
     /// Computes the intervals from measured errors. Each error consists of stage, horizon in days, and share of the
     /// expected flow.
-    pub fn from_errors(errors: &[(GrowthStage, u32, f64)], policies: usize, seeds: u64) -> ErrorBands {
+    pub fn from_errors(errors: &[(GrowthStage, u32, f64)], policies: usize, seeds: u64) -> ErrorIntervals {
         let mut horizons: Vec<u32> = errors.iter().map(|(_, horizon, _)| *horizon).collect();
         horizons.sort_unstable();
         horizons.dedup();
@@ -144,7 +144,7 @@ impl ErrorBands {
             let [below, above] = INTERVAL_QUANTILES.map(|share| quantile(&values, share));
             // Four decimals are sufficient: they exceed the precision of the measurement.
             let rounded = |value: f64| (value * 1e4).round() / 1e4;
-            ErrorBand {
+            ErrorInterval {
                 stage,
                 horizon,
                 below: rounded(below.min(-MIN_INTERVAL_SHARE)),
@@ -153,7 +153,7 @@ impl ErrorBands {
             }
         };
         let cells = horizons.into_iter().flat_map(|horizon| GrowthStage::ALL.map(|stage| (horizon, stage)));
-        ErrorBands { policies, seeds, coverage: Vec::new(), bands: cells.map(band).collect() }
+        ErrorIntervals { policies, seeds, coverage: Vec::new(), bands: cells.map(band).collect() }
     }
 
     /// Returns the interval of a stage for a horizon. If the horizon was not measured, returns the interval of the
@@ -206,14 +206,14 @@ pub struct Hindcast {
 }
 
 /// Returns a naive forecast with the given horizon for each past week whose outcome is known.
-pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &ErrorBands) -> Vec<Hindcast> {
+pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &ErrorIntervals) -> Vec<Hindcast> {
     let mut made: Vec<Hindcast> = Vec::new();
     for before in 0..weeks.len() {
         let Some(due) = due_week(weeks, before, horizon) else { break };
         let pace = CashRate::from_weeks(committed_costs_per_day(&weeks[before]), &weeks[..before]);
         let stage = GrowthStage::from_weeks(&weeks[..before]);
-        let point = cash_before(&weeks[before]) + pace.net_per_day() * f64::from(horizon);
-        let bought: f64 = weeks[before + 1..=due].iter().map(purchases).sum();
+        let point = cash_after_purchases(&weeks[before]) + pace.net_per_day() * f64::from(horizon);
+        let bought: f64 = weeks[before + 1..=due].iter().map(booked_purchases).sum();
         let error = (weeks[due].cash - bought - point) / expected_flow(&pace, horizon);
         let (below, above) = bands.interval(stage, horizon);
         let wider = widening_factor(&made, before);
@@ -237,20 +237,20 @@ fn due_week(weeks: &[WeekFigures], before: usize, horizon: u32) -> Option<usize>
 }
 
 /// Returns the cash on the decision day of a week, after the purchases on that day.
-fn cash_before(week: &WeekFigures) -> f64 {
-    week.cash - week.cash_change + purchases(week)
+fn cash_after_purchases(week: &WeekFigures) -> f64 {
+    week.cash - week.cash_change + booked_purchases(week)
 }
 
 /// Returns the amount booked for R&D, market research and studies in a week, as a negative number.
-fn purchases(week: &WeekFigures) -> f64 {
+fn booked_purchases(week: &WeekFigures) -> f64 {
     let kinds = [Category::ResearchProject, Category::MarketResearch, Category::GroupResearch];
-    kinds.iter().map(|category| week.booked.total_of(*category)).sum()
+    kinds.iter().map(|category| week.booked.category_total(*category)).sum()
 }
 
 /// Returns the costs to which the settings of a week committed the company, in dollars per day.
 fn committed_costs_per_day(week: &WeekFigures) -> f64 {
     let kinds = [Category::Capacity, Category::Operations, Category::Development, Category::Advertising];
-    -kinds.iter().map(|category| week.booked.total_of(*category)).sum::<f64>()
+    -kinds.iter().map(|category| week.booked.category_total(*category)).sum::<f64>()
         / f64::from(week.days_run.max(1))
 }
 
@@ -274,7 +274,7 @@ pub(crate) fn naive_forecasts(
     weeks: &[WeekFigures],
     horizons: &[u32],
 ) -> Forecasts {
-    let bands = ErrorBands::bundled();
+    let bands = ErrorIntervals::bundled();
     let stage = GrowthStage::from_weeks(weeks);
     let one = |horizon: u32| {
         let wider = widening_factor(&hindcasts(weeks, horizon, bands), weeks.len());
@@ -353,7 +353,7 @@ mod tests {
     #[test]
     fn intervals_widen_after_errors() {
         let calm = weeks_with_payments(&[1_000.0; 20]);
-        let bands = ErrorBands::bundled();
+        let bands = ErrorIntervals::bundled();
         let errors = hindcasts(&calm, 28, bands);
         // The first forecast is made before the company has income.
         assert_eq!(errors.len(), 17);
@@ -377,12 +377,12 @@ mod tests {
         all[6].booked.add(Category::ResearchProject, -50_000.0);
         all[6].cash_change -= 50_000.0;
         all[6..].iter_mut().for_each(|week| week.cash -= 50_000.0);
-        let errors = hindcasts(&all, 7, ErrorBands::bundled());
+        let errors = hindcasts(&all, 7, ErrorIntervals::bundled());
         assert!(
             errors[1..].iter().all(|hindcast| hindcast.error.abs() < 1e-9 && hindcast.is_covered),
             "{errors:?}"
         );
-        let later = hindcasts(&all, 28, ErrorBands::bundled());
+        let later = hindcasts(&all, 28, ErrorIntervals::bundled());
         assert!(later[1..].iter().all(|hindcast| hindcast.error.abs() < 1e-9), "{later:?}");
         assert!(!later[4].is_covered, "later purchases are part of the outcome");
     }
@@ -391,7 +391,7 @@ mod tests {
     fn from_errors_returns_quantiles() {
         let errors: Vec<(GrowthStage, u32, f64)> =
             (0..=1000).map(|at| (GrowthStage::Steady, 7, f64::from(at) / 1000.0 - 0.4)).collect();
-        let bands = ErrorBands::from_errors(&errors, 1, 1);
+        let bands = ErrorIntervals::from_errors(&errors, 1, 1);
         assert_eq!(bands.interval(GrowthStage::Steady, 7), (-0.38, 0.58));
         assert_eq!(
             bands.interval(GrowthStage::Steady, 30),
@@ -407,8 +407,8 @@ mod tests {
     }
 
     #[test]
-    fn bundled_bands_cover_every_stage_at_90_to_99_percent() {
-        let bands = ErrorBands::bundled();
+    fn bundled_intervals_cover_90_to_99_percent_in_every_stage() {
+        let bands = ErrorIntervals::bundled();
         for (horizon, stage) in
             HORIZONS.into_iter().flat_map(|horizon| GrowthStage::ALL.map(|stage| (horizon, stage)))
         {

@@ -104,7 +104,7 @@ fn error_scale(outcome: f64) -> f64 {
 
 /// Returns all submitted forecasts in order, with their outcomes. `cash_by_day` is the cash at the end of each day,
 /// starting with day 0.
-pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ScoredForecast> {
+pub fn submitted_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ScoredForecast> {
     let mut all = Vec::new();
     for entry in journal {
         let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn error_text_names_the_side_and_no_negative_zero() {
+    fn describe_error_names_the_side_and_no_negative_zero() {
         let texts = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2]
             .map(|outcome| forecast_with_outcome(outcome).describe_error());
         let descriptions = texts.each_ref().map(|text| text.as_deref().unwrap_or_default());

@@ -3,22 +3,22 @@
 use serde_json::{Value, json};
 
 use novamind_base::formatting::json_number;
-use novamind_record::trajectory::record::FiledForecast;
+use novamind_record::trajectory::record::SubmittedForecast;
 use novamind_tools::{FORECAST_KEYS, Forecast};
 
 /// Returns the number of the week that contains a day: 0 for day 0, 1 for days 1 to 7, 2 from day 8.
-pub fn week_of(day: u32) -> u32 {
+pub fn week_of_day(day: u32) -> u32 {
     day.div_ceil(7)
 }
 
 /// SQL expression for the week of a ledger row. Purchases on a decision day belong to the week that follows.
-pub const WEEK_OF_ENTRY_SQL: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
+pub const LEDGER_WEEK_SQL: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
                                  THEN day / 7 + 1 ELSE (day + 6) / 7 END";
 
 /// Returns the SQL condition that selects ledger rows of the weeks from `first` to `last`.
-pub fn entries_of_weeks_sql(first: u32, last: u32) -> String {
+pub fn ledger_weeks_condition_sql(first: u32, last: u32) -> String {
     let (from, to) = (7 * first.saturating_sub(1), 7 * last);
-    format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY_SQL} BETWEEN {first} AND {last}")
+    format!("day BETWEEN {from} AND {to} AND {LEDGER_WEEK_SQL} BETWEEN {first} AND {last}")
 }
 
 /// Four forecasts of cash, and whether each of them is a naive forecast.
@@ -42,8 +42,8 @@ pub fn describe_naive_share(filled: &[bool]) -> Option<String> {
 
 impl Forecasts {
     /// Converts the forecasts of a line. Returns `None` unless the line has four forecasts.
-    pub(crate) fn from_filed(filed: &[FiledForecast]) -> Option<Forecasts> {
-        let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
+    pub(crate) fn from_submitted(filed: &[SubmittedForecast]) -> Option<Forecasts> {
+        let filed: &[SubmittedForecast; 4] = filed.try_into().ok()?;
         Some(Forecasts {
             all: filed.map(|forecast| forecast.to_forecast()),
             filled_naively: filed.map(|forecast| forecast.filled_naively),
@@ -51,10 +51,10 @@ impl Forecasts {
     }
 
     /// Converts the forecasts to the form in which a line records them.
-    pub(crate) fn to_filed(self) -> Vec<FiledForecast> {
+    pub(crate) fn to_submitted(self) -> Vec<SubmittedForecast> {
         let one = |(forecast, filled_naively): (Forecast, bool)| {
             let Forecast { horizon_days, point, lower, upper } = forecast;
-            FiledForecast { horizon_days, point, lower, upper, filled_naively }
+            SubmittedForecast { horizon_days, point, lower, upper, filled_naively }
         };
         self.all.into_iter().zip(self.filled_naively).map(one).collect()
     }
@@ -78,16 +78,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn naive_share_is_described() {
+    fn describe_naive_share_names_all_some_or_none() {
         let texts =
             [[false; 4], [false, true, true, true], [true; 4]].map(|filled| describe_naive_share(&filled));
         assert_eq!(texts, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
     }
 
     #[test]
-    fn week_of_counts_from_1_and_returns_0_for_day_0() {
+    fn week_of_day_counts_from_1_and_returns_0_for_day_0() {
         for (day, week) in [(0, 0), (1, 1), (7, 1), (8, 2), (497, 71), (500, 72), (504, 72)] {
-            assert_eq!(week_of(day), week, "day {day}");
+            assert_eq!(week_of_day(day), week, "day {day}");
         }
     }
 }

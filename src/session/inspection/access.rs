@@ -28,7 +28,7 @@ impl InspectionPermit {
     /// Starts an inspection of a day, by default the last day. The inspection is recorded before hidden state is shown.
     ///
     /// # Errors
-    /// One of the rejections `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `day_unknown`, `new_read_only`, `not_saved`.
     pub fn start(
         run: &mut Session,
         what: &str,
@@ -43,7 +43,7 @@ impl InspectionPermit {
     /// Starts an inspection of the current state of the run. `shown_day` is recorded as the inspected day.
     ///
     /// # Errors
-    /// One of the rejections `not_in_this_mode`, `read_only`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `new_read_only`, `not_saved`.
     pub fn start_at_current_state(
         run: &mut Session,
         what: &str,
@@ -58,7 +58,7 @@ impl InspectionPermit {
     /// in the group and arrival day.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown` (also if the customer arrived later), `customer_not_found`, `read_only`,
+    /// `not_in_this_mode`, `day_unknown` (also if the customer arrived later), `customer_not_found`, `new_read_only`,
     /// `not_saved`.
     pub fn start_for_customer(
         run: &mut Session,
@@ -112,7 +112,7 @@ impl InspectionPermit {
     /// Records an inspection before hidden state is shown.
     ///
     /// # Errors
-    /// `read_only` if the run is open read-only, `not_saved`.
+    /// `new_read_only` if the run is open read-only, `not_saved`.
     fn record(
         run: &mut Session,
         what: &str,
@@ -177,7 +177,7 @@ impl InspectionPermit {
     ///
     /// # Errors
     /// One of the rejections `not_possible`, `not_readable`.
-    pub fn world_at_end_of(&self, run: &Session, day: u32) -> Result<World, Rejection> {
+    pub fn world_at_day_end(&self, run: &Session, day: u32) -> Result<World, Rejection> {
         let evening = Arc::new(WorldCapture { day, world: Mutex::default() });
         self.replay_until(run, day, evening.clone())?;
         let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -190,20 +190,20 @@ fn replay_until(run: &Session, day: u32, watch: Arc<dyn DayObserver>) -> Result<
 }
 
 /// Days to simulate, and the observer that receives these days.
-pub struct WatchedDays<'a> {
+pub struct ObservedDays<'a> {
     /// Number of days to simulate.
     pub days: u32,
     /// Observer that receives the simulated days.
     pub watch: Arc<dyn DayObserver>,
     /// Whether the observer receives the past days first.
-    pub shows_past: bool,
+    pub replays_past_days: bool,
     /// Function that returns whether to continue after a day.
     pub should_continue: &'a dyn Fn(u32) -> bool,
     /// Inspections to record afterward: their kind, and the subject of each inspection.
     pub inspections: (&'a str, Vec<String>),
 }
 
-impl WatchedDays<'_> {
+impl ObservedDays<'_> {
     /// Simulates at least one day of a debug run and passes the days to the observer. Continuing and stopping both
     /// reveal hidden state, so each inspection is recorded on the last day. Without inspections, the observer does not
     /// receive any days.
@@ -217,8 +217,13 @@ impl WatchedDays<'_> {
     ) -> Result<WeekResult, Rejection> {
         run.check_inspection()?;
         run.check_can_step()?;
-        let WatchedDays { days, watch, shows_past, should_continue: goes_on, inspections: (what, which) } =
-            self;
+        let ObservedDays {
+            days,
+            watch,
+            replays_past_days: shows_past,
+            should_continue: goes_on,
+            inspections: (what, which),
+        } = self;
         let until = run.day().saturating_add(days.max(1));
         if which.is_empty() {
             return step_until(run, until, &|_| true, progress);
@@ -226,9 +231,9 @@ impl WatchedDays<'_> {
         if shows_past {
             replay_until(run, run.day(), watch.clone())?;
         }
-        run.set_watch(watch);
+        run.set_observer(watch);
         let week = step_until(run, until, goes_on, progress);
-        run.set_watch(Arc::new(NoObserver));
+        run.set_observer(Arc::new(NoObserver));
         let week = week?;
         for which in which {
             InspectionPermit::record(run, what, &which, run.day())?;
@@ -273,7 +278,7 @@ mod tests {
     use crate::create::{NewRun, Storage};
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::mode::Mode;
-    use novamind_record::rules::{ResultsShown, SessionRules};
+    use novamind_record::rules::{ResultsDisclosure, SessionRules};
     use novamind_record::stamp::StudyStamp;
 
     #[test]
@@ -289,9 +294,9 @@ mod tests {
         session.abandon().expect("it ends");
         let sql = "SELECT count(*) FROM hidden.groups";
         for (practice, results, is_shown) in [
-            (false, ResultsShown::Own, true),
-            (true, ResultsShown::Own, false),
-            (false, ResultsShown::None, false),
+            (false, ResultsDisclosure::Own, true),
+            (true, ResultsDisclosure::Own, false),
+            (false, ResultsDisclosure::None, false),
         ] {
             session.manifest_mut().study = Some(StudyStamp::pilot_study(practice));
             session.manifest_mut().rules =

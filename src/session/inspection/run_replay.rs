@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::company::reports::DayReport;
-use crate::database::unreadable_record;
+use crate::database::unreadable_record_rejection;
 use crate::play::Session;
 use novamind_record::trajectory::Trajectory;
 use novamind_tools::Rejection;
@@ -22,7 +22,7 @@ impl RunReplay {
             let message = "a run in memory has no record, so its past days cannot be simulated again";
             return Err(Rejection::new("not_possible", message));
         }
-        let shadow = Session::replay_of(run, watch).map_err(|error| unreadable_record(&error))?;
+        let shadow = Session::new_replay(run, watch).map_err(|error| unreadable_record_rejection(&error))?;
         Ok(RunReplay(Box::new(shadow)))
     }
 
@@ -44,14 +44,16 @@ impl RunReplay {
             return Ok(());
         }
         let path = folder.join("trajectory.jsonl");
-        let trajectory = Trajectory::read(&path).map_err(|error| unreadable_record(&error))?;
+        let trajectory = Trajectory::read(&path).map_err(|error| unreadable_record_rejection(&error))?;
         let lines = trajectory.lines.iter().skip_while(|line| has_begun && line.seq <= shadow.position().seq);
         let lacking: Vec<_> = lines.take_while(|line| line.seq <= run.position().seq).collect();
         for line in lacking {
             if !goes_on(shadow.day()) {
                 break;
             }
-            shadow.apply_line_with_progress(&path, line, tell).map_err(|error| unreadable_record(&error))?;
+            shadow
+                .apply_line_with_progress(&path, line, tell)
+                .map_err(|error| unreadable_record_rejection(&error))?;
         }
         Ok(())
     }

@@ -16,7 +16,7 @@ use crate::snapshot::file::SNAPSHOT_INTERVAL_WEEKS;
 use novamind_database::{ForecastRow, ProjectionEntry, ProjectionError};
 use novamind_record::clock::parse_seconds;
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::{Advance, Closing, End, RequestId, RunEndReason, Via};
+use novamind_record::trajectory::record::{Advance, ClosedDays, End, RequestId, RunEndReason, Via};
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Rejection, ToolId, ToolKind};
 use novamind_world::fixed_inputs::FixedInputs;
@@ -50,10 +50,10 @@ impl Session {
         self.advance_with_json(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
     }
 
-    /// Simulates a week like [`Session::advance`], with rationale and predictions as JSON.
+    /// Simulates a week like [`Session::advance_line`], with rationale and predictions as JSON.
     ///
     /// # Errors
-    /// The same errors as [`Session::advance`].
+    /// The same errors as [`Session::advance_line`].
     pub fn advance_with_json(
         &mut self,
         rationale: &Value,
@@ -105,7 +105,7 @@ impl Session {
         let calculated = self.run_calculations(via);
         let filed = Advance {
             rationale: text.clone(),
-            forecasts: forecasts.to_filed(),
+            forecasts: forecasts.to_submitted(),
             via,
             calculations: calculated.clone(),
             request: request.clone(),
@@ -268,7 +268,7 @@ impl Session {
     /// be written.
     fn close_days(
         &mut self,
-        kind: fn(Closing) -> Record,
+        kind: fn(ClosedDays) -> Record,
         from: u32,
         last_day: Option<Vec<String>>,
     ) -> WeekResult {
@@ -284,7 +284,7 @@ impl Session {
             self.reword_posts_after(from);
         }
         // The run ends even if the line of its last week is not saved: both lines stay in memory until the disk is writable.
-        let problem = match self.due_end() {
+        let problem = match self.pending_end_reason() {
             Some(ended) => self.close_run(ended),
             None => unclosed,
         };
@@ -316,11 +316,11 @@ impl Session {
 
     /// Closes a run that has reached its last day or is bankrupt. The caller must commit the database.
     pub(crate) fn close_if_over(&mut self) -> Option<String> {
-        self.due_end().and_then(|ended| self.close_run(ended))
+        self.pending_end_reason().and_then(|ended| self.close_run(ended))
     }
 
     /// Returns the reason for the end of the run, if the run is over and not closed yet.
-    fn due_end(&self) -> Option<RunEndReason> {
+    fn pending_end_reason(&self) -> Option<RunEndReason> {
         let Simulation { world, params, .. } = &self.simulation;
         let due = if world.finance.is_bankrupt(params) {
             Some(RunEndReason::Bankruptcy)
@@ -371,9 +371,9 @@ impl Session {
     }
 
     /// Returns the content of the line that closes days. A replay must reproduce this content.
-    pub(crate) fn closing_record(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
+    pub(crate) fn closing_record(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> ClosedDays {
         let (state_hash, parts) = state.clone();
-        Closing {
+        ClosedDays {
             days_run: self.simulation.world.day - from,
             figures: figures.to_json(),
             cash: self.simulation.world.finance.cash,
@@ -404,7 +404,7 @@ impl Session {
 
     pub(crate) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
         let forecasts =
-            Forecasts::from_filed(&filed.forecasts).ok_or("the line does not have four forecasts")?;
+            Forecasts::from_submitted(&filed.forecasts).ok_or("the line does not have four forecasts")?;
         self.history.calculation_outputs.clone_from(&filed.calculations);
         self.store_forecasts(filed.rationale.clone(), &forecasts, at);
         Ok(())

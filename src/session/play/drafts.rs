@@ -51,7 +51,7 @@ impl DraftTexts {
     }
 
     /// Returns each draft text with the name of its field in the record.
-    pub fn texts_by_place(&self) -> Vec<(String, String)> {
+    pub fn texts_by_field(&self) -> Vec<(String, String)> {
         let mut all = vec![("rationale".to_owned(), self.rationale.clone())];
         let forecasts = self.forecasts.as_flattened().iter().filter(|text| !text.is_empty()).cloned();
         all.push(("forecasts".to_owned(), forecasts.collect::<Vec<_>>().join(" ")));
@@ -115,7 +115,7 @@ mod tests {
         drafts.forms.entry(ToolId::SetPrices).or_default().insert("A".to_owned(), "12.".to_owned());
         session.draft_file().save(&drafts);
         assert_eq!(session.draft_file().load(), drafts);
-        let places: Vec<String> = drafts.texts_by_place().into_iter().map(|(place, _)| place).collect();
+        let places: Vec<String> = drafts.texts_by_field().into_iter().map(|(place, _)| place).collect();
         assert_eq!(places, ["rationale", "forecasts", "form set_prices"]);
         let file = session.folder().expect("a folder").join(DRAFTS_FILE);
         std::fs::write(&file, b"{\"rationale\":").expect("written");

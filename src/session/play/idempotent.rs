@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::Session;
 use super::advance::{WeekSubmission, week_arguments};
 use super::tool_call::CallMetadata;
-use crate::company::idempotency::{IdempotentResponse, payload_mismatch};
+use crate::company::idempotency::{IdempotentResponse, payload_mismatch_rejection};
 use crate::company::reports::WeekResult;
 use novamind_record::trajectory::record::{Outcome, RejectionRecord, RequestId, Via};
 use novamind_tools::{Rejection, ToolId, find};
@@ -44,7 +44,7 @@ fn parse_request_id(id: &Value) -> Result<Option<&str>, Rejection> {
 }
 
 impl Session {
-    /// Calls a tool like [`Session::call`], but only once per request id: a retry returns the first response. Tools
+    /// Calls a tool like [`Session::call_line`], but only once per request id: a retry returns the first response. Tools
     /// that only read or execute code ignore the id.
     ///
     /// # Errors
@@ -66,7 +66,9 @@ impl Session {
             }
             Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Accepted(answer)))) => Ok(answer),
             Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(refusal)))) => Err(refusal),
-            Ok(RequestState::Repeated(IdempotentResponse::Week(_))) => Err(payload_mismatch().into()),
+            Ok(RequestState::Repeated(IdempotentResponse::Week(_))) => {
+                Err(payload_mismatch_rejection().into())
+            }
             Ok(RequestState::New(request)) => {
                 let answer =
                     self.call_with_metadata(tool, arguments, via, CallMetadata { reversal: None, request })?;
@@ -95,7 +97,7 @@ impl Session {
             Ok(RequestState::Repeated(IdempotentResponse::Week(week))) => Ok(*week),
             Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(refusal)))) => Err(refusal),
             Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Accepted(_)))) => {
-                Err(payload_mismatch().into())
+                Err(payload_mismatch_rejection().into())
             }
             Ok(RequestState::New(request)) => {
                 let filing = WeekSubmission {

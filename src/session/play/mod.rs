@@ -93,7 +93,7 @@ impl Session {
         database: RunDatabase,
     ) -> Session {
         Session {
-            log: RunLog::read_only(manifest.session_rules()),
+            log: RunLog::new_read_only(manifest.session_rules()),
             manifest,
             folder,
             history: History::new(&simulation.world),
@@ -113,7 +113,7 @@ impl Session {
     }
 
     /// Creates a session on day 0 without a recorder, for a replay.
-    pub(crate) fn read_only(
+    pub(crate) fn new_read_only(
         manifest: Manifest,
         folder: Option<PathBuf>,
         params: Arc<Params>,
@@ -125,9 +125,9 @@ impl Session {
 
     /// Creates a copy of a run that starts before the first line. The copy passes its days to `watch` and reports the
     /// days with their hidden state.
-    pub(crate) fn replay_of(run: &Session, watch: Arc<dyn DayObserver>) -> Result<Session, RunError> {
+    pub(crate) fn new_replay(run: &Session, watch: Arc<dyn DayObserver>) -> Result<Session, RunError> {
         let params = Arc::new(run.manifest.load_params()?);
-        let mut shadow = Session::read_only(run.manifest.clone(), run.folder.clone(), params, None);
+        let mut shadow = Session::new_read_only(run.manifest.clone(), run.folder.clone(), params, None);
         shadow.simulation.watch = watch;
         shadow.is_replay = true;
         Ok(shadow)
@@ -142,7 +142,7 @@ impl Session {
         seal_key: SealKey,
     ) -> Session {
         let log = RunLog::with_recorder(manifest.session_rules(), recorder);
-        let session = Session::read_only(manifest, folder, params, projector);
+        let session = Session::new_read_only(manifest, folder, params, projector);
         let session = Session { log, seal_key, ..session };
         session.write_initial_rows();
         session
@@ -284,7 +284,7 @@ impl Session {
         &self.simulation
     }
 
-    pub(crate) fn set_watch(&mut self, watch: Arc<dyn DayObserver>) {
+    pub(crate) fn set_observer(&mut self, watch: Arc<dyn DayObserver>) {
         self.simulation.watch = watch;
     }
 

@@ -11,7 +11,7 @@ use super::Session;
 use super::open::Access;
 use novamind_record::error::RunError;
 use novamind_record::files::{parent_folder, sync_folder};
-use novamind_record::rules::FreeText;
+use novamind_record::rules::FreeTextRecording;
 use novamind_record::trajectory::record::Note;
 use novamind_record::trajectory::{Durability, Record, Trajectory};
 use novamind_tools::Rejection;
@@ -37,7 +37,7 @@ impl Session {
     /// Saves the notes and records the change.
     ///
     /// # Errors
-    /// One of the rejections `not_saved`, `read_only`.
+    /// One of the rejections `not_saved`, `new_read_only`.
     pub fn set_notes(&mut self, text: &str) -> Result<(), Rejection> {
         if !self.log.is_written() {
             return Err(Rejection::new("read_only", "this run is open read-only"));
@@ -59,7 +59,7 @@ impl Session {
     }
 
     fn record_notes(&mut self, text: &str) -> Result<(), RunError> {
-        let kept = self.manifest.session_rules().free_text == FreeText::Kept;
+        let kept = self.manifest.session_rules().free_text == FreeTextRecording::Kept;
         let (digest, length) = (notes_digest(text.as_bytes()), text.len() as u64);
         let note = Note { digest, length, text: kept.then(|| text.to_owned()) };
         self.append(&Record::Note(note), Durability::Synced)?;

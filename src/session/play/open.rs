@@ -29,7 +29,7 @@ pub enum Access {
 
 /// Functions that store the results of a simulation, so that the next read-only command need not repeat it.
 #[derive(Clone, Copy)]
-pub(crate) struct CacheFunctions {
+pub(crate) struct StoreFunctions {
     /// Returns whether the state at the end of the run may be stored.
     pub(crate) may_store: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
     /// Stores the snapshot and the database. Returns whether both were stored.
@@ -47,10 +47,10 @@ impl Session {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// Opens a run like [`Session::open`], with snapshots that are sealed with `key`.
+    /// Opens a run like [`Session::open_run`], with snapshots that are sealed with `key`.
     ///
     /// # Errors
-    /// The same errors as [`Session::open`].
+    /// The same errors as [`Session::open_run`].
     pub fn open_sealed(
         folder: &Path,
         access: Access,
@@ -64,13 +64,13 @@ impl Session {
     /// read-only commands.
     ///
     /// # Errors
-    /// The same errors as [`Session::open`].
+    /// The same errors as [`Session::open_run`].
     pub(crate) fn open_with_cache(
         folder: &Path,
         access: Access,
         projection: bool,
         key: SealKey,
-        keeping: Option<CacheFunctions>,
+        keeping: Option<StoreFunctions>,
     ) -> Result<Session, RunError> {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();

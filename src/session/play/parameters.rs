@@ -5,8 +5,8 @@ use serde_json::Value;
 use super::Session;
 use super::tool_call::not_saved_rejection;
 use crate::company::overrides::{
-    DerivedValues, ParameterChange, UpdatedParams, json_to_value, parameter_not_allowed, require_debug_mode,
-    unknown_parameter, value_to_json,
+    DerivedValues, ParameterChange, UpdatedParams, json_to_value, parameter_not_allowed_rejection,
+    require_debug_mode, unknown_parameter_rejection, value_to_json,
 };
 use crate::figures::journal::JournalEntry;
 use crate::view::debug_parameters::ChangedParameter;
@@ -25,8 +25,8 @@ impl Session {
     /// before it takes effect.
     ///
     /// # Errors
-    /// `not_in_this_mode` if the run is not a debug run; `run_over`, `read_only`, `day_unknown`, `parameter_unknown`,
-    /// `parameter_not_allowed`, `not_saved`. After an error, nothing has changed.
+    /// `not_in_this_mode` if the run is not a debug run; `run_over`, `new_read_only`, `day_unknown`, `parameter_unknown`,
+    /// `parameter_not_allowed_rejection`, `not_saved`. After an error, nothing has changed.
     pub fn set_parameter(
         &mut self,
         key: &str,
@@ -57,7 +57,7 @@ impl Session {
             let message = format!("the start day must be between {} and {last}, not {day}", today + 1);
             return Err(Rejection::for_field("from", "day_unknown", message));
         }
-        let old = value_to_json(&self.simulation.params.value(key).map_err(unknown_parameter)?);
+        let old = value_to_json(&self.simulation.params.value(key).map_err(unknown_parameter_rejection)?);
         let value = json_to_value(value).ok_or_else(|| {
             Rejection::for_field(key, "parameter_not_allowed", format!("{key} cannot be or contain null"))
         })?;
@@ -69,8 +69,8 @@ impl Session {
             ParameterChange { seq: self.log.position().seq + 1, key: key.to_owned(), value, from_day };
         let mut overrides = self.simulation.overrides.clone();
         let UpdatedParams { current: now, after_change: changed } =
-            overrides.add_change(&self.simulation.params, change).map_err(parameter_not_allowed)?;
-        let new = value_to_json(&changed.value(key).map_err(unknown_parameter)?);
+            overrides.add_change(&self.simulation.params, change).map_err(parameter_not_allowed_rejection)?;
+        let new = value_to_json(&changed.value(key).map_err(unknown_parameter_rejection)?);
         let line = Override { key: key.to_owned(), old: old.clone(), new: new.clone(), from_day };
         self.append(&Record::Override(line.clone()), Durability::Synced).map_err(not_saved_rejection)?;
         self.add_to_journal(self.log.position().seq, &line);

@@ -39,7 +39,7 @@ impl Session {
     }
 
     pub(super) fn new_ticket(&mut self) -> Result<QueryTicket, Rejection> {
-        Ok(self.up_to_date_database()?.interrupt_handle()?.ticket())
+        Ok(self.up_to_date_database()?.interrupt_handle()?.issue_ticket())
     }
 
     /// Runs an SQL statement with these limits without recording the query.

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn database_is_repaired_once_disk_space_is_available() {
+    fn query_repairs_the_database_after_disk_space_is_available() {
         let (first, second) =
             (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
         let mut straight = new_run(first.path());

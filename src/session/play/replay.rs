@@ -13,7 +13,7 @@ use crate::snapshot::file::{RestoredSession, Snapshot};
 use novamind_database::{ProjectionEntry, ProjectionPosition, Projector};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::record::{Closing, Outcome};
+use novamind_record::trajectory::record::{ClosedDays, Outcome};
 use novamind_record::trajectory::{Line, Record, Trajectory, damaged_line_error};
 use novamind_world::params::Params;
 
@@ -30,7 +30,7 @@ impl Session {
         let recall = |snapshot: &Snapshot| snapshot.restore_session(&manifest, &params, lines);
         let recalled = snapshot.and_then(|snapshot| Some((recall(snapshot)?, snapshot)));
         let Some((RestoredSession { simulation, history, notebook }, snapshot)) = recalled else {
-            return (Session::read_only(manifest, path, params, None), 0);
+            return (Session::new_read_only(manifest, path, params, None), 0);
         };
         let position = snapshot.position();
         let seen = position.seq as usize + 1;
@@ -131,7 +131,7 @@ impl Session {
     }
 
     /// Completes the figures of replayed days and compares the state with the recorded state.
-    fn verify_closing(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
+    fn verify_closing(&mut self, from: u32, state: &StateHash, recorded: &ClosedDays) -> Result<(), String> {
         let figures = self.finish_figures();
         let reached = self.closing_record(from, &figures, state);
         self.simulation.facts_chain.close();
@@ -197,7 +197,7 @@ impl Session {
 }
 
 /// Compares the recorded figures with the reached figures, which are derived from the state.
-fn compare_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
+fn compare_figures(reached: &ClosedDays, recorded: &ClosedDays) -> Result<(), String> {
     let name = if reached.days_run != recorded.days_run {
         "days_run"
     } else if reached.figures != recorded.figures {

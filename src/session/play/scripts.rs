@@ -78,7 +78,7 @@ impl Session {
     fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<RawScriptOutput, Rejection> {
         let stop = self.up_to_date_database().and_then(RunDatabase::interrupt_handle);
         let stop = stop.map_err(|refusal| script_failed(refusal.message))?;
-        let (ticket, mode) = (stop.ticket(), self.manifest.mode);
+        let (ticket, mode) = (stop.issue_ticket(), self.manifest.mode);
         let mut answer = |request, left| self.answer_script_request(request, left, noted);
         let host = &mut ScriptHost { is_stopped: &|| stop.is_ticket_stopped(ticket), answer: &mut answer };
         run_python(code, time, mode, host)

@@ -82,7 +82,7 @@ impl Session {
             }
             Command::Post(_) => preview.effect_day = Some(self.simulation.world.day + 1),
             Command::StartResearch(tier) => {
-                preview.cost_now = f64::from(self.simulation.params.research(tier).cost);
+                preview.cost_now = f64::from(self.simulation.params.research_tier(tier).cost);
                 preview.effect_day =
                     Some(self.simulation.world.day + self.simulation.params.development.rd_min_duration_days);
                 preview.research = Some(company.research_outlook(tier));
@@ -92,7 +92,7 @@ impl Session {
                 preview.effect_day = Some(self.simulation.world.day);
             }
             Command::ResearchGroup(_, target) => {
-                let level = self.simulation.params.level(target);
+                let level = self.simulation.params.study_level(target);
                 preview.cost_now = level.cost;
                 preview.effect_day = Some(self.simulation.world.day + level.delay_days);
             }

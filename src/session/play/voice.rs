@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::Session;
 use super::open::Access;
-use crate::company::post_judging::is_for_post;
+use crate::company::post_judging::scores_match_post;
 use crate::model_voice::client::{ModelClient, ModelReply};
 use novamind_database::ProjectionEntry;
 use novamind_record::error::RunError;
@@ -64,7 +64,7 @@ impl Session {
     fn inherited_scores(&self, at: usize) -> Option<JudgedPost> {
         let post = self.simulation.world.market.social.own.get(at)?;
         let judged_post =
-            self.voice.inherited_scores.iter().rev().find(|judged| is_for_post(judged, post))?;
+            self.voice.inherited_scores.iter().rev().find(|judged| scores_match_post(judged, post))?;
         Some(JudgedPost { post: at as u32 + 1, took_ms: 0.0, ..judged_post.clone() })
     }
 
@@ -194,7 +194,7 @@ impl Session {
     /// Opens a run for play, and connects its language model if the configuration names that model.
     ///
     /// # Errors
-    /// The same errors as [`Session::open`].
+    /// The same errors as [`Session::open_run`].
     pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
         let mut session = Session::open(folder, Access::Write, true)?;
         session.connect_model(configuration.voice.as_ref());
@@ -216,8 +216,8 @@ impl Session {
                 return;
             }
             (Some(_), None) => "to use this model, name its settings file with --voice".to_owned(),
-            (Some(model), Some(named)) if named.stamp() != *model => {
-                format!("--voice names a different model: {}", named.stamp().describe())
+            (Some(model), Some(named)) if named.recorded_settings() != *model => {
+                format!("--voice names a different model: {}", named.recorded_settings().describe())
             }
             (Some(_), Some(named)) => match ModelClient::new(named) {
                 Ok(speaker) => {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use crate::create::{NewRun, Storage, StudyEntry};
+use crate::create::{NewRun, Storage, StudyOptions};
 use crate::model_voice::stub::{StubBehavior, StubModel};
 use crate::play::Session;
 use crate::play::open::Access;
@@ -197,7 +197,7 @@ fn baseline_run_has_a_model_only_if_its_study_names_one() {
     assert!(refused.contains("study.toml") && refused.contains("Nothing was recorded"), "{refused}");
     assert_eq!(std::fs::read_dir(runs.path()).expect("a folder").count(), 0);
 
-    let entry = |voice| StudyEntry {
+    let entry = |voice| StudyOptions {
         stamp: StudyStamp {
             name: "pilot".to_owned(),
             digest: "0".repeat(64),

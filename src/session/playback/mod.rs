@@ -11,7 +11,7 @@ use std::path::Path;
 
 use self::position::{Chapter, PlaybackPosition, SeekResult, SeekTarget};
 use self::record_view::RecordView;
-use crate::figures::week::week_of;
+use crate::figures::week::week_of_day;
 use crate::play::Session;
 use crate::resume::origin::{Origin, read_origin};
 use novamind_record::error::RunError;
@@ -119,7 +119,7 @@ impl Playback {
             SeekTarget::Lines(count) => self.applied.saturating_add_signed(count as isize),
             SeekTarget::Week(0) => 1,
             SeekTarget::Week(week) => {
-                let reached = self.boundaries.iter().rfind(|stop| week_of(stop.day) <= week);
+                let reached = self.boundaries.iter().rfind(|stop| week_of_day(stop.day) <= week);
                 reached.map_or(1, |stop| stop.line_count)
             }
             SeekTarget::Weeks(count) if count >= 0 => {
@@ -263,18 +263,18 @@ impl Playback {
             line: self.applied,
             lines: self.valid_lines,
             day: self.session.day(),
-            week: week_of(self.session.day()),
+            week: week_of_day(self.session.day()),
             recorded_day,
-            weeks: week_of(recorded_day),
+            weeks: week_of_day(recorded_day),
             is_following: self.is_following,
             is_at_end: self.is_at_end(),
-            chapter: self.chapter(),
+            chapter: self.current_chapter(),
             branch_rejection: self.branch_rejection().map(|refusal| refusal.message),
         }
     }
 
     /// Returns the decisions before the next week. At the end of the run, returns the decisions before the last week.
-    fn chapter(&self) -> Chapter {
+    fn current_chapter(&self) -> Chapter {
         let last = self.trajectory.lines.len();
         let at_end =
             self.boundaries.last().is_some_and(|stop| stop.line_count == last && self.applied == last);
@@ -284,7 +284,7 @@ impl Playback {
             self.boundaries.iter().find(|stop| stop.line_count > shown).map_or(last, |stop| stop.line_count);
         let (first, day) = from.map_or((1, 0), |stop| (stop.line_count, stop.day));
         let lines = &self.trajectory.lines[first.min(to)..to];
-        let (today, outcome) = (self.session.day(), |due: u32| self.cash_on(due));
+        let (today, outcome) = (self.session.day(), |due: u32| self.cash_on_day(due));
         Chapter {
             week: day / 7 + 1,
             day,
@@ -294,7 +294,7 @@ impl Playback {
     }
 
     /// Returns the cash on a day. For days after the current position, returns the recorded cash, if any.
-    fn cash_on(&self, day: u32) -> Option<f64> {
+    fn cash_on_day(&self, day: u32) -> Option<f64> {
         if day <= self.session.day() {
             return self.session.cash_by_day().get(day as usize).copied();
         }

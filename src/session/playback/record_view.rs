@@ -45,11 +45,11 @@ impl RecordView {
 mod tests {
     use super::*;
     use crate::figures::scored_forecast::IntervalPosition;
-    use novamind_record::trajectory::record::{Advance, FiledForecast, Via};
+    use novamind_record::trajectory::record::{Advance, SubmittedForecast, Via};
 
     #[test]
     fn record_view_marks_future_forecasts() {
-        let one = |horizon_days| FiledForecast {
+        let one = |horizon_days| SubmittedForecast {
             horizon_days,
             point: 100.0,
             lower: 80.0,

@@ -70,7 +70,7 @@ fn seek(playback: &mut Playback, goal: SeekTarget) -> SeekResult {
 
 fn recorded_hashes(folder: &Path) -> BTreeMap<u32, String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
-    let hash = |line: &Line| Some((line.day, line.record.closing()?.state_hash.clone()));
+    let hash = |line: &Line| Some((line.day, line.record.closed_days()?.state_hash.clone()));
     trajectory.lines.iter().filter_map(hash).collect()
 }
 
@@ -144,7 +144,7 @@ fn line_steps_show_states_between_weeks() {
 }
 
 #[test]
-fn future_outcomes_are_marked() {
+fn position_marks_future_outcomes() {
     let run = record_run(Mode::Sandbox, 5);
     let mut playback = Playback::open(&run.folder).expect("it opens");
     let foreseen = |playback: &Playback| {
@@ -165,7 +165,7 @@ fn future_outcomes_are_marked() {
 }
 
 #[test]
-fn notes_appear_once_they_were_written() {
+fn playback_shows_notes_only_after_they_were_written() {
     let run = record_run(Mode::Sandbox, 3);
     let mut playback = Playback::open(&run.folder).expect("it opens");
     assert_eq!(playback.notes(), None);

@@ -74,24 +74,30 @@ fn script_result(
             // The last line of the traceback is the error message. Put it first for displays that show only one line.
             let what = traceback.trim_end().lines().next_back().filter(|line| !line.trim().is_empty());
             let what = what.map_or_else(|| how.clone(), |what| format!("{}; {how}", what.trim()));
-            Err(script_failed(format!("{what}{}{}", paragraph("", &traceback), printed_part(process))))
+            Err(script_failed(format!(
+                "{what}{}{}",
+                paragraph("", &traceback),
+                printed_output_paragraph(process)
+            )))
         }
         ScriptEnd::TimedOut => {
             let seconds =
                 novamind_base::formatting::grouped_number((10.0 * time.as_secs_f64()).round() / 10.0, 1);
             let seconds = seconds.trim_end_matches(".0");
-            let message =
-                format!("the script did not end in {seconds} s and was stopped{}", printed_part(process));
+            let message = format!(
+                "the script did not end in {seconds} s and was stopped{}",
+                printed_output_paragraph(process)
+            );
             Err(Rejection::for_field("code", "script_timeout", message))
         }
         ScriptEnd::Stopped => {
-            let message = format!("the script was cancelled{}", printed_part(process));
+            let message = format!("the script was cancelled{}", printed_output_paragraph(process));
             Err(Rejection::for_field("code", "script_timeout", message))
         }
     }
 }
 
-fn printed_part(process: &ScriptProcess) -> String {
+fn printed_output_paragraph(process: &ScriptProcess) -> String {
     paragraph("output of the script:\n", &process.stdout.last_text(MAX_PRINTED_CHARACTERS))
 }
 

@@ -49,7 +49,7 @@ fn sync_retry_rewrites_earlier_lines() {
 }
 
 #[test]
-fn failed_append_loses_no_other_line() {
+fn failed_append_keeps_earlier_lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut writer, cache) = new_writer(folder.path());
     writer.append(1, &memo_record(1), Durability::Written).expect("a line");
@@ -109,7 +109,7 @@ fn sync_succeeds_only_after_a_rewrite() {
 }
 
 #[test]
-fn full_disk_loses_no_unsynced_line() {
+fn full_disk_keeps_unsynced_lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut writer, cache) = new_writer(folder.path());
     writer.append(1, &memo_record(1), Durability::Written).expect("a line");

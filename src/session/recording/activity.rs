@@ -6,7 +6,7 @@ use super::RunLog;
 use super::machine::Machine;
 use novamind_record::clock::{now, parse_seconds};
 use novamind_record::trajectory::record::{
-    Activity, Clock, ClockEvent, LeavingCause, Limit, LimitEvent, Presence, PresenceEvent, ScreenView,
+    Activity, Clock, ClockEvent, DetachCause, Limit, LimitEvent, Presence, PresenceEvent, ScreenView,
 };
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::Rejection;
@@ -62,7 +62,7 @@ impl<'a> ActivityLog<'a> {
     }
 
     /// Records that the program closes the run.
-    pub fn detach(&mut self, cause: LeavingCause) {
+    pub fn detach(&mut self, cause: DetachCause) {
         let presence = Presence { cause: Some(cause), ..new_presence(PresenceEvent::Closed) };
         self.record(Activity::Session(Box::new(presence)));
     }

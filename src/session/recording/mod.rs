@@ -33,7 +33,7 @@ pub struct RunLog {
 
 impl RunLog {
     /// Creates an empty log without a recorder, for a run that is not written.
-    pub(crate) fn read_only(rules: SessionRules) -> RunLog {
+    pub(crate) fn new_read_only(rules: SessionRules) -> RunLog {
         RunLog {
             rules,
             position: ProjectionPosition { seq: 0, line_hash: String::new() },
@@ -45,7 +45,7 @@ impl RunLog {
     }
 
     pub(crate) fn with_recorder(rules: SessionRules, recorder: Recorder) -> RunLog {
-        RunLog { position: recorder.position(), recorder: Some(recorder), ..RunLog::read_only(rules) }
+        RunLog { position: recorder.position(), recorder: Some(recorder), ..RunLog::new_read_only(rules) }
     }
 
     pub(crate) fn set_recorder(&mut self, recorder: Recorder) {
@@ -94,11 +94,11 @@ impl RunLog {
     /// Returns the time spent in the scope of a limit. The time is zero if the run is open read-only.
     pub fn time_spent(&self, scope: LimitScope) -> TimeSpent {
         let attendance = self.recorder.as_ref().map(Recorder::attendance);
-        attendance.map(|time| time.spent_so_far(scope, parse_nanoseconds(&now()))).unwrap_or_default()
+        attendance.map(|time| time.spent_until(scope, parse_nanoseconds(&now()))).unwrap_or_default()
     }
 
     /// Returns the recorded answers to the questions of a study.
-    pub fn answer_book(&self) -> &AnsweredQuestions {
+    pub fn answered_questions(&self) -> &AnsweredQuestions {
         &self.answers
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use novamind_record::rules::{AtLimit, TimeLimits};
+use novamind_record::rules::{LimitAction, TimeLimits};
 use novamind_record::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
 use novamind_record::trajectory::{Record, Trajectory};
 
@@ -59,10 +59,10 @@ impl SessionClock {
         let is_told = |reached| self.reported_limits.contains(&(left.scope, reached));
         if left.seconds <= 0.0 {
             return (!is_told(true)).then_some(match (limits.at_limit, left.scope) {
-                (AtLimit::Remind, _) => LimitEvent::Reminded,
-                (AtLimit::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
+                (LimitAction::Remind, _) => LimitEvent::Reminded,
+                (LimitAction::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
                 // Only a week can be submitted automatically. For other limits, stop the clock.
-                (AtLimit::Naive | AtLimit::Pause, _) => LimitEvent::Paused,
+                (LimitAction::Naive | LimitAction::Pause, _) => LimitEvent::Paused,
             });
         }
         let warning = limits.warning_minutes.map(|minutes| f64::from(minutes) * 60.0)?;
@@ -90,13 +90,13 @@ impl TimeLeft {
     }
 
     /// Describes the consequence of reaching the limit.
-    pub fn describe_consequence(&self, at_limit: AtLimit) -> &'static str {
+    pub fn describe_consequence(&self, at_limit: LimitAction) -> &'static str {
         match at_limit {
-            AtLimit::Remind => "then you are asked to finish",
-            AtLimit::Naive if self.scope == LimitScope::Week => {
+            LimitAction::Remind => "then you are asked to finish",
+            LimitAction::Naive if self.scope == LimitScope::Week => {
                 "then the week is submitted with naive forecasts, without your text"
             }
-            AtLimit::Naive | AtLimit::Pause => "then the clock is stopped",
+            LimitAction::Naive | LimitAction::Pause => "then the clock is stopped",
         }
     }
 }
@@ -104,7 +104,7 @@ impl TimeLeft {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_record::trajectory::record::{Clock, Closing, Limit};
+    use novamind_record::trajectory::record::{Clock, ClosedDays, Limit};
 
     fn limit_record(limit: LimitScope, event: LimitEvent) -> Record {
         Record::Activity(Activity::Limit(Limit { limit, event, minutes: 10, used_ms: 0 }))
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn limit_events_are_reported_once() {
         let limits =
-            TimeLimits { warning_minutes: Some(2), at_limit: AtLimit::Naive, ..TimeLimits::default() };
+            TimeLimits { warning_minutes: Some(2), at_limit: LimitAction::Naive, ..TimeLimits::default() };
         let left = |scope, seconds| TimeLeft { scope, minutes: 10, seconds };
         let mut session_clock = SessionClock::default();
         assert_eq!(session_clock.due_event(left(LimitScope::Week, 121.0), &limits), None);
@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(session_clock.due_event(left(LimitScope::Week, -5.0), &limits), None);
         let (figures, state_hash, parts) = Default::default();
         session_clock
-            .apply(&Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
+            .apply(&Record::Week(ClosedDays { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
         assert_eq!(
             session_clock.due_event(left(LimitScope::Week, 100.0), &limits),
             Some(LimitEvent::Warned),

@@ -24,7 +24,7 @@ impl Session {
     /// branch in a mode other than debug if the copied lines change parameters or the run has a seeded fault.
     /// `guess_first` while a question of a lesson is unanswered; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Rejection> {
-        StagedBranch::stage(self, week, mode)?.publish().map_err(not_saved_error)
+        StagedBranch::stage(self, week, mode)?.publish().map_err(branch_not_saved_rejection)
     }
 }
 
@@ -53,13 +53,14 @@ impl StagedBranch {
                 format!("cannot branch from week {week}; choose a week from 1 to {last}"),
             ));
         }
-        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved_error)?;
+        let trajectory =
+            Trajectory::read(&folder.join("trajectory.jsonl")).map_err(branch_not_saved_rejection)?;
         stage_branch(folder, run.manifest(), lines_before(&trajectory, day), mode)
     }
 }
 
 /// Returns the rejection for a line or file that could not be written.
-pub fn not_saved_error(error: RunError) -> Rejection {
+pub fn branch_not_saved_rejection(error: RunError) -> Rejection {
     Rejection::new("not_saved", error.to_string())
 }
 
@@ -74,7 +75,7 @@ pub(crate) fn create_branch(
     lines: &[Line],
     mode: Mode,
 ) -> Result<Session, Rejection> {
-    stage_branch(folder, parent, lines, mode)?.publish().map_err(not_saved_error)
+    stage_branch(folder, parent, lines, mode)?.publish().map_err(branch_not_saved_rejection)
 }
 
 fn stage_branch(
@@ -111,7 +112,7 @@ fn stage_branch(
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
-    StagedBranch::create(folder, &manifest, &shared).map_err(not_saved_error)
+    StagedBranch::create(folder, &manifest, &shared).map_err(branch_not_saved_rejection)
 }
 
 /// Creates another attempt at a lesson that starts on a day of an earlier attempt, and opens the new run.
@@ -137,7 +138,9 @@ pub fn create_lesson_branch(
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
-    StagedBranch::create(folder, &manifest, &shared).and_then(StagedBranch::publish).map_err(not_saved_error)
+    StagedBranch::create(folder, &manifest, &shared)
+        .and_then(StagedBranch::publish)
+        .map_err(branch_not_saved_rejection)
 }
 
 /// Returns the lesson's lines on the first day of a step, before the step starts: the initial calls, and the

@@ -30,7 +30,7 @@ impl Origin {
         let (projector, _) =
             Projector::start(DatabaseLocation::new_in_memory(), 0, self.params.clone(), |_| false)?;
         let (manifest, params) = (self.manifest.clone(), self.params.clone());
-        Ok(Session::read_only(manifest, self.folder.clone(), params, Some(projector)))
+        Ok(Session::new_read_only(manifest, self.folder.clone(), params, Some(projector)))
     }
 
     /// Replays recorded lines in memory. Calls `after_line` with the session after each line. With `has_database`, the
@@ -46,7 +46,7 @@ impl Origin {
     ) -> Result<Session, RunError> {
         let start = || Projector::start(DatabaseLocation::new_in_memory(), 0, self.params.clone(), |_| false);
         let projector = has_database.then(start).transpose()?.map(|(projector, _)| projector);
-        let mut session = Session::read_only(self.manifest.clone(), None, self.params.clone(), projector);
+        let mut session = Session::new_read_only(self.manifest.clone(), None, self.params.clone(), projector);
         for line in lines {
             session.apply_line(&self.path, line)?;
             if has_database && matches!(line.record, Record::Activity(Activity::Lesson(_))) {

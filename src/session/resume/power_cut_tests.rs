@@ -78,7 +78,7 @@ fn copy_after_power_cut(session: &Session, to: &Path, cache: &PageCache, chance:
 }
 
 #[test]
-fn power_cut_loses_nothing_confirmed() {
+fn power_cut_keeps_confirmed_lines() {
     let runs = tempfile::tempdir().expect("a folder");
     let places = tempfile::tempdir().expect("a folder");
     let (mut session, cache) = new_session(NewRun { days: Some(200), ..new_run(runs.path()) });
@@ -133,7 +133,7 @@ fn power_cut_keeps_complete_weeks_of_headless_runs() {
 }
 
 #[test]
-fn failed_syncs_before_a_power_cut_lose_nothing_confirmed() {
+fn power_cut_after_failed_syncs_keeps_confirmed_lines() {
     let runs = tempfile::tempdir().expect("a folder");
     let places = tempfile::tempdir().expect("a folder");
     let (mut session, cache) = new_session(NewRun { days: Some(200), ..new_run(runs.path()) });

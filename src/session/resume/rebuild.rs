@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::permission::can_inspect;
 use crate::play::Session;
-use crate::play::open::{Access, CacheFunctions, open_projector};
+use crate::play::open::{Access, StoreFunctions, open_projector};
 use crate::snapshot::file::SnapshotTarget;
 use crate::snapshot::integrity::{Integrity, is_database_unchanged};
 use crate::snapshot::sealing::SealKey;
@@ -85,9 +85,9 @@ impl Session {
     /// folder, so that the next command opens the run immediately.
     ///
     /// # Errors
-    /// The same errors as [`Session::open`].
+    /// The same errors as [`Session::open_run`].
     pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
-        let keeping = CacheFunctions {
+        let keeping = StoreFunctions {
             may_store: may_store_end,
             store_database: |folder, key| rebuild_database(folder, key, &mut |_, _| {}).is_ok(),
             store_snapshot: Session::store_end,
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn ended_run_is_simulated_by_the_first_reader_and_by_no_other() {
+    fn open_to_read_simulates_an_ended_run_only_once() {
         for mode in [Mode::Sandbox, Mode::Baseline] {
             let runs = tempfile::tempdir().expect("a folder");
             let folder = run_without_derived_files(runs.path(), mode, true);
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn reader_without_a_database_keeps_the_snapshot_alone() {
+    fn open_to_read_without_database_stores_only_the_snapshot() {
         let runs = tempfile::tempdir().expect("a folder");
         let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
         Session::open_to_read(&folder, false).expect("it opens");
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn query_keeps_the_end_of_a_run() {
+    fn query_stores_the_end_of_a_run() {
         let runs = tempfile::tempdir().expect("a folder");
         let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
         rebuild_database(&folder, &SealKey::default(), &mut |_, _| {}).expect("a database");
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn reader_writes_nothing_of_an_unfinished_run_or_of_one_in_use() {
+    fn open_to_read_stores_nothing_for_unfinished_runs_and_runs_in_use() {
         let runs = tempfile::tempdir().expect("a folder");
         for projection in [false, true] {
             let unfinished = run_without_derived_files(runs.path(), Mode::Baseline, false);
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn snapshot_that_only_a_study_opens_is_not_replaced() {
+    fn open_to_read_keeps_snapshots_sealed_with_a_study_secret() {
         let runs = tempfile::tempdir().expect("a folder");
         let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
         let key = SealKey::with_study_secret(&[7; 32]);

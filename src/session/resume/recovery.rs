@@ -67,7 +67,7 @@ fn count_valid_lines(
     problem: &mut Option<(usize, String)>,
 ) -> Result<usize, RunError> {
     let params = Arc::new(manifest.load_params()?);
-    let mut session = Session::read_only(manifest.clone(), None, params, None);
+    let mut session = Session::new_read_only(manifest.clone(), None, params, None);
     // Number of lines up to the last reproduced state; at least 1.
     let mut reached = 1;
     for (at, line) in lines.iter().enumerate() {
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn recover_keeps_weeks_before_a_gap_and_makes_a_sandbox() {
+    fn recover_keeps_weeks_before_missing_lines_in_a_sandbox_run() {
         let run = record_run(Mode::Baseline, 3);
         let found = recover_damaged(&run, |bytes| {
             let middle = line_start(bytes, 9) + 20;

@@ -43,12 +43,12 @@ pub fn verify_sealed(path: &Path, key: &SealKey) -> Result<Verification, RunErro
         Integrity::read(folder, &manifest, key).check(&path, &trajectory)?;
     }
     let run = manifest.id.clone();
-    let mut session = Session::read_only(manifest, None, params, None);
+    let mut session = Session::new_read_only(manifest, None, params, None);
     for line in &trajectory.lines {
         session.apply_line(&path, line)?;
     }
     let states = trajectory.lines.iter().filter(|line| line.closes_days());
-    let last = trajectory.lines.iter().rev().find_map(|line| line.record.closing());
+    let last = trajectory.lines.iter().rev().find_map(|line| line.record.closed_days());
     Ok(Verification {
         run,
         lines: trajectory.lines.len(),

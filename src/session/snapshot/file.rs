@@ -36,7 +36,7 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{CalculationOutput, RequestId, RunEndReason};
 use novamind_record::trajectory::{Line, Record, first_line_hash};
 use novamind_tools::Notebook;
-use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
+use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical_bytes};
 use novamind_world::params::Params;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
@@ -346,7 +346,7 @@ impl SnapshotTarget {
     /// shows whether the file is intact.
     fn write(&self, header: &Header, state: &mut [u8]) {
         let Some(keys) = &self.keys else { return };
-        let mut header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
+        let mut header = canonical_bytes(&serde_json::to_string(header).unwrap_or_default());
         let envelope = keys.seal(&mut header, state).to_bytes();
         let draft = self.path.with_extension("draft");
         // Write the pieces separately to avoid another copy of a large state in memory.

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::CompanyView;
-use crate::company::overrides::{require_debug_mode, unknown_parameter, value_to_json};
+use crate::company::overrides::{require_debug_mode, unknown_parameter_rejection, value_to_json};
 use novamind_record::folder::configuration::Configuration;
 use novamind_tools::Rejection;
 use novamind_world::params::Params;
@@ -52,7 +52,12 @@ impl DebugParameters<'_> {
     /// # Errors
     /// The rejection `parameter_unknown`.
     pub fn value(&self, key: &str) -> Result<Value, Rejection> {
-        self.0.simulation.params.value(key).map(|value| value_to_json(&value)).map_err(unknown_parameter)
+        self.0
+            .simulation
+            .params
+            .value(key)
+            .map(|value| value_to_json(&value))
+            .map_err(unknown_parameter_rejection)
     }
 
     /// Returns the parameters that differ from the scenario, and the scheduled changes.

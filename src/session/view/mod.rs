@@ -21,7 +21,7 @@ use crate::figures::dashboard::{DeliveredQuality, delivered_quality};
 use crate::figures::estimates::Estimates;
 use crate::figures::groups::GroupWeek;
 use crate::figures::naive;
-use crate::figures::scored_forecast::{ForecastScore, filed_forecasts};
+use crate::figures::scored_forecast::{ForecastScore, submitted_forecasts};
 use crate::figures::week::Forecasts;
 use novamind_database::query::QueryLimits;
 use novamind_record::figures::WeekFigures;
@@ -141,7 +141,7 @@ impl<'a> CompanyView<'a> {
 
     /// Returns the running costs that depend only on settings, in dollars per day.
     pub(crate) fn daily_cost(&self, settings: &Settings) -> f64 {
-        let capacity = self.simulation.params.capacity(settings.core.capacity_tier);
+        let capacity = self.simulation.params.capacity_tier(settings.core.capacity_tier);
         daily_cost(settings, f64::from(capacity.cost_per_day))
     }
 
@@ -178,7 +178,7 @@ impl<'a> CompanyView<'a> {
 
     /// Returns the scores of the submitted forecasts, one score per horizon.
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
-        let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
+        let filed = submitted_forecasts(&self.history.journal, &self.history.cash_by_day);
         let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
         horizons.map(|horizon| ForecastScore::from_forecasts(*horizon, &filed)).collect()
     }

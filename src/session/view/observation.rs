@@ -9,11 +9,11 @@ use crate::company::irrevocable::IrrevocableAction;
 use crate::figures::cash_rate::CashRate;
 use crate::figures::changes::SettingChange;
 use crate::figures::dashboard::{self, WaitingLeads};
-use crate::figures::week::week_of;
+use crate::figures::week::week_of_day;
 use novamind_record::figures::{CategoryTotals, WeekFigures};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_voice::model::settings::ModelStamp;
+use novamind_voice::model::settings::RecordedModelSettings;
 use novamind_world::day::closing_figures;
 use novamind_world::identifiers::{Group, Plan};
 
@@ -32,7 +32,7 @@ pub struct Observation {
     pub has_own_parameters: bool,
     /// Language model of the run, if one is used.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub voice: Option<ModelStamp>,
+    pub voice: Option<RecordedModelSettings>,
     /// Whether the run is a branch of another run.
     pub is_branch: bool,
     /// Label of the participant.
@@ -141,7 +141,7 @@ impl CompanyView<'_> {
             participant: self.manifest.participant.clone(),
             day: self.simulation.world.day,
             last_day: self.manifest.days,
-            week: week_of(self.simulation.world.day),
+            week: week_of_day(self.simulation.world.day),
             cash: self.simulation.world.finance.cash,
             starting_cash: self.manifest.cash,
             cash_change: self.latest_figures().map_or(0.0, |week| week.cash_change),
@@ -219,7 +219,7 @@ impl CompanyView<'_> {
         let enterprise = &self.simulation.world.enterprise;
         let threads = enterprise.threads.iter().filter(|thread| thread.awaits_player());
         let waiting = threads.map(|thread| {
-            let company = enterprise.company(thread.customer);
+            let company = enterprise.enterprise_customer(thread.customer);
             let row = company.and_then(|company| company.row(&self.simulation.world.customers));
             WaitingThread {
                 thread: thread.number,

@@ -69,7 +69,7 @@ impl CompanyView<'_> {
     pub fn research_outlook(&self, tier: u8) -> ResearchOutlook {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let (research_tier, development) =
-            (self.simulation.params.research(tier), &self.simulation.params.development);
+            (self.simulation.params.research_tier(tier), &self.simulation.params.development);
         let spread = || {
             let left = last_day.saturating_sub(today);
             ResearchSpread {

@@ -20,7 +20,9 @@ pub use facts::RunFacts;
 pub use finding::{AuditFinding, FindingKind};
 
 use crate::definition::{Study, shorten_digest};
-use crate::visit_log::{VISITS_FILE, VisitLine, VisitSummary, finished_without_run, read_study_visits};
+use crate::visit_log::{
+    VISITS_FILE, VisitLine, VisitSummary, finished_visits_without_run, read_study_visits,
+};
 use novamind_record::clock::parse_seconds;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
@@ -64,15 +66,15 @@ pub fn audit_study(study: &Study, machines: &[PathBuf]) -> Result<AuditReport, R
     }
     let all: Vec<&RunRecord> = records.iter().flatten().collect();
     audit.findings.extend(nothing_examined_finding(study, &all, machines));
-    audit.findings.extend(all.iter().filter_map(|run| unexamined_run_finding(study, run)));
-    audit.runs_of_other_studies = all.iter().filter(|run| run.belongs_to_another_study(study)).count();
+    audit.findings.extend(all.iter().filter_map(|run| unexaminable_run_finding(study, run)));
+    audit.runs_of_other_studies = all.iter().filter(|run| run.belongs_to_different_study(study)).count();
     audit.findings.extend(hidden_state::hidden_view_findings(study, &all));
     audit.findings.extend(duplicate_sessions(study, &all));
     audit.findings.extend(archives::unsigned_archives(study, machines)?);
     let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
     let visits = read_study_visits(study, machines);
     audit.visits = VisitSummary::from_lines(&visits, &with_runs);
-    let gone = finished_without_run(&visits, &with_runs).into_iter().map(missing_run_finding);
+    let gone = finished_visits_without_run(&visits, &with_runs).into_iter().map(missing_run_finding);
     audit.findings.extend(gone);
     audit.runs.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
     audit.findings.sort_by(|one, other| {
@@ -127,7 +129,7 @@ fn nothing_examined_finding(
 }
 
 /// Returns a finding on a run that could not be examined although it may belong to the study.
-fn unexamined_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
+fn unexaminable_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
     let (kind, at, words) = match (&run.manifest, run.stamp()) {
         (None, _) => {
             let words =

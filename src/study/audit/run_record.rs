@@ -50,7 +50,7 @@ impl RunRecord {
     }
 
     /// Returns whether the run belongs to a study with a different name.
-    pub(super) fn belongs_to_another_study(&self, study: &Study) -> bool {
+    pub(super) fn belongs_to_different_study(&self, study: &Study) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
     }
 }

@@ -67,6 +67,6 @@ impl Tool for RegisterDailyCalculation {
     }
 
     fn plan(&self, _: &ToolContext<'_>, named_code: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
-        Ok(named_code.store(NotebookSection::Calculation))
+        Ok(named_code.planned_store(NotebookSection::Calculation))
     }
 }

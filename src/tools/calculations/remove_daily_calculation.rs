@@ -52,7 +52,7 @@ impl Tool for RemoveDailyCalculation {
     fn plan(&self, view: &ToolContext<'_>, name: String) -> Result<PlannedCall<RemainingNames>, Rejection> {
         match calculations(view).get(&name) {
             Some(_) => {
-                Ok(RemainingNames::after_removal(calculations(view), NotebookSection::Calculation, name))
+                Ok(RemainingNames::planned_removal(calculations(view), NotebookSection::Calculation, name))
             }
             None => Err(not_found_rejection(&name, view)),
         }

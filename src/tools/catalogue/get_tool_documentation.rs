@@ -59,9 +59,9 @@ impl Tool for GetToolDocumentation {
         name_selection: NameSelection,
     ) -> Result<PlannedCall<IndexMap<&'static str, ToolDocument>>, Rejection> {
         let known: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
-        let names = name_selection.resolve(&known, "tool_names", "tool_not_found")?;
+        let names = name_selection.resolve_names(&known, "tool_names", "tool_not_found")?;
         let specs = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| names.contains(&spec.name()));
-        let numbers = ParameterNumbers::for_params(view.params());
+        let numbers = ParameterNumbers::from_params(view.params());
         Ok(PlannedCall::read_only(specs.map(|spec| (spec.name(), document_tool(spec, &numbers))).collect()))
     }
 }

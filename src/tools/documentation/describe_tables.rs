@@ -75,7 +75,7 @@ impl Tool for DescribeTables {
     ) -> Result<PlannedCall<TableDescriptions>, Rejection> {
         let tables = view.session().tables();
         let known: Vec<&str> = tables.iter().map(|table| table.name).collect();
-        let names = name_selection.resolve(&known, "table_names", "table_not_found")?;
+        let names = name_selection.resolve_names(&known, "table_names", "table_not_found")?;
         let entry = |table: &TableDocument| {
             let columns = table
                 .columns

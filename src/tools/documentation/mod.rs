@@ -37,7 +37,7 @@ impl NameSelection {
     }
 
     /// Returns the requested names that are known. Rejects the call only if none is known.
-    pub(super) fn resolve<'a>(
+    pub(super) fn resolve_names<'a>(
         &self,
         known: &[&'a str],
         field: &'static str,

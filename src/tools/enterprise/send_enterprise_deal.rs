@@ -146,7 +146,7 @@ fn to_proposal(
             Err(failed("customer_not_found", "not found", message))
         }
         Some((customer, group)) if group.is_enterprise() => {
-            if world.enterprise.company(customer).is_some_and(|company| company.is_subscriber()) {
+            if world.enterprise.enterprise_customer(customer).is_some_and(|company| company.is_subscriber()) {
                 return Ok(OfferDraft { customer, offerings });
             }
             let message = format!(

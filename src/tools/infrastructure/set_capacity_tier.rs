@@ -83,7 +83,7 @@ impl Tool for SetCapacityTier {
         capacity_tier: u8,
     ) -> Result<PlannedCall<RentedCapacity>, Rejection> {
         let core = CoreSettings { capacity_tier, ..view.settings().core };
-        let tier = view.params().capacity(capacity_tier);
+        let tier = view.params().capacity_tier(capacity_tier);
         let answer = RentedCapacity {
             tier: tier.tier,
             capacity_units: tier.capacity_units,

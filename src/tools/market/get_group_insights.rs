@@ -6,7 +6,7 @@ use super::super::{
     Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId,
     ToolKind, ToolModule, ToolSpec,
 };
-use super::{noise_label, not_discovered_rejection, parse_group_argument, segment_label};
+use super::{margin_of_error_label, not_discovered_rejection, parse_group_argument, segment_label};
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::insights::Insights;
@@ -155,7 +155,7 @@ fn to_group_insights(insights: &Insights, group_name: String) -> GroupInsights {
         group_name,
         segment: segment_label(insights.group),
         info_level: insights.level,
-        noise: noise_label(insights.noise),
+        noise: margin_of_error_label(insights.noise),
         estimates: to_estimates(insights),
         network_influence: Influence {
             outgoing: insights.referrals_to.iter().copied().collect(),

@@ -5,7 +5,7 @@ use super::super::{
     EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
     ToolSpec,
 };
-use super::{noise_label, segment_label};
+use super::{margin_of_error_label, segment_label};
 use novamind_world::events::{Phase, Reading, Trend};
 use novamind_world::identifiers::Group;
 
@@ -114,7 +114,7 @@ fn to_known_group(group: Group, view: &ToolContext<'_>) -> KnownGroup {
         group_name: view.params().group(group).name.clone(),
         segment: segment_label(group),
         info_level: level,
-        noise: noise_label(view.params().level(level).noise),
+        noise: margin_of_error_label(view.params().study_level(level).noise),
     }
 }
 

@@ -37,6 +37,6 @@ fn segment_label(group: Group) -> &'static str {
 }
 
 /// Formats the margin of error of a study level, for example ±40%.
-fn noise_label(noise: f64) -> String {
+fn margin_of_error_label(noise: f64) -> String {
     format!("\u{b1}{:.0}%", noise * 100.0)
 }

@@ -131,7 +131,7 @@ impl Tool for ResearchGroup {
                 format!("a study of {group} runs until day {}; order the next one after that", study.due_day);
             return Err(Rejection::for_field("group_id", "study_in_progress", message));
         }
-        check_affordable(view.params().level(target).cost, view)?;
+        check_affordable(view.params().study_level(target).cost, view)?;
         Ok(PlannedCall::with_draws(Command::ResearchGroup(group, target), |resolved| match resolved {
             ResolvedCommand::ResearchGroup(study, _) => Some(OrderedStudy {
                 group_id: study.group,

@@ -81,7 +81,7 @@ fn transpose(map: &Map<String, Value>) -> Map<String, Value> {
 }
 
 /// Returns the matrix with channels as outer keys, for both accepted orders.
-fn with_channels_outside<'a>(given: &'a Value, view: &ToolContext<'_>) -> Result<Cow<'a, Value>, Rejection> {
+fn channels_as_outer_keys<'a>(given: &'a Value, view: &ToolContext<'_>) -> Result<Cow<'a, Value>, Rejection> {
     let Some(map) = given.as_object() else { return Ok(Cow::Borrowed(given)) };
     let stray = |map: &Map<String, Value>| map.keys().find(|key| Channel::parse(key).is_none()).cloned();
     let Some(first) = stray(map) else { return Ok(Cow::Borrowed(given)) };
@@ -113,7 +113,7 @@ impl Tool for SetTargetedAdSpend {
 
     fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
-        parse_sent_per_channel_group(&*with_channels_outside(given, view)?, "targeted_spend", BUDGET, view)
+        parse_sent_per_channel_group(&*channels_as_outer_keys(given, view)?, "targeted_spend", BUDGET, view)
     }
 
     fn plan(&self, _: &ToolContext<'_>, sent: Self::Args) -> Result<PlannedCall<AdBudgets>, Rejection> {

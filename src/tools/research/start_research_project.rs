@@ -101,7 +101,7 @@ impl Tool for StartResearchProject {
             let message = format!("tier {tier} is already running until day {}", project.due_day);
             return Err(Rejection::for_field("tier", "rd_in_progress", message));
         }
-        let facts = view.params().research(tier);
+        let facts = view.params().research_tier(tier);
         check_affordable(f64::from(facts.cost), view)?;
         let (name, decimals) = (facts.name.clone(), view.params().development.rd_report_decimals);
         Ok(PlannedCall::with_draws(Command::StartResearch(tier), move |resolved| match resolved {

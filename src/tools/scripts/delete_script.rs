@@ -51,6 +51,6 @@ impl Tool for DeleteScript {
 
     fn plan(&self, view: &ToolContext<'_>, name: String) -> Result<PlannedCall<RemainingNames>, Rejection> {
         find_script(&name, view)?;
-        Ok(RemainingNames::after_removal(stored_scripts(view), NotebookSection::Script, name))
+        Ok(RemainingNames::planned_removal(stored_scripts(view), NotebookSection::Script, name))
     }
 }

@@ -66,6 +66,6 @@ impl Tool for RegisterScript {
     }
 
     fn plan(&self, _: &ToolContext<'_>, named_code: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
-        Ok(named_code.store(NotebookSection::Script))
+        Ok(named_code.planned_store(NotebookSection::Script))
     }
 }

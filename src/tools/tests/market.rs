@@ -84,7 +84,7 @@ fn studies_are_charged_at_once_and_report_completion_day() {
     assert_eq!(data, expected);
     // A purchase may use all cash.
     assert_eq!(company.world.finance.cash, 0.0);
-    assert_eq!(company.call_rejected("research_market", json!({})).0, "insufficient_funds");
+    assert_eq!(company.expect_rejection("research_market", json!({})).0, "insufficient_funds");
     company.world.finance.cash = 1_000_000.0;
     company.world.day = 21;
     let data = company.call("research_group", json!({"group_id": "E2", "target_level": 3}));

@@ -208,7 +208,7 @@ fn check_acyclic(
     }
     path.push(name.to_owned());
     for alternative in &rules[name] {
-        for inner in rules_in(&alternative.parts, rules) {
+        for inner in referenced_rules(&alternative.parts, rules) {
             check_acyclic(&inner, rules, path, done)?;
         }
     }
@@ -217,7 +217,7 @@ fn check_acyclic(
     Ok(())
 }
 
-fn rules_in(parts: &[Part], rules: &BTreeMap<String, Vec<Alternative>>) -> Vec<String> {
+fn referenced_rules(parts: &[Part], rules: &BTreeMap<String, Vec<Alternative>>) -> Vec<String> {
     let mut found = Vec::new();
     for part in parts {
         match part {
@@ -228,7 +228,7 @@ fn rules_in(parts: &[Part], rules: &BTreeMap<String, Vec<Alternative>>) -> Vec<S
                 found.extend(rules.keys().filter(|name| name.starts_with(&special)).cloned());
             }
             Part::Choice(branches) => {
-                found.extend(branches.iter().flat_map(|branch| rules_in(branch, rules)))
+                found.extend(branches.iter().flat_map(|branch| referenced_rules(branch, rules)))
             }
             Part::Text(_) | Part::Value(_) => {}
         }

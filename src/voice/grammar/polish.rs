@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn articles_follow_the_sound() {
+    fn articles_match_the_sound_of_the_next_word() {
         for (word, article) in [
             ("editor", "an"),
             ("user", "a"),

@@ -96,7 +96,7 @@ impl JudgeContext {
     pub fn from_world(world: &World, params: &Params, lexicon: &Lexicon) -> JudgeContext {
         let chronicle = &world.market.social.chronicle;
         let (today, before) = (chronicle.today(), chronicle.oldest());
-        let (issue_rate, issue_age, short) = service_strain(world, params);
+        let (issue_rate, issue_age, short) = service_problems(world, params);
         let latencies: Vec<f64> = chronicle.newest_first(WEEK).filter_map(|page| page.p95_ms).collect();
         // A plan that was not on sale four weeks ago has price 0, and no price is lower.
         let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
@@ -138,7 +138,7 @@ fn reader_group(group: Group, world: &World) -> ReaderGroup {
 
 /// Returns the open issues per subscriber, the mean age of open issues in days, and the share of subscribers whose
 /// quota is too small.
-fn service_strain(world: &World, params: &Params) -> (f64, f64, f64) {
+fn service_problems(world: &World, params: &Params) -> (f64, f64, f64) {
     let core = &world.settings.core;
     let weekday = params.calendar.weekly[(world.day % 7) as usize];
     let (mut count, mut open, mut days, mut short) = (0u32, 0u32, 0u32, 0u32);
@@ -220,11 +220,11 @@ mod tests {
     use novamind_world::random::Streams;
 
     #[test]
-    fn price_changes_are_remembered() {
+    fn price_changes_are_detected_for_four_weeks() {
         let (params, streams) = (Params::bundled(), Streams::new(2));
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
-        novamind_world::test_kit::policy_p(&mut world);
+        novamind_world::test_kit::apply_policy_p(&mut world);
         let (mut at_day, mut latencies) = (Vec::new(), Vec::new());
         for day in 1..=60 {
             match day {

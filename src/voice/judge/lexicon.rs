@@ -9,7 +9,7 @@ use super::text::WordPattern;
 use novamind_world::identifiers::Group;
 
 /// A list of word patterns.
-pub type EntryList = Vec<WordPattern>;
+pub type PatternList = Vec<WordPattern>;
 
 /// The judge's word lists, weights and group profiles.
 #[derive(Debug, Clone, Deserialize)]
@@ -19,7 +19,7 @@ pub struct Lexicon {
     topic_order: Vec<String>,
     /// Word lists of the topics, in topic order.
     #[serde(deserialize_with = "lists")]
-    pub topics: IndexMap<String, EntryList>,
+    pub topics: IndexMap<String, PatternList>,
     /// Word lists that do not belong to a topic.
     pub words: Words,
     /// Patterns that detect claims, by claim.
@@ -41,14 +41,14 @@ pub struct Lexicon {
 impl Lexicon {
     /// Returns the bundled lexicon.
     pub fn bundled() -> &'static Lexicon {
-        static SHIPPED: LazyLock<Lexicon> = LazyLock::new(|| {
+        static BUNDLED: LazyLock<Lexicon> = LazyLock::new(|| {
             let text = include_str!("../../../assets/voice/judge.toml");
             let mut read: Lexicon = toml::from_str(text).expect("the bundled word lists are valid");
             let Lexicon { topic_order, topics, .. } = &mut read;
             topics.sort_by_cached_key(|name, _| topic_order.iter().position(|other| other == name));
             read
         });
-        &SHIPPED
+        &BUNDLED
     }
 
     /// Returns the preferences of a group.
@@ -67,16 +67,16 @@ impl Lexicon {
     }
 }
 
-fn lists<'de, D: Deserializer<'de>>(from: D) -> Result<IndexMap<String, EntryList>, D::Error> {
+fn lists<'de, D: Deserializer<'de>>(from: D) -> Result<IndexMap<String, PatternList>, D::Error> {
     let texts = IndexMap::<String, Vec<String>>::deserialize(from)?;
-    Ok(texts.into_iter().map(|(name, texts)| (name, parse_entries(&texts))).collect())
+    Ok(texts.into_iter().map(|(name, texts)| (name, parse_patterns(&texts))).collect())
 }
 
-fn list<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
-    Ok(parse_entries(&Vec::<String>::deserialize(from)?))
+fn list<'de, D: Deserializer<'de>>(from: D) -> Result<PatternList, D::Error> {
+    Ok(parse_patterns(&Vec::<String>::deserialize(from)?))
 }
 
-fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
+fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<PatternList, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
     // A text with a slash, such as 24/7, is not a token and is searched for in the whole text. Other words match tokens.
     Ok(texts
@@ -85,7 +85,7 @@ fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
         .collect())
 }
 
-fn parse_entries(texts: &[String]) -> EntryList {
+fn parse_patterns(texts: &[String]) -> PatternList {
     texts.iter().map(|text| WordPattern::parse(text)).collect()
 }
 
@@ -94,12 +94,12 @@ macro_rules! words {
         /// Word lists that do not belong to a topic.
         #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
-        pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: EntryList,)* }
+        pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: PatternList,)* }
 
         impl Words {
             /// Returns all word lists, from which tests draw words.
             #[cfg(test)]
-            pub fn all(&self) -> Vec<&EntryList> {
+            pub fn all(&self) -> Vec<&PatternList> {
                 vec![$(&self.$field),*]
             }
         }
@@ -147,13 +147,13 @@ words! {
 pub struct ClaimPattern {
     /// Phrases that alone make the claim.
     #[serde(deserialize_with = "anywhere")]
-    pub says: EntryList,
+    pub says: PatternList,
     /// Words that make the claim if they are close to a word of `to`.
     #[serde(deserialize_with = "list")]
-    pub near: EntryList,
+    pub near: PatternList,
     /// Words that make the claim if they are close to a word of `near`.
     #[serde(deserialize_with = "list")]
-    pub to: EntryList,
+    pub to: PatternList,
 }
 
 /// Preferences of a group of readers.
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn events_are_addressed_by_known_topics_and_claims_are_all_there() {
+    fn events_have_known_topics_and_every_claim_has_patterns() {
         let lexicon = Lexicon::bundled();
         let events = &lexicon.events;
         let lists = [

@@ -111,7 +111,7 @@ impl Judgement {
 }
 
 /// Data about a post that all groups share.
-struct Case<'a> {
+struct SharedPostData<'a> {
     features: Features,
     /// The post to which the player replies, with its features.
     original: Option<(Features, OriginalPost<'a>)>,
@@ -137,7 +137,7 @@ pub fn judge_post(
     let features = Features::from_post(submission.content, lexicon);
     let overlaps = since(lexicon.terms.repetition_days)
         .map(|(_, content)| pair_overlap(&features.text, &TokenizedText::new(content)));
-    let case = Case {
+    let case = SharedPostData {
         overlap: overlaps.fold(0.0, f64::max),
         recent: since(lexicon.terms.recipe_days)
             .map(|(_, text)| Features::from_post(text, lexicon))

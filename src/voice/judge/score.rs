@@ -4,18 +4,18 @@ use super::claims::{Claim, evaluate_claims};
 use super::context::LiveEvent;
 use super::features::{Features, indicator};
 use super::lexicon::Profile;
-use super::{Case, Judgement, ScoreTerm};
+use super::{Judgement, ScoreTerm, SharedPostData};
 use novamind_world::identifiers::Group;
 
 /// A post with the data that one group needs to judge it.
 struct GroupJudge<'a> {
     group: Group,
-    case: &'a Case<'a>,
+    case: &'a SharedPostData<'a>,
     profile: &'a Profile,
     claims: Vec<Claim>,
 }
 
-pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
+pub(super) fn judge_group(group: Group, case: &SharedPostData<'_>) -> Judgement {
     let lexicon = case.lexicon;
     if case.features.is_empty {
         return Judgement { group, effect: 0.0, terms: Vec::new(), model_reason: None };

@@ -244,7 +244,7 @@ fn true_claims_score_higher_than_false_claims() {
 }
 
 #[test]
-fn an_insult_never_helps() {
+fn insults_never_raise_the_score() {
     for example in examples() {
         let before = judge_all(&example.submission, &example.facts);
         for insult in ["You idiots.", "Shut up.", "Losers."] {
@@ -259,7 +259,7 @@ fn an_insult_never_helps() {
 }
 
 #[test]
-fn the_order_of_groups_does_not_matter() {
+fn group_order_does_not_affect_scores() {
     for example in examples() {
         let forwards = judge_all(&example.submission, &example.facts);
         let mut backwards =
@@ -306,7 +306,7 @@ fn keyword_stuffing_does_not_help() {
 }
 
 #[test]
-fn any_text_gets_a_score() {
+fn judge_post_accepts_any_text() {
     for content in ["", " ", "\u{1F680}", "ok", "\u{0}\u{ffff}", "$", "#", "%%%", "ÄÖÜ ß İ", "a'b-c"] {
         let judgements = judge_all(&post(content), &default_context());
         assert!(judgements.iter().all(|judgement| (-1.0..=1.0).contains(&judgement.effect)), "{content}");
@@ -319,16 +319,17 @@ fn any_text_gets_a_score() {
 #[test]
 fn every_group_has_posts_with_positive_and_negative_effect() {
     #[derive(serde::Deserialize)]
-    struct Pair {
+    struct ExamplePosts {
         good: String,
         bad: String,
     }
     let text = include_str!("../../../assets/voice/examples.toml");
-    let pairs: std::collections::BTreeMap<String, Pair> = toml::from_str(text).expect("the bundled examples");
+    let pairs: std::collections::BTreeMap<String, ExamplePosts> =
+        toml::from_str(text).expect("the bundled examples");
     assert_eq!(pairs.len(), Group::COUNT);
     let kept = JudgeContext { quota_up: true, price_cut: true, promotion: true, ..default_context() };
     let broken = JudgeContext { quota_up: false, p95_ms: 500.0, ..context_with_outage() };
-    for (id, Pair { good, bad }) in pairs {
+    for (id, ExamplePosts { good, bad }) in pairs {
         assert!(good.chars().count() <= 280 && bad.chars().count() <= 280, "{id}");
         let (won, lost) =
             (effect(&judge_all(&post(&good), &kept), &id), effect(&judge_all(&post(&bad), &broken), &id));
@@ -338,7 +339,7 @@ fn every_group_has_posts_with_positive_and_negative_effect() {
 }
 
 #[test]
-fn events_are_fresh_for_a_week_and_remembered_for_another() {
+fn events_count_fully_for_a_week_and_half_in_the_next() {
     let of = |name: &str| examples().into_iter().find(|example| example.name == name).expect("an example");
     let timing = |example: &Example, event: LiveEvent, age: u32| {
         let facts = JudgeContext { live_events: vec![(event, age)], ..example.facts.clone() };

@@ -45,7 +45,7 @@ fn words() -> bool {
 /// The model settings that a run records.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ModelStamp {
+pub struct RecordedModelSettings {
     /// Host and port of the endpoint.
     pub host: String,
     /// Name of the model.
@@ -56,7 +56,7 @@ pub struct ModelStamp {
     pub words: bool,
 }
 
-impl ModelStamp {
+impl RecordedModelSettings {
     /// Describes the tasks of the model in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
     pub fn describe(&self) -> String {
         let deeds = match (self.words, self.judge) {
@@ -148,9 +148,9 @@ impl ModelSettings {
     }
 
     /// Returns the settings that a run records.
-    pub fn stamp(&self) -> ModelStamp {
+    pub fn recorded_settings(&self) -> RecordedModelSettings {
         let ModelSettings { model, judge, words, .. } = self.clone();
-        ModelStamp { host: self.host().to_owned(), model, judge, words }
+        RecordedModelSettings { host: self.host().to_owned(), model, judge, words }
     }
 }
 
@@ -167,7 +167,7 @@ mod tests {
         let settings = settings.expect("settings");
         assert_eq!((settings.seconds_a_week, settings.judge, settings.words), (30, false, true));
         assert_eq!(settings.completions_url(), "http://127.0.0.1:11434/v1/chat/completions");
-        let stamp = settings.stamp();
+        let stamp = settings.recorded_settings();
         assert_eq!(stamp.describe(), "llama3 at 127.0.0.1:11434 rewords posts");
         assert!(!toml::to_string(&stamp).expect("a table").contains("KEY"));
         for endpoint in ["http://[::1]:8080", "http://box/v1", "http://box.example:80/a-b/v1"] {

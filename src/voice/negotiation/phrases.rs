@@ -27,7 +27,7 @@ const OFFER_OPENINGS: &[&str] = &[
 ];
 
 /// Phrases for a counter-offer close to the offered price.
-pub(super) const NEAR: Phrases = Phrases {
+pub(super) const NEAR_COUNTER_OFFER: Phrases = Phrases {
     openings: OFFER_OPENINGS,
     cores: &[
         "We are nearly there: plan {plan} at {price} per seat for one month is where we see it.",
@@ -42,7 +42,7 @@ pub(super) const NEAR: Phrases = Phrases {
 };
 
 /// Phrases for a counter-offer clearly below the offered price.
-pub(super) const APART: Phrases = Phrases {
+pub(super) const MODERATE_COUNTER_OFFER: Phrases = Phrases {
     openings: OFFER_OPENINGS,
     cores: &[
         "For plan {plan} we can see {price} per seat for one month, not more at this point.",
@@ -57,7 +57,7 @@ pub(super) const APART: Phrases = Phrases {
 };
 
 /// Phrases for a counter-offer far below the offered price.
-pub(super) const FAR: Phrases = Phrases {
+pub(super) const FAR_COUNTER_OFFER: Phrases = Phrases {
     openings: OFFER_OPENINGS,
     cores: &[
         "We are far apart: plan {plan} is worth {price} per seat and month to us.",

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comment_names_what_the_post_was_about() {
+    fn comments_name_the_topic_of_the_post() {
         let group = Group::parse("S3").expect("a group");
         let term = |name: &'static str, value, because: &str| ScoreTerm {
             name: name.into(),

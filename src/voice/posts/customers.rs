@@ -21,7 +21,7 @@ const VETERAN_AFTER_DAYS: u32 = 120;
 /// One author out of this many casual authors writes without capital letters.
 const LOWERCASE_AUTHOR_INTERVAL: u32 = 9;
 
-pub(super) fn draft(context: &Context, choose: Chooser<'_>) -> String {
+pub(super) fn draft_post(context: &Context, choose: Chooser<'_>) -> String {
     GRAMMAR.expand("post", context, choose)
 }
 
@@ -56,7 +56,7 @@ pub(super) fn context(author: &PostAuthor, opinion: &Opinion, tone: Sentiment, p
         .with("my", person("my", "our"))
         .with("am", person("I'm", "we're"))
         .with("role", wording::role(author, params))
-        .with("trade", wording::trade(author, params))
+        .with("trade", wording::industry(author, params))
         .with("since", wording::time_span(days))
         .with("per", person("a month", "a seat and month"))
         .with_optional("plan", opinion.plan.map(|plan| format!("plan {plan}")))
@@ -136,7 +136,7 @@ fn theme_id(theme: Theme) -> &'static str {
 pub(super) mod tests {
     use super::*;
     use novamind_world::customers::persona::PersonaPicks;
-    use novamind_world::events::{ThreadKind, Troubles};
+    use novamind_world::events::{CustomerProblems, ThreadKind};
     use novamind_world::identifiers::{Group, Plan};
 
     pub(in crate::posts) fn author(group: Group) -> PostAuthor {
@@ -146,7 +146,7 @@ pub(super) mod tests {
     pub(in crate::posts) fn opinion(cause: PostCause, theme: Theme) -> Opinion {
         Opinion {
             cause,
-            troubles: Troubles::default(),
+            troubles: CustomerProblems::default(),
             theme,
             days_subscribed: 80,
             plan: Some(Plan::B),

@@ -40,7 +40,7 @@ impl PostWriter {
         match (post.matter, post.author) {
             (PostSubject::Opinion(opinion), Some(author)) => {
                 let context = customers::context(&author, &opinion, post.sentiment, params);
-                let text = self.recent.pick_freshest(|| customers::draft(&context, &mut choose));
+                let text = self.recent.pick_freshest(|| customers::draft_post(&context, &mut choose));
                 if customers::writes_in_lowercase(&author) { text.to_lowercase() } else { text }
             }
             (PostSubject::Reading(reading), _) => {

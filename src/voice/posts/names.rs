@@ -32,7 +32,7 @@ mod tests {
     use novamind_world::identifiers::Group;
 
     #[test]
-    fn names_stay_with_their_customer() {
+    fn profile_names_are_constant_for_each_customer() {
         let streams = Streams::new(1);
         for group in Group::all() {
             let name = profile_name(&author(group), &streams);

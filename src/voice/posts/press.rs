@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_view_and_band_has_a_post() {
+    fn every_view_and_trend_has_a_post() {
         for view in ECONOMY_VIEWS {
             assert!(GRAMMAR.has_rule(&format!("voice.{view}")));
             for way in ["up", "flat", "down"] {

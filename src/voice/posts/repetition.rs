@@ -41,7 +41,7 @@ impl RecentPosts {
         let mut best: Option<(usize, String)> = None;
         for number in 0..MAX_DRAFTS {
             let text = draft();
-            let staleness = self.staleness(&text);
+            let staleness = self.repetition_score(&text);
             if best.as_ref().is_none_or(|(least, _)| staleness < *least) {
                 best = Some((staleness, text));
             }
@@ -64,7 +64,7 @@ impl RecentPosts {
 
     /// Returns how much a text repeats recent posts. Counts equal sentences, an equal opening and, with the largest
     /// weight, an equal text.
-    fn staleness(&self, text: &str) -> usize {
+    fn repetition_score(&self, text: &str) -> usize {
         let text = text.to_lowercase();
         if self.0.iter().any(|other| other.text == text) {
             return MAX_DRAFTS;
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_freshest_draft_is_taken() {
+    fn pick_freshest_takes_the_least_repeated_draft() {
         let mut recent = RecentPosts::default();
         let drafts = |texts: &'static [&'static str]| {
             let mut next = texts.iter().cycle();
@@ -108,14 +108,14 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_remembered_for_as_many_posts_as_the_memory_has() {
+    fn texts_are_remembered_for_sixty_posts() {
         let mut recent = RecentPosts::default();
         recent.remember("The first of all.");
         for other in 1..REMEMBERED_POSTS {
             recent.remember(&format!("Number {other}."));
         }
-        assert_eq!(recent.staleness("The first of all."), MAX_DRAFTS);
+        assert_eq!(recent.repetition_score("The first of all."), MAX_DRAFTS);
         recent.remember("One more.");
-        assert_eq!(recent.staleness("The first of all."), 0);
+        assert_eq!(recent.repetition_score("The first of all."), 0);
     }
 }

@@ -8,7 +8,7 @@ use novamind_world::identifiers::Group;
 const NO_ENGAGEMENT: Engagement = Engagement { likes: 0, shares: 0, virality: 0.0 };
 
 /// Generates a long feed that covers all situations and groups.
-fn feed() -> Vec<(Post, String)> {
+fn generate_feed() -> Vec<(Post, String)> {
     let (params, streams) = (Params::bundled(), Streams::new(11));
     let mut writer = PostWriter::default();
     let mut posts = Vec::new();
@@ -52,7 +52,7 @@ fn feed() -> Vec<(Post, String)> {
 
 #[test]
 fn no_two_equal_texts_within_sixty_posts() {
-    let texts: Vec<String> = feed().into_iter().map(|(_, text)| text).collect();
+    let texts: Vec<String> = generate_feed().into_iter().map(|(_, text)| text).collect();
     for (at, text) in texts.iter().enumerate() {
         let before = &texts[at.saturating_sub(60)..at];
         let repeats = before.iter().any(|other| other.to_lowercase() == text.to_lowercase());
@@ -63,7 +63,7 @@ fn no_two_equal_texts_within_sixty_posts() {
 
 #[test]
 fn posts_have_no_mechanical_errors() {
-    for (post, text) in feed() {
+    for (post, text) in generate_feed() {
         assert!(!text.is_empty() && text == text.trim(), "{post:?}: {text:?}");
         assert!(text.split_whitespace().count() <= 150, "{text}");
         for slip in ["  ", " .", " ,", "..", " ?", "{", "}", "[", "]", "|", "a/an", "?.", ":.", ".,", "!."] {
@@ -86,8 +86,8 @@ fn posts_have_no_mechanical_errors() {
 }
 
 #[test]
-fn companies_speak_as_we_and_people_as_i() {
-    for (post, text) in feed() {
+fn enterprises_write_we_and_individuals_write_i() {
+    for (post, text) in generate_feed() {
         let Some(author) = post.author else { continue };
         let words: Vec<String> =
             text.split(|c: char| !c.is_alphanumeric() && c != '\'').map(str::to_lowercase).collect();
@@ -105,5 +105,5 @@ fn companies_speak_as_we_and_people_as_i() {
 
 #[test]
 fn posts_are_deterministic() {
-    assert_eq!(feed(), feed());
+    assert_eq!(generate_feed(), generate_feed());
 }

@@ -1,6 +1,6 @@
 //! Colloquial wording of numbers and customer profiles.
 
-use novamind_base::formatting::{cents, dollars};
+use novamind_base::formatting::{dollars, dollars_and_cents};
 use novamind_world::events::PostAuthor;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
@@ -95,7 +95,7 @@ pub fn price(amount: f64) -> Option<String> {
     match amount {
         _ if amount < 0.005 => None,
         _ if amount.fract() == 0.0 => Some(dollars(amount)),
-        _ => Some(cents(amount)),
+        _ => Some(dollars_and_cents(amount)),
     }
 }
 
@@ -105,7 +105,7 @@ pub fn role(author: &PostAuthor, params: &Params) -> String {
 }
 
 /// Returns the industry of an author in words.
-pub fn trade(author: &PostAuthor, params: &Params) -> String {
+pub fn industry(author: &PostAuthor, params: &Params) -> String {
     label_words(&params.personas.group[author.group.index()].industry, author.persona.0[0])
 }
 

@@ -146,7 +146,7 @@ restored_tables!(ByGroup, ByPlan, ByChannel);
 
 #[cfg(test)]
 mod tests {
-    use super::super::bytes_of;
+    use super::super::canonical_bytes;
     use super::*;
 
     #[test]
@@ -154,15 +154,15 @@ mod tests {
         let text = "naïve".to_owned();
         let nested = (vec![Some(Plan::B), None], (text, [1.5f64, -0.0]));
         let read: (Vec<Option<Plan>>, (String, [f64; 2])) =
-            restore_all(&bytes_of(&nested)).expect("it reads");
+            restore_all(&canonical_bytes(&nested)).expect("it reads");
         assert_eq!(read, nested);
         let map: IndexMap<i64, ByChannel<u16>> = IndexMap::from([(-3, ByChannel([1, 2, 3, 4, 5]))]);
-        assert_eq!(restore_all::<IndexMap<i64, ByChannel<u16>>>(&bytes_of(&map)), Some(map));
+        assert_eq!(restore_all::<IndexMap<i64, ByChannel<u16>>>(&canonical_bytes(&map)), Some(map));
     }
 
     #[test]
     fn restore_rejects_invalid_bytes() {
-        let whole = bytes_of(&vec![Group::at(25).expect("a group"); 3]);
+        let whole = canonical_bytes(&vec![Group::at(25).expect("a group"); 3]);
         for cut in 0..whole.len() {
             assert!(restore_all::<Vec<Group>>(&whole[..cut]).is_none(), "cut at {cut}");
         }

@@ -94,7 +94,7 @@ mod tests {
     ) -> ByPlan<PlanOffer> {
         ByPlan::from_fn(|plan| {
             let at = plan.index();
-            let multiplier = params.model(tiers[at]).quality_multiplier;
+            let multiplier = params.model_tier(tiers[at]).quality_multiplier;
             let quality = delivered_quality(params.quality.base_product_quality, shared, 0.0, multiplier);
             PlanOffer { price: prices[at], quality, quota: quotas[at] }
         })

@@ -121,7 +121,7 @@ impl GroupCustomers {
     }
 
     /// Returns the active subscriber with this running number.
-    pub fn row(&self, n: u32) -> Option<Subscriber> {
+    pub fn subscriber(&self, n: u32) -> Option<Subscriber> {
         self.subscriber_position(n).map(|(block, at)| self.blocks[block].row(at))
     }
 
@@ -255,7 +255,7 @@ fn block_number(n: u32) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canonical::hash_of;
+    use crate::canonical::canonical_hash;
     use crate::test_kit::subscriber;
 
     #[test]
@@ -275,14 +275,14 @@ mod tests {
     #[test]
     fn parallel_hash_matches_canonical_hash() {
         let mut customers = Customers::default();
-        assert_eq!(customers.hash(), hash_of(&customers));
+        assert_eq!(customers.hash(), canonical_hash(&customers));
         for (group, count) in Group::all().zip([20_000, 3, 0, 1_024]) {
             let run = customers.record_arrival(1, group, count);
             for (n, _) in run.numbers().filter(|(n, _)| n % 5 > 0) {
                 customers.groups[group].activate(subscriber(n));
             }
         }
-        assert_eq!(customers.hash(), hash_of(&customers));
+        assert_eq!(customers.hash(), canonical_hash(&customers));
     }
 
     #[test]
@@ -293,7 +293,7 @@ mod tests {
         }
         assert_eq!(group.active_count(), 5);
         assert_eq!(
-            (group.subscriber_position(1025), group.row(4), group.row(9000)),
+            (group.subscriber_position(1025), group.subscriber(4), group.subscriber(9000)),
             (Some((1, 0)), None, None)
         );
         assert_eq!(group.deactivate(5).map(|row| row.n), Some(5));

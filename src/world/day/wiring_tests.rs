@@ -63,7 +63,7 @@ impl TestRun {
         (play, figures, trace)
     }
 
-    fn rows(&self) -> Vec<Subscriber> {
+    fn individual_rows(&self) -> Vec<Subscriber> {
         let blocks = self.world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
         blocks.flat_map(|(_, block)| (0..block.len()).map(|at| block.row(at)).collect::<Vec<_>>()).collect()
     }
@@ -97,7 +97,7 @@ fn outage_affects_issues_satisfaction_and_reputation() {
 
     // Almost all existing subscribers are less satisfied, and none is more satisfied.
     let there = |play: &TestRun| -> Vec<Subscriber> {
-        play.rows().into_iter().filter(|row| row.start_day < 41).collect()
+        play.individual_rows().into_iter().filter(|row| row.start_day < 41).collect()
     };
     let (before, after) = (there(&quiet), there(&broken));
     assert_eq!(before.len(), after.len());
@@ -226,7 +226,7 @@ fn measure_effects(params: Params) -> (f64, usize, f64) {
         let price = |ending: &&SubscriptionEnded| matches!(ending.cause, EndCause::Price | EndCause::Quality);
         gave_up += play.facts.endings.iter().filter(price).count();
     }
-    let row = play.world.customers.groups[group].row(1);
+    let row = play.world.customers.groups[group].subscriber(1);
     (factor, gave_up, row.expect("the subscription is active").seats)
 }
 
@@ -280,7 +280,7 @@ fn day_figures_match_the_facts() {
         assert!((figures.total_costs + costs).abs() < 1e-6);
         let leads = play.params.leads.lead_acquisition_cost * f64::from(figures.new_leads);
         assert!((figures.cash - (cash + paid + costs - leads)).abs() < 1e-6, "nothing else changes cash");
-        let people = play.rows();
+        let people = play.individual_rows();
         assert_eq!(figures.individual_subscribers as usize, people.len());
         sums.new_enterprise_leads += figures.new_enterprise_leads;
         sums.cancellations += figures.cancellations;

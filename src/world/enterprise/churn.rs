@@ -91,7 +91,7 @@ impl NegotiationStep<'_> {
         if let Some(row) = left {
             let ending = self.subscription_ending(at, &row, blame);
             self.facts.endings.push(ending);
-            self.enterprise.companies[at].standing = EnterpriseStatus::Lost(row);
+            self.enterprise.companies[at].status = EnterpriseStatus::Lost(row);
         }
         let sales = &self.day.params.enterprise;
         let company = &mut self.enterprise.companies[at];
@@ -137,7 +137,7 @@ impl NegotiationStep<'_> {
         let (morning, params) = (self.day.morning, self.day.params);
         let quality = &params.quality;
         let shared = match blame {
-            ThreadFailure::Silence => quality.base_product_quality + self.talks.product.shared_bonus,
+            ThreadFailure::Silence => quality.base_product_quality + self.context.product.shared_bonus,
             ThreadFailure::Timeout => morning.shared_quality,
         };
         let relationship = relationship_as_read(row.relationship, quality);
@@ -159,7 +159,7 @@ impl NegotiationStep<'_> {
             (group, ReputationCause::LostEnterprise),
             &[-damage],
             self.day.params,
-            self.told,
+            self.on_reputation_write,
         );
     }
 }

@@ -11,7 +11,7 @@ use crate::random::{Part, Streams};
 
 /// An enterprise that requested an offer and whose state is still tracked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Company {
+pub struct EnterpriseCustomer {
     /// Customer number of the enterprise.
     pub customer: u32,
     /// Group of the enterprise.
@@ -27,7 +27,7 @@ pub struct Company {
     /// Last day of the most recently agreed month; 0 before the first deal.
     pub contract_end_day: u32,
     /// Current status of the enterprise.
-    pub standing: EnterpriseStatus,
+    pub status: EnterpriseStatus,
 }
 
 /// Status of an enterprise: lead, subscriber or lost.
@@ -42,7 +42,7 @@ pub enum EnterpriseStatus {
 }
 
 canonical! {
-    Company { customer, group, n, subscription, negotiator, persona, contract_end_day, standing }
+    EnterpriseCustomer { customer, group, n, subscription, negotiator, persona, contract_end_day, status }
     Negotiator { reply_delay_mean, reply_delay_std, initial_offer_factor, max_negotiation_turns }
 }
 
@@ -67,23 +67,23 @@ impl Restore for EnterpriseStatus {
     }
 }
 
-impl Company {
+impl EnterpriseCustomer {
     /// Returns the row of the enterprise, from its status or from the columns.
     pub fn row(&self, customers: &Customers) -> Option<Subscriber> {
-        match self.standing {
+        match self.status {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => Some(row),
-            EnterpriseStatus::Subscriber => customers.groups[self.group].row(self.n),
+            EnterpriseStatus::Subscriber => customers.groups[self.group].subscriber(self.n),
         }
     }
 
     /// Returns whether the enterprise has an active subscription.
     pub fn is_subscriber(&self) -> bool {
-        self.standing == EnterpriseStatus::Subscriber
+        self.status == EnterpriseStatus::Subscriber
     }
 
     /// Sets the relationship of the enterprise, in its status or in the columns.
     pub fn set_relationship(&mut self, relationship: f64, customers: &mut Customers) {
-        match &mut self.standing {
+        match &mut self.status {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.relationship = relationship,
             EnterpriseStatus::Subscriber => {
                 let group_customers = &mut customers.groups[self.group];

@@ -118,7 +118,7 @@ pub(super) mod tests {
         assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
-    fn offers(list: &[(Plan, f64)]) -> Vec<Offering> {
+    fn offerings(list: &[(Plan, f64)]) -> Vec<Offering> {
         list.iter().map(|&(plan, price)| Offering { plan, price }).collect()
     }
 
@@ -178,26 +178,26 @@ pub(super) mod tests {
     fn best_offering_is_accepted_before_the_last_turn() {
         let params = Params::bundled();
         let offer_evaluator = evaluator(0.72, 0.80, 0.88);
-        let three = offers(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
+        let three = offerings(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
         assert_eq!(offer_evaluator.respond(&three, 1, &params), OfferResponse::Accept(1));
         assert_near(surplus(0.80, 35.0, &K, &params), 0.067249831);
         for (price, missing) in [(44.0, -0.018921704), (50.0, -0.114254451)] {
             assert_eq!(
-                offer_evaluator.respond(&offers(&[(Plan::B, price)]), 1, &params),
+                offer_evaluator.respond(&offerings(&[(Plan::B, price)]), 1, &params),
                 OfferResponse::Counter(0, 35.41)
             );
             assert_near(surplus(0.80, price, &K, &params), missing);
         }
-        let gift = offers(&[(Plan::B, 1.0)]);
+        let gift = offerings(&[(Plan::B, 1.0)]);
         assert_eq!(offer_evaluator.respond(&gift, 6, &params), OfferResponse::Silence);
         assert_near(surplus(0.80, 1.0, &K, &params), 0.280110073);
         assert_eq!(offer_evaluator.respond(&gift, 5, &params), OfferResponse::Accept(0));
         assert_eq!(
-            offer_evaluator.respond(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params),
+            offer_evaluator.respond(&offerings(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params),
             OfferResponse::Accept(0)
         );
         assert_eq!(
-            offer_evaluator.respond(&offers(&[(Plan::B, -5.0)]), 1, &params),
+            offer_evaluator.respond(&offerings(&[(Plan::B, -5.0)]), 1, &params),
             OfferResponse::Accept(0)
         );
         assert_eq!(offer_evaluator.respond(&[], 1, &params), OfferResponse::Silence);
@@ -206,12 +206,12 @@ pub(super) mod tests {
     #[test]
     fn quality_beyond_all_requirements_accepts_any_price() {
         let params = Params::bundled();
-        let dear = offers(&[(Plan::B, 100_000.0)]);
+        let dear = offerings(&[(Plan::B, 100_000.0)]);
         assert_eq!(evaluator(0.9, 0.96, 1.0).respond(&dear, 1, &params), OfferResponse::Accept(0));
         assert_near(surplus(0.96, 100_000.0, &K, &params), 0.01);
         assert_eq!(evaluator(0.9, 0.95, 1.0).respond(&dear, 1, &params), OfferResponse::Counter(0, 49.50));
         let weak = evaluator(0.5, 0.6, 0.7);
-        assert_eq!(weak.respond(&offers(&[(Plan::A, 1.0)]), 1, &params), OfferResponse::Silence);
+        assert_eq!(weak.respond(&offerings(&[(Plan::A, 1.0)]), 1, &params), OfferResponse::Silence);
         assert_near(surplus(0.5, 1.0, &K, &params), -0.019889927);
     }
 
@@ -221,7 +221,7 @@ pub(super) mod tests {
         for (noise, price) in [(0.8, 14.85), (0.9, 24.75), (1.0, 35.41), (1.1, 39.09)] {
             let offer_evaluator = evaluator(0.0, 0.8 * noise, 0.0);
             assert_eq!(
-                offer_evaluator.respond(&offers(&[(Plan::B, 59.0)]), 1, &params),
+                offer_evaluator.respond(&offerings(&[(Plan::B, 59.0)]), 1, &params),
                 OfferResponse::Counter(0, price)
             );
         }
@@ -233,10 +233,10 @@ pub(super) mod tests {
         params.fidelity.deal_price_ceiling = true;
         let offer_evaluator = evaluator(0.9, 0.96, 1.1);
         // The expensive offering has the largest surplus, but the enterprise accepts the affordable offering.
-        let mixed = offers(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
+        let mixed = offerings(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
         assert_eq!(offer_evaluator.respond(&mixed, 1, &params), OfferResponse::Accept(1));
         // If no offering is affordable, the offering with the largest surplus determines the plan of the counter-offer.
-        let dear = offers(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
+        let dear = offerings(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
         let OfferResponse::Counter(1, price) = offer_evaluator.respond(&dear, 1, &params) else {
             panic!("a counter-offer")
         };

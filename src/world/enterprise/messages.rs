@@ -68,7 +68,7 @@ impl Enterprise {
         let mut messages = Vec::new();
         let open = self.open_threads();
         for proposal in proposals {
-            let Some(company) = self.company(proposal.customer) else { continue };
+            let Some(company) = self.enterprise_customer(proposal.customer) else { continue };
             let thread = open.newest(proposal.customer);
             let (number, turn) = match thread {
                 Some(thread) => (thread.number, thread.last().number + 1),

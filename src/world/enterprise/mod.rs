@@ -23,7 +23,7 @@ pub(crate) mod test_kit;
 use std::collections::BTreeSet;
 
 pub use churn::LostEnterprise;
-pub use enterprise_customer::{Company, EnterpriseStatus, adjust_relationship};
+pub use enterprise_customer::{EnterpriseCustomer, EnterpriseStatus, adjust_relationship};
 pub use evaluation::{OfferEvaluator, OfferResponse, counter_price, highest_price};
 pub use open_threads::OpenThreads;
 pub use thread::{Thread, Turn};
@@ -47,7 +47,7 @@ pub struct Enterprise {
     pub threads: Vec<Thread>,
     /// Enterprises that are leads, subscribers, or lost with a thread that can still trigger, in ascending order of
     /// customer number.
-    pub companies: Vec<Company>,
+    pub companies: Vec<EnterpriseCustomer>,
 }
 
 canonical! { Enterprise { next_thread, next_message, threads, companies } }
@@ -81,8 +81,8 @@ pub struct EnterpriseDayResult {
 
 impl Enterprise {
     /// Opens the thread of a new lead with one turn by the system. Adds a notification that does not name the enterprise.
-    pub fn open_lead_thread(&mut self, day: u32, company: Company, facts: &mut Facts) {
-        let seats = match &company.standing {
+    pub fn open_lead_thread(&mut self, day: u32, company: EnterpriseCustomer, facts: &mut Facts) {
+        let seats = match &company.status {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.seats as u32,
             EnterpriseStatus::Subscriber => 1,
         };
@@ -109,9 +109,9 @@ impl Enterprise {
             enterprise: self,
             customers,
             reputation,
-            told: on_write,
+            on_reputation_write: on_write,
             day,
-            talks: context,
+            context: context,
             facts,
             result: EnterpriseDayResult::default(),
         };
@@ -126,7 +126,7 @@ impl Enterprise {
     }
 
     /// Returns the enterprise with this customer number.
-    pub fn company(&self, customer: u32) -> Option<&Company> {
+    pub fn enterprise_customer(&self, customer: u32) -> Option<&EnterpriseCustomer> {
         self.enterprise_position(customer).map(|at| &self.companies[at])
     }
 
@@ -161,7 +161,7 @@ impl Enterprise {
     ) -> usize {
         let number = self.next_thread;
         self.next_thread += 1;
-        let Company { customer, group, .. } = self.companies[company];
+        let EnterpriseCustomer { customer, group, .. } = self.companies[company];
         self.threads.push(Thread { number, customer, group, kind, turns: Vec::new(), closed: false });
         let thread = self.threads.len() - 1;
         self.append_turn(thread, 0, day, seats, sender, content, facts);
@@ -200,7 +200,7 @@ impl Enterprise {
         });
         let (customer, group, kind, thread) =
             (thread_state.customer, thread_state.group, thread_state.kind, thread_state.number);
-        let persona = self.company(customer).map(|company| company.persona).unwrap_or_default();
+        let persona = self.enterprise_customer(customer).map(|company| company.persona).unwrap_or_default();
         facts.turns.push(ThreadTurn {
             message,
             thread,
@@ -219,7 +219,7 @@ impl Enterprise {
     fn remove_finished(&mut self, is_over: impl Fn(&Thread) -> bool) {
         self.threads.retain(|thread| !is_over(thread));
         let still: BTreeSet<u32> = self.threads.iter().map(|thread| thread.customer).collect();
-        let gone = |company: &Company| matches!(company.standing, EnterpriseStatus::Lost(_));
+        let gone = |company: &EnterpriseCustomer| matches!(company.status, EnterpriseStatus::Lost(_));
         self.companies.retain(|company| !gone(company) || still.contains(&company.customer));
     }
 }
@@ -240,9 +240,9 @@ struct NegotiationStep<'a> {
     customers: &'a mut Customers,
     reputation: &'a mut ReputationBook,
     /// Function that is called after each reputation change.
-    told: &'a mut OnReputationWrite<'a>,
+    on_reputation_write: &'a mut OnReputationWrite<'a>,
     day: &'a DayContext<'a>,
-    talks: &'a NegotiationContext<'a>,
+    context: &'a NegotiationContext<'a>,
     facts: &'a mut Facts,
     result: EnterpriseDayResult,
 }
@@ -271,7 +271,7 @@ impl NegotiationStep<'_> {
     }
 
     fn thread_seats(&self, thread: usize) -> u32 {
-        let company = self.enterprise.company(self.enterprise.threads[thread].customer);
+        let company = self.enterprise.enterprise_customer(self.enterprise.threads[thread].customer);
         company.and_then(|company| company.row(self.customers)).map_or(1, |row| row.seats as u32)
     }
 

@@ -30,7 +30,7 @@ impl NegotiationStep<'_> {
         let (customer, kind) = (thread_state.customer, thread_state.kind);
         let (agent_turns, days) =
             (thread_state.player_turn_count(), self.today() - thread_state.turns[0].day);
-        let standing = self.enterprise.company(customer).map(|company| company.standing.clone());
+        let standing = self.enterprise.enterprise_customer(customer).map(|company| company.status.clone());
         let new_lead = kind == ThreadKind::NewLead;
         let (changed, activated) = match standing {
             Some(EnterpriseStatus::Lead(row)) if new_lead => {
@@ -80,7 +80,7 @@ impl NegotiationStep<'_> {
         };
         self.customers.groups[group].activate(row);
         if let Some(at) = self.enterprise.enterprise_position(customer) {
-            self.enterprise.companies[at].standing = EnterpriseStatus::Subscriber;
+            self.enterprise.companies[at].status = EnterpriseStatus::Subscriber;
         }
         self.refresh_terms(customer)
     }
@@ -89,7 +89,7 @@ impl NegotiationStep<'_> {
     fn change_terms(&mut self, customer: u32, offering: Offering) -> Option<TermsChanged> {
         let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
-        let n = self.enterprise.company(customer)?.n;
+        let n = self.enterprise.enterprise_customer(customer)?.n;
         let group_customers = &mut self.customers.groups[group];
         let (block, at) = group_customers.subscriber_position(n)?;
         let block = &mut group_customers.blocks[block];
@@ -103,7 +103,7 @@ impl NegotiationStep<'_> {
     /// Updates the required quality of a subscriber and returns its terms.
     fn refresh_terms(&mut self, customer: u32) -> Option<TermsChanged> {
         let group = self.customer_group(customer);
-        let n = self.enterprise.company(customer)?.n;
+        let n = self.enterprise.enterprise_customer(customer)?.n;
         let group_customers = &mut self.customers.groups[group];
         let (block, at) = group_customers.subscriber_position(n)?;
         let block = &mut group_customers.blocks[block];
@@ -112,7 +112,7 @@ impl NegotiationStep<'_> {
     }
 
     fn customer_group(&self, customer: u32) -> crate::identifiers::Group {
-        self.enterprise.company(customer).expect("an enterprise with a thread is kept").group
+        self.enterprise.enterprise_customer(customer).expect("an enterprise with a thread is kept").group
     }
 
     /// Ends a thread because the enterprise does not reply. Adds no turn, and marks the newest turn dead.
@@ -173,8 +173,8 @@ impl super::Enterprise {
     ) -> Option<SubscriptionEnded> {
         let at = self.enterprise_position(customer)?;
         let company = &mut self.companies[at];
-        let EnterpriseStatus::Lead(row) = company.standing else { return None };
-        company.standing = EnterpriseStatus::Lost(row);
+        let EnterpriseStatus::Lead(row) = company.status else { return None };
+        company.status = EnterpriseStatus::Lost(row);
         Some(SubscriptionEnded {
             subscription: company.subscription,
             customer,

@@ -6,7 +6,7 @@ use crate::customers::curve::Curve;
 use crate::identifiers::{ByPlan, Group};
 use crate::params::ServicePenalty;
 use crate::quality::{
-    Experience, delivered_quality, perceived_quality, quota_demand, quota_factor, relationship_as_read,
+    QualityTerms, delivered_quality, perceived_quality, quota_demand, quota_factor, relationship_as_read,
     relationship_bonus,
 };
 
@@ -50,7 +50,7 @@ impl NegotiationContext<'_> {
             ServicePenalty::Satisfaction => 0.0,
             ServicePenalty::Everywhere => self.day.service_penalty,
         };
-        let experience = Experience {
+        let experience = QualityTerms {
             delivered: delivered - penalty,
             relationship: relationship_bonus(relationship_as_read(row.relationship, quality), quality),
             tenure,
@@ -103,7 +103,7 @@ mod tests {
         kit.product.shared_bonus = 0.6;
         kit.product.group_bonus[kit.group] = 0.05;
         let quality = |kit: &NegotiationKit, change: &dyn Fn(&mut Subscriber), active: bool| {
-            let mut row = kit.row();
+            let mut row = kit.reference_row();
             change(&mut row);
             kit.with_negotiation(|day| day.negotiation_quality(kit.group, &row, active))
         };
@@ -135,7 +135,7 @@ mod tests {
             open_issue_days: 3,
             usage_rate: 80.0,
             ads_quality_sensitivity: 0.12,
-            ..kit.row()
+            ..kit.reference_row()
         };
         let qualities = kit.with_negotiation(|day| day.negotiation_quality(kit.group, &row, true));
         for (quality, expected) in qualities.iter().zip([0.156815793, 0.314315793, 0.461815793]) {

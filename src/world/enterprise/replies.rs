@@ -21,7 +21,7 @@ impl Enterprise {
         customers: &Customers,
         talks: &NegotiationContext<'_>,
     ) -> Option<OfferEvaluator> {
-        let row = self.company(thread.customer)?.row(customers)?;
+        let row = self.enterprise_customer(thread.customer)?.row(customers)?;
         self.offer_evaluator_for_row(thread, &row, talks)
     }
 
@@ -32,7 +32,7 @@ impl Enterprise {
         row: &Subscriber,
         talks: &NegotiationContext<'_>,
     ) -> Option<OfferEvaluator> {
-        let company = self.company(thread.customer)?;
+        let company = self.enterprise_customer(thread.customer)?;
         let mut quality = talks.negotiation_quality(thread.group, row, company.is_subscriber());
         if thread.kind == ThreadKind::NewLead {
             let impression = company.first_impression_factor(talks.day.params, talks.day.streams);
@@ -64,7 +64,7 @@ impl NegotiationStep<'_> {
 
     fn decide_reply(&self, thread: usize) -> Option<DueReply> {
         let thread_state = &self.enterprise.threads[thread];
-        let judge = self.enterprise.offer_evaluator(thread_state, self.customers, self.talks)?;
+        let judge = self.enterprise.offer_evaluator(thread_state, self.customers, self.context)?;
         let offerings = thread_state.last_offerings().to_vec();
         let answer = judge.respond(&offerings, thread_state.last().number, self.day.params);
         Some(DueReply { thread, answer, offerings })

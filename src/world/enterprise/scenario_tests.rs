@@ -9,12 +9,12 @@ use crate::events::{
 use crate::identifiers::Plan;
 
 /// Returns a kit with a lead of day 0 that replies after `delay` days and accepts at most `turns` turns.
-fn lead(delay: f64, turns: u32) -> NegotiationKit {
+fn kit_with_lead(delay: f64, turns: u32) -> NegotiationKit {
     let mut kit = NegotiationKit::new(0);
     // Without a first-impression factor, perceived quality equals offered quality.
     kit.params.quality.initial_decision_noise_min = 1.0;
     kit.params.quality.initial_decision_noise_max = 1.0;
-    let company = kit.company(delay, turns);
+    let company = kit.reference_enterprise(delay, turns);
     kit.enterprise.open_lead_thread(0, company, &mut kit.facts);
     kit
 }
@@ -23,39 +23,39 @@ fn run_days(kit: &mut NegotiationKit, days: std::ops::RangeInclusive<u32>) -> Ve
     days.map(|day| kit.run_day(day)).collect()
 }
 
-fn turns(kit: &NegotiationKit) -> Vec<(Sender, u32)> {
+fn senders_and_turn_numbers(kit: &NegotiationKit) -> Vec<(Sender, u32)> {
     kit.facts.turns.iter().map(|turn| (turn.sender, turn.number)).collect()
 }
 
 #[test]
 fn accepted_offer_activates_the_lead() {
-    let mut kit = lead(3.0, 6);
-    assert_eq!(turns(&kit), [(Sender::System, 0)]);
+    let mut kit = kit_with_lead(3.0, 6);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::System, 0)]);
     let messages = kit.send_offer(&[(Plan::B, 35.0)]);
     assert_eq!((messages[0].reply_day, messages[0].turn, messages[0].relationship), (3, 1, None));
-    assert_eq!(turns(&kit), [(Sender::Agent, 1)]);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::Agent, 1)]);
     assert_eq!(kit.facts.turns[0].seats, 1);
     assert!(run_days(&mut kit, 1..=2).iter().all(|day| day.new_seats == 0));
     assert!(kit.facts.turns.is_empty());
     assert_eq!(kit.run_day(3).new_seats, 100);
-    assert_eq!(turns(&kit), [(Sender::Customer, 2), (Sender::System, 3)]);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::Customer, 2), (Sender::System, 3)]);
     let offering = Offering { plan: Plan::B, price: 35.0 };
     assert_eq!(kit.facts.turns[0].content, TurnContent::Acceptance(offering));
     assert_eq!(kit.facts.notices, [Notice::DealWon { price: 35.0 }]);
     let deal = kit.facts.deals[0];
     assert_eq!((deal.activated, deal.contract_end_day), (true, Some(33)));
     assert_eq!((deal.agent_turns, deal.days, deal.seats), (1, 3, 100));
-    let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    let row = kit.customers.groups[kit.group].subscriber(1).expect("a subscriber");
     assert_eq!((row.start_day, row.billing_day, row.billed_once), (3, 0, false));
     assert_eq!((row.listed_price, row.promotion, row.effective_price), (35.0, 0.0, 35.0));
     assert!((row.relationship - 0.6).abs() < 1e-12 && row.usage_rate > 0.0 && row.required > 0.0);
     assert!(kit.enterprise.threads.is_empty());
-    assert_eq!(kit.enterprise.companies[0].standing, EnterpriseStatus::Subscriber);
+    assert_eq!(kit.enterprise.companies[0].status, EnterpriseStatus::Subscriber);
 }
 
 #[test]
 fn lead_is_lost_by_silence_or_timeout() {
-    let mut kit = lead(3.0, 6);
+    let mut kit = kit_with_lead(3.0, 6);
     run_days(&mut kit, 1..=6);
     assert!(kit.facts.endings.is_empty());
     kit.run_day(7);
@@ -69,7 +69,7 @@ fn lead_is_lost_by_silence_or_timeout() {
     assert!(kit.facts.notices.is_empty() && kit.enterprise.threads.is_empty());
     assert!(kit.enterprise.companies.is_empty());
 
-    let mut kit = lead(3.0, 2);
+    let mut kit = kit_with_lead(3.0, 2);
     kit.send_offer(&[(Plan::B, 59.0)]);
     run_days(&mut kit, 1..=3);
     assert_eq!(kit.facts.notices, [Notice::CounterOffer { customer: 2 }]);
@@ -96,7 +96,7 @@ fn lead_is_lost_by_silence_or_timeout() {
 
 #[test]
 fn dead_threads_do_not_reappear_if_disabled() {
-    let mut kit = lead(3.0, 2);
+    let mut kit = kit_with_lead(3.0, 2);
     kit.params.fidelity.reappearing_threads = false;
     kit.send_offer(&[(Plan::B, 59.0)]);
     run_days(&mut kit, 1..=4);
@@ -120,13 +120,13 @@ fn kit_with_unhappy_subscriber() -> NegotiationKit {
 fn unanswered_threat_loses_the_subscriber() {
     let mut kit = kit_with_unhappy_subscriber();
     kit.run_day(4);
-    assert_eq!(turns(&kit), [(Sender::System, 0), (Sender::Customer, 1)]);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::System, 0), (Sender::Customer, 1)]);
     assert_eq!(kit.facts.turns[1].content, TurnContent::Threat);
     assert_eq!(kit.facts.notices, [Notice::ChurnThreat { customer: 2 }]);
     let thread = kit.enterprise.open_threads().newest(2).expect("an open thread").number;
     kit.facts.start_day(4);
     kit.enterprise.reject_threads(&[thread], 4, &mut kit.facts);
-    assert_eq!(turns(&kit), [(Sender::Agent, 2)]);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::Agent, 2)]);
     assert!(kit.facts.endings.is_empty() && kit.enterprise.open_threads().newest(2).is_none());
     // On the next day the enterprise opens a new thread, and the player does not answer.
     let opened = kit.run_day(5);
@@ -142,7 +142,7 @@ fn unanswered_threat_loses_the_subscriber() {
     assert_eq!((ending.day, ending.status), (33, SubscriptionStatus::Cancelled));
     assert_eq!(ending.cause, EndCause::PriceSensitivity);
     assert_eq!(kit.customers.groups[kit.group].active_count(), 0);
-    let company = kit.enterprise.company(2).expect("its thread can still trigger").clone();
+    let company = kit.enterprise.enterprise_customer(2).expect("its thread can still trigger").clone();
     let relationship = company.row(&kit.customers).expect("a row").relationship;
     assert!((relationship - 0.3).abs() < 1e-12, "{relationship}");
     assert_eq!((lost.lost[0].days_subscribed, lost.lost[0].seats), (Some(9), 100));
@@ -175,7 +175,7 @@ fn settled_threat_suspends_payment_until_it_ends() {
         (deal.activated, deal.contract_end_day, deal.kind),
         (false, Some(63), ThreadKind::ChurnPrevention)
     );
-    let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    let row = kit.customers.groups[kit.group].subscriber(1).expect("a subscriber");
     assert_eq!((row.listed_price, row.effective_price, row.start_day), (30.0, 30.0, 3));
     assert!((row.relationship - 0.6).abs() < 1e-12, "only new deals raise the relationship");
     assert!(!suspended(&kit.run_day(34)));
@@ -183,11 +183,11 @@ fn settled_threat_suspends_payment_until_it_ends() {
 
 #[test]
 fn promotion_lowers_the_deal_price() {
-    let mut kit = lead(2.0, 6);
+    let mut kit = kit_with_lead(2.0, 6);
     kit.settings.promotion.global = 4.0;
     kit.send_offer(&[(Plan::B, 35.0)]);
     run_days(&mut kit, 1..=2);
-    let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    let row = kit.customers.groups[kit.group].subscriber(1).expect("a subscriber");
     assert_eq!((row.listed_price, row.promotion, row.effective_price), (35.0, 4.0, 31.0));
     assert_eq!(row.effective_price * row.seats, 3100.0);
 }
@@ -215,13 +215,13 @@ fn failed_renegotiation_loses_the_customer() {
 
 #[test]
 fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
-    let mut kit = lead(3.0, 3);
+    let mut kit = kit_with_lead(3.0, 3);
     kit.send_offer(&[(Plan::B, 59.0)]);
     let offer_messages = kit.send_offer(&[(Plan::B, 20.0)]);
     assert_eq!((offer_messages[0].turn, offer_messages[0].relationship), (2, None));
     run_days(&mut kit, 1..=3);
-    assert_eq!(turns(&kit), [(Sender::Customer, 3), (Sender::System, 4)]);
-    let mut kit = lead(3.0, 2);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::Customer, 3), (Sender::System, 4)]);
+    let mut kit = kit_with_lead(3.0, 2);
     kit.send_offer(&[(Plan::B, 59.0)]);
     kit.send_offer(&[(Plan::B, 20.0)]);
     run_days(&mut kit, 1..=3);
@@ -232,7 +232,7 @@ fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
 
 #[test]
 fn late_reply_lowers_relationship_once() {
-    let mut kit = lead(3.0, 9);
+    let mut kit = kit_with_lead(3.0, 9);
     kit.send_offer(&[(Plan::B, 59.0)]);
     run_days(&mut kit, 1..=7);
     let messages = kit.send_offer(&[(Plan::B, 44.0)]);
@@ -244,7 +244,8 @@ fn late_reply_lowers_relationship_once() {
         None,
         "a second message has no further penalty"
     );
-    let row = kit.enterprise.company(2).and_then(|company| company.row(&kit.customers)).expect("a row");
+    let row =
+        kit.enterprise.enterprise_customer(2).and_then(|company| company.row(&kit.customers)).expect("a row");
     assert!((row.relationship - 0.44).abs() < 1e-12);
 }
 
@@ -271,7 +272,7 @@ fn parallel_renegotiations_are_answered_separately() {
 
 #[test]
 fn two_offers_in_one_call_share_a_turn_number() {
-    let mut kit = lead(3.0, 9);
+    let mut kit = kit_with_lead(3.0, 9);
     let proposal =
         super::messages::OfferDraft { customer: 2, offerings: vec![Offering { plan: Plan::B, price: 59.0 }] };
     kit.send_offer(&[(Plan::B, 59.0)]);
@@ -287,7 +288,7 @@ fn two_offers_in_one_call_share_a_turn_number() {
     assert!((relationship[0] - 0.44).abs() < 1e-12 && (relationship[1] - 0.38).abs() < 1e-12);
     kit.facts.start_day(7);
     kit.enterprise.send_offers(&offer_messages, 7, &mut kit.customers, &mut kit.facts);
-    assert_eq!(turns(&kit), [(Sender::Agent, 3), (Sender::Agent, 3)]);
+    assert_eq!(senders_and_turn_numbers(&kit), [(Sender::Agent, 3), (Sender::Agent, 3)]);
     let replies: Vec<Option<u32>> =
         kit.enterprise.threads[0].turns[3..].iter().map(|t| t.reply_day).collect();
     assert_eq!(replies, [None, Some(10)]);
@@ -295,11 +296,11 @@ fn two_offers_in_one_call_share_a_turn_number() {
 
 #[test]
 fn rejected_lead_is_lost() {
-    let mut kit = lead(3.0, 9);
+    let mut kit = kit_with_lead(3.0, 9);
     kit.facts.start_day(0);
     let thread = kit.enterprise.open_threads().newest(2).expect("the lead's thread").number;
     kit.enterprise.reject_threads(&[thread, thread, 77], 0, &mut kit.facts);
-    assert_eq!((turns(&kit), kit.facts.endings.len()), (vec![(Sender::Agent, 1)], 1));
+    assert_eq!((senders_and_turn_numbers(&kit), kit.facts.endings.len()), (vec![(Sender::Agent, 1)], 1));
     assert_eq!(kit.facts.endings[0].cause, EndCause::LeadRejected);
     assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
 }
@@ -317,9 +318,9 @@ fn threatening_customer_with_two_turns_always_leaves() {
 
 #[test]
 fn free_and_negative_prices_are_accepted() {
-    let mut kit = lead(2.0, 6);
+    let mut kit = kit_with_lead(2.0, 6);
     kit.send_offer(&[(Plan::B, -5.0)]);
     run_days(&mut kit, 1..=2);
-    let row: Subscriber = kit.customers.groups[kit.group].row(1).expect("a subscriber");
+    let row: Subscriber = kit.customers.groups[kit.group].subscriber(1).expect("a subscriber");
     assert_eq!((row.listed_price, row.effective_price), (-5.0, 0.0));
 }

@@ -1,7 +1,7 @@
 //! A negotiation day with simple values for tests, which can change each value.
 
 use super::evaluation::tests::K;
-use super::{Company, Enterprise, EnterpriseDayResult, EnterpriseStatus, NegotiationContext};
+use super::{Enterprise, EnterpriseCustomer, EnterpriseDayResult, EnterpriseStatus, NegotiationContext};
 use crate::context::tests::with_day_context;
 use crate::customers::Customers;
 use crate::customers::columns::Subscriber;
@@ -71,7 +71,7 @@ impl NegotiationKit {
     }
 
     /// Returns the row of the reference enterprise K, which is customer 2, the first of its group, with 100 seats.
-    pub fn row(&self) -> Subscriber {
+    pub fn reference_row(&self) -> Subscriber {
         Subscriber {
             customer: 2,
             steepness_left: K.steepness_left,
@@ -92,13 +92,16 @@ impl NegotiationKit {
     }
 
     /// Returns the reference enterprise K, which replies after `delay` days.
-    pub fn company(&self, delay: f64, max_turns: u32) -> Company {
+    pub fn reference_enterprise(&self, delay: f64, max_turns: u32) -> EnterpriseCustomer {
         let negotiator = Negotiator {
             reply_delay_mean: delay,
             max_negotiation_turns: max_turns,
             ..plain_enterprise(self.group, 1, 2, EnterpriseStatus::Subscriber).negotiator
         };
-        Company { negotiator, ..plain_enterprise(self.group, 1, 2, EnterpriseStatus::Lead(self.row())) }
+        EnterpriseCustomer {
+            negotiator,
+            ..plain_enterprise(self.group, 1, 2, EnterpriseStatus::Lead(self.reference_row()))
+        }
     }
 
     /// Makes enterprise K a subscriber since day 3 with a contract until day 33. `change` edits its row.
@@ -109,14 +112,14 @@ impl NegotiationKit {
             listed_price: 35.0,
             effective_price: 35.0,
             plan: crate::identifiers::Plan::B,
-            ..self.row()
+            ..self.reference_row()
         };
         change(&mut row);
         self.customers.groups[self.group].activate(row);
-        let company = Company {
-            standing: EnterpriseStatus::Subscriber,
+        let company = EnterpriseCustomer {
+            status: EnterpriseStatus::Subscriber,
             contract_end_day: 33,
-            ..self.company(3.0, max_turns)
+            ..self.reference_enterprise(3.0, max_turns)
         };
         self.enterprise.companies.push(company);
     }

@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     /// Builds a thread from letters: s system, a agent, c customer; an uppercase letter is dead.
-    fn thread(letters: &str) -> Thread {
+    fn thread_from_letters(letters: &str) -> Thread {
         let turn = |(number, letter): (usize, char)| Turn {
             message: number as u32,
             number: number as u32,
@@ -157,7 +157,7 @@ mod tests {
             ("A", None),
             ("saA", Some(Sender::Agent)),
         ] {
-            let thread = thread(letters);
+            let thread = thread_from_letters(letters);
             assert!(!thread.is_open(), "{letters}");
             assert_eq!(thread.active_turn(true).map(|turn| turn.sender), live, "{letters}");
             assert_eq!(thread.active_turn(false), None, "{letters}");
@@ -169,16 +169,22 @@ mod tests {
 
     #[test]
     fn repeated_offer_can_be_answered_after_thread_death() {
-        let mut thread = thread("saA");
+        let mut thread = thread_from_letters("saA");
         thread.turns[1].reply_day = Some(9);
         assert!(!thread.is_finished(8, true) && thread.is_finished(9, true));
     }
 
     #[test]
     fn open_threads_await_one_side() {
-        assert!(thread("s").awaits_player() && thread("sac").awaits_player());
-        assert!(!thread("sa").awaits_player() && thread("sa").is_open());
-        assert_eq!((thread("sacaa").player_turn_count(), thread("sacac").last_customer_day()), (3, Some(4)));
-        assert_eq!(thread("sa").last_customer_day(), None);
+        assert!(thread_from_letters("s").awaits_player() && thread_from_letters("sac").awaits_player());
+        assert!(!thread_from_letters("sa").awaits_player() && thread_from_letters("sa").is_open());
+        assert_eq!(
+            (
+                thread_from_letters("sacaa").player_turn_count(),
+                thread_from_letters("sacac").last_customer_day()
+            ),
+            (3, Some(4))
+        );
+        assert_eq!(thread_from_letters("sa").last_customer_day(), None);
     }
 }

@@ -31,7 +31,7 @@ impl NegotiationStep<'_> {
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
             for at in (0..block.len()).filter(|at| !busy.contains(&block.customer[*at])) {
                 let row = block.row(at);
-                if let Some(subscriber_request) = self.talks.subscriber_request(group, &row) {
+                if let Some(subscriber_request) = self.context.subscriber_request(group, &row) {
                     wishes.push((row.customer, row.seats as u32, subscriber_request));
                 }
             }
@@ -99,7 +99,7 @@ mod tests {
     use crate::identifiers::ByPlan;
 
     /// Returns quality and surplus of the subscriber's current plan.
-    fn present(kit: &NegotiationKit, row: &Subscriber) -> (f64, f64) {
+    fn current_quality_and_surplus(kit: &NegotiationKit, row: &Subscriber) -> (f64, f64) {
         kit.with_negotiation(|day| {
             let (quality, curve) =
                 (day.subscriber_quality(kit.group, row), day.subscriber_curve(kit.group, row));
@@ -108,7 +108,7 @@ mod tests {
         })
     }
 
-    fn kit(day: u32) -> NegotiationKit {
+    fn kit_on_day(day: u32) -> NegotiationKit {
         let mut kit = NegotiationKit::new(day);
         kit.morning.product.0.iter_mut().for_each(|product| *product = 0.8);
         kit.morning.quotas = ByPlan([4000.0, 5000.0, 10_000.0]);
@@ -129,7 +129,7 @@ mod tests {
             relationship,
             usage_rate,
             start_day: 2,
-            ..kit.row()
+            ..kit.reference_row()
         }
     }
 
@@ -139,31 +139,37 @@ mod tests {
             assert!((quality - expected.0).abs() < 1e-10, "got {quality}, expected {}", expected.0);
             assert!((surplus - expected.1).abs() < 1e-10, "got {surplus}, expected {}", expected.1);
         };
-        let day4 = kit(4);
+        let day4 = kit_on_day(4);
         let content = subscriber(&day4, Plan::B, 35.0, 0.6, 4500.0);
-        near(present(&day4, &content), (0.8932269261, 0.1604767570));
+        near(current_quality_and_surplus(&day4, &content), (0.8932269261, 0.1604767570));
         let strained = subscriber(&day4, Plan::B, 45.0, 0.6, 5500.0);
-        near(present(&day4, &strained), (0.8120244782, -0.0254755218));
+        near(current_quality_and_surplus(&day4, &strained), (0.8120244782, -0.0254755218));
         assert_eq!(
             day4.with_negotiation(|day| day.subscriber_request(day4.group, &strained)),
             Some(SubscriberRequest::Leave)
         );
 
-        let mut day32 = kit(32);
+        let mut day32 = kit_on_day(32);
         day32.morning.product[day32.group] = 0.85;
         let waiting = Subscriber { open_issue_days: 3, ..subscriber(&day32, Plan::B, 35.0, 0.5, 5000.0) };
-        near(present(&day32, &waiting), (0.7946573590, 0.0619071900));
+        near(current_quality_and_surplus(&day32, &waiting), (0.7946573590, 0.0619071900));
 
-        let mut day61 = kit(61);
+        let mut day61 = kit_on_day(61);
         day61.settings.ads_strength.global = 0.5;
-        near(present(&day61, &subscriber(&day61, Plan::C, 35.0, 0.8, 9000.0)), (1.1451429342, 0.4123927652));
-        let day9 = kit(9);
-        near(present(&day9, &subscriber(&day9, Plan::B, 35.0, 0.0, 5000.0)), (0.7047704579, -0.0279797112));
+        near(
+            current_quality_and_surplus(&day61, &subscriber(&day61, Plan::C, 35.0, 0.8, 9000.0)),
+            (1.1451429342, 0.4123927652),
+        );
+        let day9 = kit_on_day(9);
+        near(
+            current_quality_and_surplus(&day9, &subscriber(&day9, Plan::B, 35.0, 0.0, 5000.0)),
+            (0.7047704579, -0.0279797112),
+        );
     }
 
     #[test]
     fn threat_depends_on_the_agreed_price() {
-        let kit = kit(4);
+        let kit = kit_on_day(4);
         let wish = |agreed: f64, charged: f64| {
             let row =
                 Subscriber { effective_price: charged, ..subscriber(&kit, Plan::B, agreed, 0.6, 5500.0) };
@@ -179,7 +185,7 @@ mod tests {
 
     #[test]
     fn plan_change_requires_a_minimum_improvement() {
-        let mut kit = kit(3);
+        let mut kit = kit_on_day(3);
         kit.morning.quotas = ByPlan([1e9; 3]);
         let on_b = |kit: &NegotiationKit, price| subscriber(kit, Plan::B, price, 0.5, 4000.0);
         let surplus_on = |kit: &NegotiationKit, row: &Subscriber, plan: Plan, price: f64| {
@@ -195,7 +201,8 @@ mod tests {
             (36.0, 19.0, 0.0659686697, 0.0729693082, 0.1061206559),
         ] {
             let row = on_b(&kit, deal);
-            let (own_here, own_there) = (present(&kit, &row).1, surplus_on(&kit, &row, Plan::A, list));
+            let (own_here, own_there) =
+                (current_quality_and_surplus(&kit, &row).1, surplus_on(&kit, &row, Plan::A, list));
             assert!((own_here - here).abs() < 1e-10 && (own_there - there).abs() < 1e-10);
             assert!((improvement(own_there, own_here, &sales) - gain).abs() < 1e-8);
         }
@@ -208,7 +215,7 @@ mod tests {
 
     #[test]
     fn plan_change_probability_is_thirty_percent() {
-        let mut kit = kit(3);
+        let mut kit = kit_on_day(3);
         kit.morning.quotas = ByPlan([1e9; 3]);
         kit.morning.core.prices = ByPlan([25.0, 500.0, 500.0]);
         let asks = |n: &u32| {
@@ -218,6 +225,6 @@ mod tests {
         };
         let asked = (1..=10_000).filter(asks).count();
         assert!((2_850..3_150).contains(&asked), "{asked}");
-        assert_eq!(kit.row().c_max, K.c_max);
+        assert_eq!(kit.reference_row().c_max, K.c_max);
     }
 }

@@ -22,8 +22,8 @@ pub use economy::{Phase, Reading, Trend};
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
 pub use posts::{
-    Engagement, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, PostCause, PostSubject, Sentiment,
-    Severity, Theme, Troubles,
+    CustomerProblems, Engagement, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, PostCause,
+    PostSubject, Sentiment, Severity, Theme,
 };
 pub use research::{Attempt, Knowledge, Project, Snapshot, Study};
 pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};

@@ -11,7 +11,7 @@ canonical! {
     Engagement { likes, shares, virality }
     PostAuthor { customer, group, n, persona, company }
     Opinion { cause, troubles, theme, days_subscribed, plan, price, seats, waiting_days, downtime_minutes }
-    Troubles { overload, outage, issue, quota }
+    CustomerProblems { overload, outage, issue, quota }
     OwnPostMade { post, content, reply_to }
     OwnPostSeen { post, views, comments }
 }
@@ -158,7 +158,7 @@ pub struct Opinion {
     /// Reason why the customer writes the post.
     pub cause: PostCause,
     /// Problems that the customer has today.
-    pub troubles: Troubles,
+    pub troubles: CustomerProblems,
     /// The theme that matters most to the customer.
     pub theme: Theme,
     /// Days since the subscription started.
@@ -245,7 +245,7 @@ impl Restore for PostCause {
 
 /// Problems that a customer has today.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Troubles {
+pub struct CustomerProblems {
     /// Whether the service was slow.
     pub overload: bool,
     /// Whether the service was down.
@@ -256,7 +256,7 @@ pub struct Troubles {
     pub quota: bool,
 }
 
-impl Troubles {
+impl CustomerProblems {
     /// Returns the number of problems that are present.
     #[inline]
     pub fn count(&self) -> u32 {

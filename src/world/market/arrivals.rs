@@ -11,7 +11,7 @@ use crate::customers::curve::Curve;
 use crate::customers::customer_numbers::ArrivalRun;
 use crate::customers::drift::Expectation;
 use crate::customers::traits::{Traits, draw_traits_from_stream};
-use crate::enterprise::{Company, Enterprise, EnterpriseStatus};
+use crate::enterprise::{Enterprise, EnterpriseCustomer, EnterpriseStatus};
 use crate::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
 use crate::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::market::Market;
@@ -494,7 +494,7 @@ fn open_lead_threads(
             });
             let row = new_subscriber_row(arrivals, n, customer, subscription, &lead);
             if let Some(negotiator) = lead.traits.negotiator {
-                let company = Company {
+                let company = EnterpriseCustomer {
                     customer,
                     group: run.group,
                     n,
@@ -502,7 +502,7 @@ fn open_lead_threads(
                     negotiator,
                     persona: lead.traits.persona,
                     contract_end_day: 0,
-                    standing: EnterpriseStatus::Lead(row),
+                    status: EnterpriseStatus::Lead(row),
                 };
                 enterprise.open_lead_thread(arrivals.day.day(), company, facts);
             }

@@ -13,7 +13,7 @@ use crate::series::RecordedEvent;
 
 /// A competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
+pub struct CompetitorEvent {
     /// Day of the event.
     pub day: u32,
     /// Gain in quality that was applied.
@@ -26,7 +26,7 @@ pub struct Event {
     pub by_feedback: bool,
 }
 
-canonical! { Event { day, boost, sampled, u, by_feedback } }
+canonical! { CompetitorEvent { day, boost, sampled, u, by_feedback } }
 
 /// Returns the severity of a gain in quality.
 pub fn severity(boost: f64, competitor: &Competitor) -> Severity {
@@ -81,13 +81,13 @@ pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, competitor: &Co
 
 /// Resolves an event. The larger of the sampled gain and the share `u` of the quality bank applies. Copied quality is
 /// removed from the bank.
-pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Params) -> Event {
+pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Params) -> CompetitorEvent {
     let feedback = u * *bank;
     let by_feedback = (feedback > sampled) != params.has_fault(Fault::SmallerRivalMove);
     if by_feedback {
         *bank = (*bank - feedback).max(params.competitor.bank_min);
     }
-    Event { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
+    CompetitorEvent { day, boost: if by_feedback { feedback } else { sampled }, sampled, u, by_feedback }
 }
 
 /// A competitor's move on a day, before the move is applied.
@@ -161,7 +161,7 @@ pub fn next_move(
 pub fn apply_move(
     day: u32,
     total_days: u32,
-    events: &mut Vec<Event>,
+    events: &mut Vec<CompetitorEvent>,
     product: &mut Product,
     drift: &mut DriftTotals,
     params: &Params,
@@ -223,7 +223,7 @@ mod tests {
     }
 
     /// Resolves an event with given draws: the log-normal gain and the fraction of the range of `u`.
-    fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (Event, f64, Severity) {
+    fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (CompetitorEvent, f64, Severity) {
         let params = Params::bundled();
         let competitor = &params.competitor;
         let u = competitor.competitor_feedback_u_min

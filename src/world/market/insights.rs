@@ -173,7 +173,7 @@ fn insights_with(
     let known = &market.knowledge[group];
     let snapshot = known.snapshot.filter(|_| known.level >= 1)?;
     let (group_params, research) = (params.group(group), &params.group_research);
-    let noise = params.level(known.level).noise;
+    let noise = params.study_level(known.level).noise;
     let mut estimate = |field: EstimatedField, truth: f64| truth * (1.0 + noise * draw(field));
     let willingness_to_pay = round_to(
         estimate(EstimatedField::WillingnessToPay, snapshot.c_max),
@@ -272,7 +272,7 @@ mod tests {
         insights(group, &market, &params, &Streams::new(u64::from(day))).expect("a known group")
     }
 
-    fn named(list: &[(Group, f64)]) -> Vec<(&'static str, f64)> {
+    fn group_ids_and_values(list: &[(Group, f64)]) -> Vec<(&'static str, f64)> {
         list.iter().map(|(group, value)| (group.id(), *value)).collect()
     }
 
@@ -329,16 +329,16 @@ mod tests {
     #[test]
     fn links_to_known_groups_are_sorted_by_shown_value() {
         let e1 = estimates("E1", 1, 0);
-        assert_eq!(named(&e1.referrals_from), [("S3", 0.0073), ("E3", 0.0004)]);
+        assert_eq!(group_ids_and_values(&e1.referrals_from), [("S3", 0.0073), ("E3", 0.0004)]);
         let weights = [("E2", 0.0502), ("S3", 0.0488), ("E3", 0.0228), ("S1", 0.0209), ("S2", 0.0167)];
-        assert_eq!(named(&e1.reputation_to), weights);
+        assert_eq!(group_ids_and_values(&e1.reputation_to), weights);
         let s1 = estimates("S1", 1, 0);
-        assert_eq!(named(&s1.referrals_to), [("S3", 0.0023), ("S2", 0.0013)]);
-        assert_eq!(named(&s1.referrals_from), [("S3", 0.0053), ("S2", 0.0006)]);
+        assert_eq!(group_ids_and_values(&s1.referrals_to), [("S3", 0.0023), ("S2", 0.0013)]);
+        assert_eq!(group_ids_and_values(&s1.referrals_from), [("S3", 0.0053), ("S2", 0.0006)]);
         let out = [("S3", 0.1676), ("S2", 0.0342), ("E1", 0.0124), ("E3", 0.0069), ("E2", 0.0042)];
-        assert_eq!(named(&s1.reputation_to), out);
+        assert_eq!(group_ids_and_values(&s1.reputation_to), out);
         let into = [("S3", 0.3762), ("S2", 0.0656), ("E3", 0.0333), ("E1", 0.0193), ("E2", 0.0133)];
-        assert_eq!(named(&s1.reputation_from), into);
+        assert_eq!(group_ids_and_values(&s1.reputation_from), into);
     }
 
     #[test]
@@ -368,12 +368,12 @@ mod tests {
         let params = Params::bundled();
         let z = |id: &str, level: u8, day: u32| {
             let truth = params.group(Group::parse(id).expect("a group")).usage_demand_mean;
-            (estimates(id, level, day).usage_volume / truth - 1.0) / params.level(level).noise
+            (estimates(id, level, day).usage_volume / truth - 1.0) / params.study_level(level).noise
         };
         assert!((z("S1", 1, 0) - z("S1", 5, 52)).abs() < 0.02, "errors of two levels have the same sign");
         let pay = |id: &str| {
             let truth = params.group(Group::parse(id).expect("a group")).c_max_mean;
-            (estimates(id, 1, 0).willingness_to_pay / truth - 1.0) / params.level(1).noise
+            (estimates(id, 1, 0).willingness_to_pay / truth - 1.0) / params.study_level(1).noise
         };
         assert!((pay("S1") + 0.742).abs() < 5e-4, "{}", pay("S1"));
         assert!(
@@ -417,7 +417,7 @@ mod tests {
         let truth = params.group(s1).c_max_mean;
         for level in 1..=5 {
             market.knowledge[s1].level = level;
-            let noise = params.level(level).noise;
+            let noise = params.study_level(level).noise;
             let errors: Vec<f64> = (0..500)
                 .map(|seed| insights(s1, &market, &params, &Streams::new(seed)).expect("S1 is known"))
                 .map(|estimates| (estimates.willingness_to_pay / truth - 1.0) / noise)

@@ -32,7 +32,7 @@ pub struct Market {
     /// State of the economy.
     pub economy: economy::Economy,
     /// All past competitor events.
-    pub competitors: Vec<competitors::Event>,
+    pub competitors: Vec<competitors::CompetitorEvent>,
     /// All demand surges that have been drawn.
     pub surges: Vec<surges::Surge>,
     /// The player's knowledge of each group.

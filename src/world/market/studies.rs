@@ -18,7 +18,7 @@ impl Market {
 
     /// Returns the study that would be started today.
     pub fn plan_study(&self, group: Group, target: u8, day: u32, params: &Params) -> Study {
-        let due_day = day + params.level(target).delay_days;
+        let due_day = day + params.study_level(target).delay_days;
         Study { group, target, before: self.knowledge[group].level, due_day }
     }
 }
@@ -34,7 +34,9 @@ pub fn complete_due_studies(day: u32, market: &mut Market, params: &Params, fact
         }
         group_knowledge.snapshot = Some(Snapshot::take_snapshot(study.group, day, drift, params));
         facts.knowledge.push((study.group, *group_knowledge));
-        facts.notices.push(Notice::StudyComplete { study, noise: params.level(group_knowledge.level).noise });
+        facts
+            .notices
+            .push(Notice::StudyComplete { study, noise: params.study_level(group_knowledge.level).noise });
     }
 }
 
@@ -46,7 +48,7 @@ mod tests {
         assert!((actual - expected).abs() < 1e-6, "got {actual}, expected {expected}");
     }
 
-    fn order(market: &mut Market, id: &str, target: u8, day: u32, params: &Params) -> Group {
+    fn buy_study(market: &mut Market, id: &str, target: u8, day: u32, params: &Params) -> Group {
         let group = Group::parse(id).expect("a group");
         let study = market.plan_study(group, target, day, params);
         market.studies.push(study);
@@ -57,7 +59,7 @@ mod tests {
     fn study_snapshot_is_taken_on_the_completion_morning() {
         let params = Params::bundled();
         let (mut market, mut facts) = (Market::initial(&params), Facts::default());
-        let s1 = order(&mut market, "S1", 2, 0, &params);
+        let s1 = buy_study(&mut market, "S1", 2, 0, &params);
         market.drift.global_quality = 0.12;
         market.drift.quality[s1] = 0.03;
         market.drift.c_max[s1] = 0.5;
@@ -70,7 +72,7 @@ mod tests {
         assert_near(snapshot.market_cap, 272_447.123_288);
         assert_eq!((market.knowledge[s1].level, market.knowledge[s1].last_research_day), (2, Some(3)));
 
-        order(&mut market, "S1", 2, 7, &params);
+        buy_study(&mut market, "S1", 2, 7, &params);
         complete_due_studies(10, &mut market, &params, &mut facts);
         let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
         assert_near(snapshot.c_max, 50.5);
@@ -86,7 +88,7 @@ mod tests {
         let params = Params::bundled();
         let (mut market, mut facts) = (Market::initial(&params), Facts::default());
         for (day, target, due) in [(0, 2, 3), (14, 3, 19), (28, 4, 35), (42, 5, 52)] {
-            let s1 = order(&mut market, "S1", target, day, &params);
+            let s1 = buy_study(&mut market, "S1", target, day, &params);
             assert_eq!(market.running_study(s1).map(|study| study.due_day), Some(due));
             complete_due_studies(due - 1, &mut market, &params, &mut facts);
             assert_eq!(market.knowledge[s1].level, target - 1);
@@ -99,8 +101,8 @@ mod tests {
     fn studies_run_in_parallel_and_can_skip_levels() {
         let params = Params::bundled();
         let (mut market, mut facts) = (Market::initial(&params), Facts::default());
-        let s1 = order(&mut market, "S1", 5, 0, &params);
-        let e2 = order(&mut market, "E2", 2, 0, &params);
+        let s1 = buy_study(&mut market, "S1", 5, 0, &params);
+        let e2 = buy_study(&mut market, "E2", 2, 0, &params);
         complete_due_studies(3, &mut market, &params, &mut facts);
         assert_eq!((market.knowledge[s1].level, market.knowledge[e2].level), (1, 2));
         complete_due_studies(10, &mut market, &params, &mut facts);

@@ -125,7 +125,7 @@ mod tests {
             ("group.S1.c_max_mean", &Some(Value::Float(300.0)))
         );
         let large = set("capacity_tier.3.capacity_units", 5_000_000).expect("units");
-        assert_eq!(large.capacity(3).capacity_units, 5_000_000);
+        assert_eq!(large.capacity_tier(3).capacity_units, 5_000_000);
         let influence = set("reputation_influence.S1.S3", 0.5).expect("a weight");
         assert_eq!(influence.reputation_influence["S1"][2], 0.5);
         let weekly = Value::try_from([1.0; 7]).expect("a list");

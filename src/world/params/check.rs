@@ -120,7 +120,7 @@ pub(super) fn check_ranges(tables: &Value) -> Checked {
 }
 
 /// Suffix of lower bounds, suffix of the corresponding upper bounds, and whether the lower bound must be strictly smaller.
-const BOUND_PREFIXES: [(&str, &str, bool); 3] =
+const BOUND_SUFFIXES: [(&str, &str, bool); 3] =
     [("_min", "_max", false), ("_low", "_high", false), ("_low", "_high_exclusive", true)];
 
 /// Checks that no lower bound exceeds its upper bound in the same table.
@@ -137,7 +137,7 @@ fn check_table_bounds(table: &Table, path: &str) -> Checked {
         if let Value::Table(inner) = value {
             return check_table_bounds(inner, &key);
         }
-        BOUND_PREFIXES.iter().try_for_each(|(lower, upper, is_below)| {
+        BOUND_SUFFIXES.iter().try_for_each(|(lower, upper, is_below)| {
             let upper = name.strip_suffix(lower).and_then(|start| table.get(&format!("{start}{upper}")));
             let (Some(low), Some(high)) = (as_number(value), upper.and_then(as_number)) else {
                 return Ok(());

@@ -114,16 +114,16 @@ impl Params {
         for source in base {
             for (key, value) in parse_source(source)? {
                 if merged.insert(key.clone(), value).is_some() {
-                    return Err(locate(&[source], &key, "this table is also in another file"));
+                    return Err(locate_error(&[source], &key, "this table is also in another file"));
                 }
             }
         }
         for source in overrides {
             apply_override(&mut merged, parse_source(source)?)
-                .map_err(|(key, problem)| locate(&[source], &key, &problem))?;
+                .map_err(|(key, problem)| locate_error(&[source], &key, &problem))?;
         }
         let sources: Vec<&ParameterSource> = overrides.iter().rev().chain(base).collect();
-        from_tables(merged).map_err(|(key, problem)| locate(&sources, &key, &problem))
+        from_tables(merged).map_err(|(key, problem)| locate_error(&sources, &key, &problem))
     }
 }
 
@@ -266,7 +266,7 @@ fn replace_value(slot: &mut Value, value: Value) -> Result<(), OverrideError> {
 }
 
 /// Creates an error at the location of `key` in the first of `sources` that contains it.
-fn locate(sources: &[&ParameterSource], key: &str, problem: &str) -> ParameterError {
+fn locate_error(sources: &[&ParameterSource], key: &str, problem: &str) -> ParameterError {
     let place = sources.iter().find_map(|source| line_of_key(&source.text, key).map(|line| (source, line)));
     ParameterError {
         source: place

@@ -159,22 +159,22 @@ impl Params {
     }
 
     /// Returns the capacity tier with this number, 0..=7.
-    pub fn capacity(&self, tier: u8) -> &CapacityTier {
+    pub fn capacity_tier(&self, tier: u8) -> &CapacityTier {
         &self.capacity_tier[usize::from(tier)]
     }
 
     /// Returns the model tier with this number, 1..=5.
-    pub fn model(&self, tier: u8) -> &ModelTier {
+    pub fn model_tier(&self, tier: u8) -> &ModelTier {
         &self.model_tier[usize::from(tier) - 1]
     }
 
     /// Returns the study level with this number, 1..=5.
-    pub fn level(&self, level: u8) -> &InfoLevel {
+    pub fn study_level(&self, level: u8) -> &InfoLevel {
         &self.info_level[usize::from(level) - 1]
     }
 
     /// Returns the R&D tier with this number, 1..=20.
-    pub fn research(&self, tier: u8) -> &ResearchTier {
+    pub fn research_tier(&self, tier: u8) -> &ResearchTier {
         &self.research_tier[usize::from(tier) - 1]
     }
 

@@ -21,7 +21,7 @@ pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> 
 pub fn draw_project(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
     let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
     let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);
-    let research_tier = params.research(tier);
+    let research_tier = params.research_tier(tier);
     let duration = project_duration(research_tier, stream.standard_normal(), &params.development);
     let boost = project_boost(research_tier, stream.standard_normal(), &params.development);
     Project {
@@ -54,15 +54,15 @@ mod tests {
     #[test]
     fn duration_and_gain_follow_the_draw_above_minimum() {
         let params = Params::bundled();
-        let (third, development) = (params.research(3), &params.development);
+        let (third, development) = (params.research_tier(3), &params.development);
         for (z, days, boost) in [(-3.0, 30, 0.001), (-0.7, 30, 0.0715), (0.5, 38, 0.1375), (2.0, 83, 0.22)] {
             assert_eq!(project_duration(third, z, development), days);
             assert!((project_boost(third, z, development) - boost).abs() < 1e-12);
         }
-        assert_eq!(project_duration(params.research(1), 2.0, development), 36);
-        assert!((project_boost(params.research(1), 2.0, development) - 0.08).abs() < 1e-12);
-        assert_eq!(project_duration(params.research(20), 0.5, development), 1027);
-        assert!((project_boost(params.research(20), 0.5, development) - 11.2).abs() < 1e-12);
+        assert_eq!(project_duration(params.research_tier(1), 2.0, development), 36);
+        assert!((project_boost(params.research_tier(1), 2.0, development) - 0.08).abs() < 1e-12);
+        assert_eq!(project_duration(params.research_tier(20), 0.5, development), 1027);
+        assert!((project_boost(params.research_tier(20), 0.5, development) - 11.2).abs() < 1e-12);
     }
 
     #[test]

@@ -91,7 +91,7 @@ mod tests {
     fn minimum_duration_has_the_truncated_share() {
         let params = Params::bundled();
         for (tier, share) in [(1, 0.943327), (5, 0.42479), (10, 0.301909), (20, 0.348532)] {
-            let within = |days| share_done_within(days, params.research(tier), &params.development);
+            let within = |days| share_done_within(days, params.research_tier(tier), &params.development);
             assert!((within(30) - share).abs() < 5e-7, "tier {tier}: {}", within(30));
             assert_eq!(within(29), 0.0);
         }
@@ -107,13 +107,13 @@ mod tests {
                 assert!(days == 30 || share_done_within(days - 1, tier, &params.development) < share);
             }
         }
-        let (fifth, development) = (params.research(5), &params.development);
+        let (fifth, development) = (params.research_tier(5), &params.development);
         let days = [0.25, 0.5, 0.75].map(|share| duration_quantile(share, fifth, development));
         assert_eq!(days, [30, 41, 81]);
         let gains = [0.25, 0.75].map(|share| (gain_quantile(share, fifth, development) * 1e6).round());
         assert_eq!(gains, [145_806.0, 294_194.0]);
-        assert!((share_at_minimum_gain(params.research(20), development) - 0.105_678).abs() < 5e-7);
-        assert_eq!(gain_quantile(0.01, params.research(20), development), 0.001);
+        assert!((share_at_minimum_gain(params.research_tier(20), development) - 0.105_678).abs() < 5e-7);
+        assert_eq!(gain_quantile(0.01, params.research_tier(20), development), 0.001);
     }
 
     #[test]
@@ -121,7 +121,7 @@ mod tests {
         let params = Params::bundled();
         for tier in [3, 10, 17] {
             let product = Product::initial(&params);
-            let research_tier = params.research(tier);
+            let research_tier = params.research_tier(tier);
             let drawn: Vec<_> =
                 (0..4000).map(|seed| draw_project(&product, 0, tier, &params, &Streams::new(seed))).collect();
             let share = |holds: &dyn Fn(&crate::events::Project) -> bool| {
@@ -148,11 +148,12 @@ mod tests {
     fn mean_days_matches_the_daily_probabilities() {
         let params = Params::bundled();
         let development = &params.development;
-        let rounded_mean_days = |tier| (mean_days(params.research(tier), development) * 1e4).round() / 1e4;
+        let rounded_mean_days =
+            |tier| (mean_days(params.research_tier(tier), development) * 1e4).round() / 1e4;
         assert_eq!([1, 2, 3, 5, 20].map(rounded_mean_days), [30.3192, 32.9799, 38.5898, 59.3417, 728.5759]);
         let mut tiers = params.research_tier.clone();
-        tiers.push(ResearchTier { mean_days: 30.5, std_days: 1.5, ..params.research(1).clone() });
-        tiers.push(ResearchTier { mean_days: 30.5, std_days: 0.9, ..params.research(1).clone() });
+        tiers.push(ResearchTier { mean_days: 30.5, std_days: 1.5, ..params.research_tier(1).clone() });
+        tiers.push(ResearchTier { mean_days: 30.5, std_days: 0.9, ..params.research_tier(1).clone() });
         for tier in &tiers {
             let last = (tier.mean_days + 10.0 * tier.std_days) as u32;
             let longer = |days| 1.0 - share_done_within(days, tier, development);
@@ -179,7 +180,8 @@ mod tests {
     #[test]
     fn tier_without_variance_is_deterministic() {
         let params = Params::bundled();
-        let certain = ResearchTier { std_days: 0.0, std_quality_boost: 0.0, ..params.research(9).clone() };
+        let certain =
+            ResearchTier { std_days: 0.0, std_quality_boost: 0.0, ..params.research_tier(9).clone() };
         let within = |days| share_done_within(days, &certain, &params.development);
         assert_eq!([within(102), within(103)], [0.0, 1.0]);
         assert_eq!(duration_quantile(0.5, &certain, &params.development), 103);

@@ -52,7 +52,7 @@ pub struct FixedService {
 }
 
 /// Computes and records the service health of the day, with fixed inputs if `fixed_service` is `Some`.
-pub fn observe_service(
+pub fn compute_service(
     total_usage: u64,
     morning: &Morning,
     fixed_service: Option<FixedService>,
@@ -61,7 +61,7 @@ pub fn observe_service(
     facts: &mut Facts,
 ) -> ServiceDay {
     let operations = &params.operations;
-    let capacity_units = params.capacity(morning.core.capacity_tier).capacity_units;
+    let capacity_units = params.capacity_tier(morning.core.capacity_tier).capacity_units;
     let load =
         fixed_service.map_or(total_usage, |held| (total_usage as f64 * held.load_factor).round() as u64);
     let overload = overload(load, f64::from(capacity_units), operations);

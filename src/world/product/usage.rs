@@ -37,13 +37,13 @@ pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
 }
 
 /// Measures the usage of every active subscription. Records one row per subscription, even for 0 units.
-pub fn meter(
+pub fn measure_usage(
     customers: &mut Customers,
     morning: &Morning,
     params: &Params,
     facts: &mut Facts,
 ) -> MeteredUsage {
-    let by_block = customers.sweep_light(|group, block| (group, meter_block(block, morning, params)));
+    let by_block = customers.sweep_light(|group, block| (group, measure_block_usage(block, morning, params)));
     let mut metered = MeteredUsage::default();
     for (group, (by_plan, rows)) in by_block {
         for plan in Plan::ALL {
@@ -56,7 +56,7 @@ pub fn meter(
     metered
 }
 
-fn meter_block(block: &mut Block, morning: &Morning, params: &Params) -> (ByPlan<u64>, UsageRows) {
+fn measure_block_usage(block: &mut Block, morning: &Morning, params: &Params) -> (ByPlan<u64>, UsageRows) {
     let mut by_plan = ByPlan([0u64; 3]);
     let per_period = params.fidelity.usage_quota == UsageQuota::Period;
     let (weekday, quotas) = (morning.weekday, morning.quotas);

@@ -135,7 +135,7 @@ mod tests {
     use crate::settings::Settings;
     use crate::test_kit::subscriber;
 
-    fn billed(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
+    fn bill_subscriber(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
         let (params, streams) = (Params::bundled(), Streams::new(1));
         let group = Group::parse(id).expect("a group");
         let mut day = morning(31);
@@ -151,20 +151,20 @@ mod tests {
         (payment.amount, block.row(0))
     }
 
-    fn stored(listed_price: f64) -> Subscriber {
+    fn subscriber_with_list_price(listed_price: f64) -> Subscriber {
         Subscriber { listed_price, effective_price: listed_price, ..subscriber(1) }
     }
 
     #[test]
     fn individual_pays_the_lower_price_minus_promotions() {
-        let (paid, row) = billed("S1", stored(20.0), 15.0, 0.0);
+        let (paid, row) = bill_subscriber("S1", subscriber_with_list_price(20.0), 15.0, 0.0);
         assert_eq!((paid, row.listed_price), (15.0, 15.0));
-        assert_eq!(billed("S1", stored(20.0), 15.0, 4.0).0, 11.0);
-        assert_eq!(billed("S1", stored(20.0), 15.0, 40.0).0, 0.0);
-        let first = Subscriber { billed_once: false, promotion: 7.0, ..stored(20.0) };
-        let (paid, row) = billed("S1", first, 20.0, 4.0);
+        assert_eq!(bill_subscriber("S1", subscriber_with_list_price(20.0), 15.0, 4.0).0, 11.0);
+        assert_eq!(bill_subscriber("S1", subscriber_with_list_price(20.0), 15.0, 40.0).0, 0.0);
+        let first = Subscriber { billed_once: false, promotion: 7.0, ..subscriber_with_list_price(20.0) };
+        let (paid, row) = bill_subscriber("S1", first, 20.0, 4.0);
         assert_eq!((paid, row.promotion, row.effective_price), (13.0, 4.0, 16.0));
-        let (paid, row) = billed("S1", first, 15.0, 4.0);
+        let (paid, row) = bill_subscriber("S1", first, 15.0, 4.0);
         assert_eq!((paid, row.listed_price, row.effective_price), (8.0, 15.0, 11.0));
         assert!(row.billed_once);
     }
@@ -179,15 +179,20 @@ mod tests {
             effective_price: 35.0,
             ..subscriber(1)
         };
-        let (paid, row) = billed("E1", deal, 15.0, 4.0);
+        let (paid, row) = bill_subscriber("E1", deal, 15.0, 4.0);
         assert_eq!((paid, row.listed_price, row.effective_price), (3500.0, 40.0, 36.0));
-        assert_eq!(billed("E1", row, 15.0, 4.0).0, 3600.0);
+        assert_eq!(bill_subscriber("E1", row, 15.0, 4.0).0, 3600.0);
     }
 
     #[test]
     fn price_increase_does_not_change_stored_prices() {
         for (list, promotion, paid) in [(20.0, 0.0, 20.0), (30.0, 0.0, 20.0), (45.0, 8.0, 12.0)] {
-            let (amount, row) = billed("S1", Subscriber { plan: Plan::B, ..stored(20.0) }, list, promotion);
+            let (amount, row) = bill_subscriber(
+                "S1",
+                Subscriber { plan: Plan::B, ..subscriber_with_list_price(20.0) },
+                list,
+                promotion,
+            );
             assert_eq!((amount, row.listed_price), (paid, 20.0), "list price {list}");
         }
     }

@@ -13,7 +13,7 @@ use crate::events::{Facts, IssueOpened};
 use crate::identifiers::Group;
 use crate::params::{Issues, Params, Quality};
 use crate::quality::relationship_as_read;
-use crate::random::{Part, word_below};
+use crate::random::{Part, bernoulli_from_word};
 use crate::settings::Settings;
 
 /// Returns today's probability of a new issue, from the satisfaction at the start of the day and the number of whole seats.
@@ -40,7 +40,12 @@ pub fn mean_resolved(
 }
 
 /// Returns the relationship after an issue is resolved that was open for `open_days` days.
-pub fn relationship_after_solution(relationship: f64, open_days: u32, outage: bool, params: &Params) -> f64 {
+pub fn relationship_after_resolution(
+    relationship: f64,
+    open_days: u32,
+    outage: bool,
+    params: &Params,
+) -> f64 {
     let issues = &params.issues;
     if open_days > issues.quick_resolution_threshold_days || outage {
         return relationship;
@@ -61,16 +66,16 @@ pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &
 
 /// The counter that numbers issues.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct IssueDesk {
+pub struct IssueCounter {
     /// Number that the next issue will get.
     pub next_issue: u32,
 }
 
-canonical! { IssueDesk { next_issue } }
+canonical! { IssueCounter { next_issue } }
 
-impl Default for IssueDesk {
+impl Default for IssueCounter {
     fn default() -> Self {
-        IssueDesk { next_issue: 1 }
+        IssueCounter { next_issue: 1 }
     }
 }
 
@@ -122,7 +127,7 @@ pub fn find_issues(group: Group, number: u32, block: &Block, day: &DayContext<'_
         let (open_days, n) = (&block.open_issue_days[range.clone()], &block.n[range]);
         for at in 0..rows {
             let waits = open_days[at] > 0;
-            let calls = !waits & word_below(words[word_position_in_block(n[at])], probabilities[at]);
+            let calls = !waits & bernoulli_from_word(words[word_position_in_block(n[at])], probabilities[at]);
             waiting[part] |= u64::from(waits) << at;
             calling[part] |= u64::from(calls) << at;
         }
@@ -149,7 +154,7 @@ pub fn allocate_resolutions(
     calls: &mut [IssueBatch],
     settings: &Settings,
     customers: &Customers,
-    issue_desk: &mut IssueDesk,
+    issue_desk: &mut IssueCounter,
     day: &DayContext<'_>,
 ) {
     let &DayContext { params, streams, .. } = day;
@@ -178,8 +183,8 @@ pub fn settle(block: &mut Block, issue_batch: &IssueBatch, day: &DayContext<'_>)
     let outage = service.outage;
     SettledIssues {
         any_open: !issue_batch.open.is_empty(),
-        resolved: settle_open(block, issue_batch, outage, params),
-        opened: open_new(block, issue_batch, params),
+        resolved: settle_open_issues(block, issue_batch, outage, params),
+        opened: open_new_issues(block, issue_batch, params),
     }
 }
 
@@ -193,13 +198,18 @@ pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
 }
 
 /// Resolves or ages the open issues of a block. Returns the numbers of the resolved issues.
-fn settle_open(block: &mut Block, issue_batch: &IssueBatch, outage: bool, params: &Params) -> Vec<u32> {
+fn settle_open_issues(
+    block: &mut Block,
+    issue_batch: &IssueBatch,
+    outage: bool,
+    params: &Params,
+) -> Vec<u32> {
     let mut resolved = Vec::with_capacity(issue_batch.solved.iter().filter(|solved| **solved).count());
     for (&at, &solved) in issue_batch.open.iter().zip(&issue_batch.solved) {
         let at = usize::from(at);
         let (relationship, days) = (&mut block.relationship[at], &mut block.open_issue_days[at]);
         if solved {
-            *relationship = relationship_after_solution(*relationship, *days, outage, params);
+            *relationship = relationship_after_resolution(*relationship, *days, outage, params);
             *days = 0;
             resolved.push(std::mem::take(&mut block.issue[at]));
         } else {
@@ -210,7 +220,7 @@ fn settle_open(block: &mut Block, issue_batch: &IssueBatch, outage: bool, params
     resolved
 }
 
-fn open_new(block: &mut Block, issue_batch: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
+fn open_new_issues(block: &mut Block, issue_batch: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
     let open = |(issue, &at): (u32, &u16)| {
         let at = usize::from(at);
         block.open_issue_days[at] = params.issues.new_issue_open_days;
@@ -272,10 +282,10 @@ mod tests {
         assert_near(mean(0.0, 7.0, s1, 3, 4), 3.15);
         assert_near(mean(0.0, 11.0, s1, 3, 3), 6.6);
         assert_near(mean(0.0, 2.0, s1, 1, 1), 1.2);
-        assert_near(relationship_after_solution(0.5, 1, false, &params), 0.9);
-        assert_near(relationship_after_solution(0.8, 2, false, &params), 1.0);
-        assert_near(relationship_after_solution(0.5, 3, false, &params), 0.5);
-        assert_near(relationship_after_solution(0.5, 1, true, &params), 0.5);
+        assert_near(relationship_after_resolution(0.5, 1, false, &params), 0.9);
+        assert_near(relationship_after_resolution(0.8, 2, false, &params), 1.0);
+        assert_near(relationship_after_resolution(0.5, 3, false, &params), 0.5);
+        assert_near(relationship_after_resolution(0.5, 1, true, &params), 0.5);
     }
 
     #[test]
@@ -290,7 +300,7 @@ mod tests {
         assert_near(relationship, 0.49);
     }
 
-    fn company_with_issues(count: u32) -> Customers {
+    fn customers_with_issues(count: u32) -> Customers {
         let mut customers = Customers::default();
         for n in 1..=count {
             let row = crate::customers::columns::Subscriber { open_issue_days: 1, issue: n, ..subscriber(n) };
@@ -299,11 +309,11 @@ mod tests {
         customers
     }
 
-    fn run_day(customers: &mut Customers, operations: f64) -> (Facts, IssueDesk) {
+    fn run_day(customers: &mut Customers, operations: f64) -> (Facts, IssueCounter) {
         let (params, streams) = (Params::bundled(), Streams::new(4));
         let mut settings = Settings::initial(&params);
         settings.core.operations = operations;
-        let (mut facts, mut issue_desk) = (Facts::default(), IssueDesk { next_issue: 10_000 });
+        let (mut facts, mut issue_desk) = (Facts::default(), IssueCounter { next_issue: 10_000 });
         let quiet = ServiceDay::without_load();
         let settled = with_day_context(&morning(3), &settings, &quiet, (&params, &streams), |day| {
             let mut calls = customers.sweep(|group, number, block| find_issues(group, number, block, day));
@@ -315,8 +325,8 @@ mod tests {
     }
 
     #[test]
-    fn solved_issues_raise_relationship_and_open_ones_age() {
-        let mut customers = company_with_issues(3000);
+    fn resolved_issues_raise_the_relationship_and_open_issues_age() {
+        let mut customers = customers_with_issues(3000);
         let (facts, _) = run_day(&mut customers, 2_000.0);
         let solved = facts.issues_resolved.len();
         assert!((1_060..1_340).contains(&solved), "Poisson of 1202: {solved}");
@@ -334,8 +344,8 @@ mod tests {
     }
 
     #[test]
-    fn sufficient_budget_solves_all_issues() {
-        let mut customers = company_with_issues(50);
+    fn sufficient_budget_resolves_all_issues() {
+        let mut customers = customers_with_issues(50);
         assert_eq!(run_day(&mut customers, 1e6).0.issues_resolved.len(), 50);
     }
 

@@ -7,7 +7,7 @@ use crate::customers::curve::{Curve, required_quality};
 use crate::customers::drift::Expectation;
 use crate::identifiers::{ByPlan, Group, Plan};
 use crate::params::{Params, ServicePenalty};
-use crate::quality::{Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus};
+use crate::quality::{QualityTerms, perceived_quality, quota_demand, quota_factor, relationship_bonus};
 
 /// Prices and qualities of the plans for an individual, and the individual's requirements.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +15,7 @@ pub struct PlanComparison {
     /// Today's list prices less the ongoing discounts, dollars per month.
     pub prices: ByPlan<f64>,
     /// Terms of the perceived quality of each plan.
-    pub experiences: ByPlan<Experience>,
+    pub experiences: ByPlan<QualityTerms>,
     /// Quality loss from today's service, which the delivered quality already includes.
     pub service_penalty: f64,
     /// Participation curve of the individual, without market drift.
@@ -46,7 +46,7 @@ pub fn compare_plans(
     let rate = block.usage_rate[at];
     let demand = quota_demand(rate * morning.weekday, rate, params);
     // See `docs/mechanics/product/quality.md#terms-of-each-decision`.
-    let experiences = ByPlan::from_fn(|plan| Experience {
+    let experiences = ByPlan::from_fn(|plan| QualityTerms {
         delivered: morning.delivered(group, plan) - service_penalty,
         relationship: relationship_bonus(block.relationship[at], quality),
         tenure: judgement.day.tenure.bonus(morning.day - block.start_day[at]),

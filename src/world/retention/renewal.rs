@@ -5,7 +5,7 @@ use crate::customers::columns::{Block, CUSTOMERS_PER_BLOCK};
 use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
 use crate::identifiers::{ByGroup, Group, Plan};
 use crate::params::{DriftCounted, InvoluntaryChurn, Params};
-use crate::random::{Part, Streams, Word, word_below};
+use crate::random::{Part, Streams, Word, bernoulli_from_word};
 use crate::reputation::{OnReputationWrite, ReputationBook, ReputationCause, cancel_damage};
 use crate::retention::due_today;
 use crate::retention::plan_comparison::{compare_plans, drifted_curve};
@@ -139,7 +139,7 @@ fn reputation_damages(gave_up: &[CancelledIndividual], day: &DayContext<'_>) -> 
 }
 
 /// Returns a random word for each position of a block, which decides whether a payment fails permanently.
-pub fn payment_rolls(
+pub fn payment_failure_words(
     group: Group,
     number: u32,
     day: u32,
@@ -168,12 +168,12 @@ pub fn decide_block(
         return outcome;
     }
     let words = match rate > 0.0 {
-        true => payment_rolls(group, number, morning.day, judgement.day.streams),
+        true => payment_failure_words(group, number, morning.day, judgement.day.streams),
         false => [0; CUSTOMERS_PER_BLOCK as usize],
     };
     let mut gone = Vec::new();
     for at in due {
-        let cause = if rate > 0.0 && word_below(words[block.word_position(at)], rate) {
+        let cause = if rate > 0.0 && bernoulli_from_word(words[block.word_position(at)], rate) {
             Some(EndCause::Involuntary)
         } else {
             match compare_plans(group, block, at, judgement).choice(judgement.day.params) {
@@ -188,7 +188,7 @@ pub fn decide_block(
         };
         if let Some(cause) = cause {
             gone.push(at);
-            outcome.endings.push(ending(group, block, at, cause, morning.day));
+            outcome.endings.push(subscription_ended(group, block, at, cause, morning.day));
             if cause != EndCause::Involuntary {
                 outcome.cancelled_individuals.push(cancelled_individual(group, block, at, morning.day));
             }
@@ -199,7 +199,13 @@ pub fn decide_block(
     outcome
 }
 
-fn ending(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) -> SubscriptionEnded {
+fn subscription_ended(
+    group: Group,
+    block: &Block,
+    at: usize,
+    cause: EndCause,
+    day: u32,
+) -> SubscriptionEnded {
     SubscriptionEnded {
         subscription: block.subscription[at],
         customer: block.customer[at],
@@ -292,7 +298,7 @@ mod tests {
     }
 
     /// Runs `check` with the decision context of the given day and settings.
-    fn with_judgement<R>(
+    fn with_renewal_context<R>(
         day: &Morning,
         settings: &Settings,
         willingness: f64,
@@ -334,7 +340,7 @@ mod tests {
         };
         let mut block = Block::default();
         block.push(Subscriber { plan: Plan::B, relationship: 0.7, open_issue_days: 3, ..subscriber(1) });
-        with_judgement(&day, &settings, 1.0, |judgement| {
+        with_renewal_context(&day, &settings, 1.0, |judgement| {
             let qualities = compare_plans(group(), &block, 0, judgement).qualities(judgement.day.params);
             for (plan, expected) in Plan::ALL.into_iter().zip([0.151809447, 0.298929601, 0.496473152]) {
                 assert!((qualities[plan] - expected).abs() < 1e-9, "{plan}: {}", qualities[plan]);
@@ -363,7 +369,7 @@ mod tests {
             settings.promotion.global = promotion;
             let mut block = Block::default();
             block.push(Subscriber { plan: Plan::B, start_day: 1, ..subscriber(1) });
-            with_judgement(&day, &settings, willingness, |judgement| {
+            with_renewal_context(&day, &settings, willingness, |judgement| {
                 let weighing = compare_plans(group(), &block, 0, judgement);
                 let quality = weighing.qualities(judgement.day.params)[Plan::B];
                 assert!((quality - 0.484657359).abs() < 1e-9);
@@ -374,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn cancelling_and_switching_update_the_columns() {
+    fn cancellation_and_switch_update_the_columns() {
         let mut day = morning(31);
         day.product[group()] = 0.9;
         day.multipliers = ByPlan([0.6, 0.9, 1.1]);
@@ -387,7 +393,7 @@ mod tests {
             customers.groups[group()].activate(row);
         }
         let (mut reputation, mut facts) = (ReputationBook::initial(&Params::bundled()), Facts::default());
-        let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
+        let renewals = with_renewal_context(&day, &settings, 1.0, |judgement| {
             let decided =
                 customers.sweep(|group, number, block| decide_block(group, number, block, judgement));
             record_decisions(decided, &mut reputation, judgement.day.params, &mut facts, &mut |_| {})

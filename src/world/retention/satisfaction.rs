@@ -8,7 +8,7 @@ use crate::fault::Fault;
 use crate::identifiers::{ByGroup, ByPlan, Group};
 use crate::params::{Params, Quality};
 use crate::quality::{
-    Experience, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
+    QualityTerms, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
     service_penalty,
 };
 use crate::reputation::{ReputationContribution, contribution};
@@ -32,7 +32,7 @@ pub fn sum_by_group(by_block: Vec<(Group, ReputationContribution)>) -> ByGroup<R
 #[derive(Debug, Clone, Copy)]
 pub struct SatisfactionTerms {
     /// Terms of the subscriber's perceived quality.
-    pub experience: Experience,
+    pub experience: QualityTerms,
     /// Quality loss from today's service, which the delivered quality already includes.
     pub service_penalty: f64,
     /// Perceived quality of the subscriber.
@@ -109,9 +109,9 @@ fn build_experience(
     weekday: f64,
     quality: &Quality,
     params: &Params,
-) -> Experience {
+) -> QualityTerms {
     let demand = quota_demand(subscriber_inputs.usage_rate * weekday, subscriber_inputs.usage_rate, params);
-    Experience {
+    QualityTerms {
         delivered: day_inputs.delivered,
         relationship: relationship_bonus(
             relationship_as_read(subscriber_inputs.relationship, quality),

@@ -12,7 +12,7 @@ use crate::settings::Settings;
 /// A set of open issues that share one operations budget.
 #[derive(Debug, Clone, Copy)]
 enum SupportPool {
-    Everybody,
+    AllIssues,
     Group(Group),
     Plan(Plan),
     GroupPlan(Group, Plan),
@@ -23,7 +23,7 @@ impl SupportPool {
     /// Returns the keys of the pool's random stream: kind and number of the pool.
     fn keys(self) -> [u64; 2] {
         match self {
-            SupportPool::Everybody => [0, 0],
+            SupportPool::AllIssues => [0, 0],
             SupportPool::Group(group) => [1, group.index() as u64],
             SupportPool::Plan(plan) => [2, plan.index() as u64],
             SupportPool::GroupPlan(group, plan) => [3, (group.index() * 3 + plan.index()) as u64],
@@ -33,7 +33,7 @@ impl SupportPool {
 
     fn contains(self, group: Group, block: &Block, at: usize) -> bool {
         match self {
-            SupportPool::Everybody => true,
+            SupportPool::AllIssues => true,
             SupportPool::Group(pool_group) => group == pool_group,
             SupportPool::Plan(plan) => block.plan[at] == plan,
             SupportPool::GroupPlan(pool_group, plan) => group == pool_group && block.plan[at] == plan,
@@ -42,7 +42,7 @@ impl SupportPool {
     }
 
     fn contains_group(self, group: Group) -> bool {
-        matches!(self, SupportPool::Everybody)
+        matches!(self, SupportPool::AllIssues)
             || matches!(self, SupportPool::Group(pool_group) if pool_group == group)
     }
 
@@ -68,7 +68,7 @@ impl ResolutionRound<'_> {
     /// Processes the pools from the widest to the narrowest. Each pool resolves issues that earlier pools left open.
     pub fn resolve_all(&mut self, settings: &Settings) {
         let base = self.params.issues.issue_resolution_base_rate;
-        self.resolve_pool(SupportPool::Everybody, base, settings.core.operations);
+        self.resolve_pool(SupportPool::AllIssues, base, settings.core.operations);
         let targeted = &settings.targeted_operations;
         for (&group, &spend) in &targeted.by_group {
             self.resolve_pool(SupportPool::Group(group), 0.0, spend);
@@ -110,7 +110,7 @@ impl ResolutionRound<'_> {
                 order.swap(first, other);
                 chosen[order[first] as usize] = true;
             }
-            pool_members.mark_solved(&chosen, self.calls);
+            pool_members.mark_resolved(&chosen, self.calls);
         }
     }
 
@@ -172,7 +172,7 @@ impl PoolMembers {
     }
 
     /// Marks the chosen issues as resolved. `chosen` has one value per member.
-    fn mark_solved(&self, chosen: &[bool], calls: &mut [IssueBatch]) {
+    fn mark_resolved(&self, chosen: &[bool], calls: &mut [IssueBatch]) {
         let ends = self.runs.iter().skip(1).map(|next| next.first).chain([self.count]);
         for (run, end) in self.runs.iter().zip(ends) {
             let chosen = &chosen[run.first as usize..end as usize];
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn mark_solved_handles_single_members_and_blocks() {
+    fn mark_resolved_handles_single_members_and_blocks() {
         let block = |open: u16| IssueBatch {
             group: Group::at(0).expect("S1"),
             block: 0,
@@ -204,7 +204,7 @@ mod tests {
         members.add(2, 9);
         members.add_block(4, 2);
         assert_eq!(members.count(), 7);
-        members.mark_solved(&[false, true, true, true, false, false, true], &mut calls);
+        members.mark_resolved(&[false, true, true, true, false, false, true], &mut calls);
         let solved = |issue_batch: &IssueBatch| -> Vec<usize> {
             (0..issue_batch.solved.len()).filter(|at| issue_batch.solved[*at]).collect()
         };

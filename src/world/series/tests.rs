@@ -45,7 +45,7 @@ fn group(id: &str) -> Group {
 }
 
 /// Simulates a company without actions and calls `each` with the world and the facts of every day.
-fn run_untouched_company(seed: u64, mut each: impl FnMut(&World, &Facts)) {
+fn run_company_without_actions(seed: u64, mut each: impl FnMut(&World, &Facts)) {
     let (params, streams, mut facts) = (replay_params(), Streams::new(seed), Facts::default());
     let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
     for _ in 0..500 {
@@ -59,7 +59,7 @@ fn economy_matches_the_record_daily() {
     let pmi: Vec<f64> = measured!("pmi_daily").map(|row| number(row[1])).collect();
     let mut published: Vec<(u32, Reading)> = Vec::new();
     // Use a different seed, because the seed of the run has no effect on replayed series.
-    run_untouched_company(7, |world, facts| {
+    run_company_without_actions(7, |world, facts| {
         assert_eq!(world.market.economy.pmi.to_bits(), pmi[world.day as usize - 1].to_bits());
         published.extend(facts.readings.iter().map(|reading| (world.day, *reading)));
     });
@@ -75,7 +75,7 @@ fn economy_matches_the_record_daily() {
 #[test]
 fn macro_multipliers_match_the_record() {
     let params = replay_params();
-    run_untouched_company(42, |world, _| {
+    run_company_without_actions(42, |world, _| {
         for row in measured!("macro_multipliers").filter(|row| day(row[0]) == world.day) {
             let economy = &world.market.economy;
             let multiplier = |dimension| economy.multiplier(group(row[1]), dimension, &params);
@@ -96,7 +96,7 @@ fn macro_multipliers_match_the_record() {
 #[test]
 fn competitor_events_and_expectations_match_the_record() {
     let mut seen: Vec<(u32, f64)> = Vec::new();
-    run_untouched_company(42, |world, _| {
+    run_company_without_actions(42, |world, _| {
         seen = world.market.competitors.iter().map(|event| (event.day, event.sampled)).collect();
         for row in measured!("drift_untouched").filter(|row| day(row[0]) == world.day) {
             let drift = &world.market.drift;
@@ -124,7 +124,7 @@ fn competitor_events_and_expectations_match_the_record() {
 #[test]
 fn surges_match_the_record() {
     let mut seen = Vec::new();
-    run_untouched_company(42, |world, _| {
+    run_company_without_actions(42, |world, _| {
         if world.day == 402 {
             // The surge of day 405 starts on the first day of its week.
             let factor = surge_factor(402, &world.market.surges, SurgeStart::Week);
@@ -164,7 +164,7 @@ fn involuntary_churn_matches_the_record() {
 #[test]
 fn channel_yields_match_the_record() {
     let channel = |id: &str| Channel::parse(id).expect("a channel");
-    run_untouched_company(3, |world, _| {
+    run_company_without_actions(3, |world, _| {
         let month = world.day - world.day % 30;
         if [0, 29].contains(&(world.day % 30)) {
             for row in measured!("channel_drift").filter(|row| day(row[0]) == month) {

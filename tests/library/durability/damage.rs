@@ -11,14 +11,14 @@ use novamind::session::{Access, Session};
 use serde_json::Value;
 
 use super::random_play::{advance_week, apply_random_actions};
-use super::run::{copy, create, open, runs, view};
+use super::run::{copy_run, create_run, open_run, session_view, temporary_runs_folder};
 use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
 /// Plays a run of several weeks with decisions in the current week, and closes it properly. Returns its folder and its
 /// visible state.
 fn closed_run(place: &Path) -> (PathBuf, Value) {
-    let mut session = create(place, 21, 60);
+    let mut session = create_run(place, 21, 60);
     let folder = session.folder().expect("a folder").to_owned();
     let mut dice = Dice::new(4);
     apply_opening_decisions(&mut session);
@@ -29,7 +29,7 @@ fn closed_run(place: &Path) -> (PathBuf, Value) {
     session.set_notes("weeks 1 to 5: prices first").expect("kept");
     apply_random_actions(&mut session, &mut dice);
     session.save().expect("saved");
-    let view = view(&mut session);
+    let view = session_view(&mut session);
     (folder, view)
 }
 
@@ -47,15 +47,15 @@ fn damage_file(file: &Path, dice: &mut Dice) -> (usize, bool) {
 }
 
 fn check_damage_to_derived_files(places: usize) {
-    let (runs_folder, other) = (runs(), runs());
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
     let (folder, expected) = closed_run(runs_folder.path());
     let mut dice = Dice::for_test("damage beside the trajectory");
     for number in 0..places {
         let name = *dice.pick(&["world.db", "snapshot.bin", "memo.md"]);
-        let place = copy(&folder, &other.path().join(number.to_string()));
+        let place = copy_run(&folder, &other.path().join(number.to_string()));
         let (at, cut) = damage_file(&place.join(name), &mut dice);
-        let mut session = open(&place);
-        assert_eq!(view(&mut session), expected, "{name}, byte {at}, cut {cut}");
+        let mut session = open_run(&place);
+        assert_eq!(session_view(&mut session), expected, "{name}, byte {at}, cut {cut}");
         assert!(!session.remarks().is_empty(), "{name}, byte {at}, cut {cut}: no message");
         drop(session);
         fs::remove_dir_all(place).expect("gone");
@@ -63,14 +63,14 @@ fn check_damage_to_derived_files(places: usize) {
 }
 
 fn check_damage_to_the_trajectory(places: usize) {
-    let (runs_folder, other) = (runs(), runs());
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
     let (folder, expected) = closed_run(runs_folder.path());
     let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
     let lines = Trajectory::parse(&whole).expect("lines").lines.len();
     let mut dice = Dice::for_test("damage in the trajectory");
     let (mut refused, mut dropped) = (0, 0);
     for number in 0..places {
-        let place = copy(&folder, &other.path().join(number.to_string()));
+        let place = copy_run(&folder, &other.path().join(number.to_string()));
         let path = place.join("trajectory.jsonl");
         let (at, cut) = damage_file(&path, &mut dice);
         let hurt = fs::read(&path).expect("bytes");
@@ -82,7 +82,7 @@ fn check_damage_to_the_trajectory(places: usize) {
                 );
                 let is_reported = session.remarks().iter().any(|text| text.contains("unfinished"));
                 assert!(is_reported, "byte {at}, cut {cut}");
-                let value = view(&mut session);
+                let value = session_view(&mut session);
                 assert_eq!(value["weeks"], expected["weeks"], "byte {at}, cut {cut}");
                 dropped += 1;
             }
@@ -124,9 +124,9 @@ fn random_damage_is_detected_or_repaired() {
 /// The checksum protects the last line: every changed byte is detected, even without the database and the snapshot.
 #[test]
 fn every_byte_of_the_last_line_is_verified() {
-    let (runs_folder, other) = (runs(), runs());
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
     let (folder, _) = closed_run(runs_folder.path());
-    let place = copy(&folder, other.path());
+    let place = copy_run(&folder, other.path());
     ["world.db", "snapshot.bin"].iter().for_each(|name| fs::remove_file(place.join(name)).expect("gone"));
     let path = place.join("trajectory.jsonl");
     let whole = fs::read(&path).expect("bytes");
@@ -141,12 +141,12 @@ fn every_byte_of_the_last_line_is_verified() {
 /// Missing lines at the end are detected as long as the database or the snapshot exists.
 #[test]
 fn missing_last_lines_are_detected() {
-    let (runs_folder, other) = (runs(), runs());
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
     let (folder, _) = closed_run(runs_folder.path());
     let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
     let ends: Vec<usize> = (0..whole.len()).filter(|at| whole[*at] == b'\n').map(|at| at + 1).collect();
     for (number, end) in ends[1..ends.len() - 1].iter().enumerate() {
-        let place = copy(&folder, &other.path().join(number.to_string()));
+        let place = copy_run(&folder, &other.path().join(number.to_string()));
         fs::remove_file(place.join(["world.db", "snapshot.bin"][number % 2])).expect("gone");
         fs::write(place.join("trajectory.jsonl"), &whole[..*end]).expect("written");
         let lines = Trajectory::parse(&whole[..*end]).expect("lines").lines;

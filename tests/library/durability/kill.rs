@@ -13,7 +13,7 @@ use novamind::session::{Access, JournalEntry, Session, read_afterwards, verify};
 use serde_json::Value;
 
 use super::random_play::RandomAction;
-use super::run::runs;
+use super::run::temporary_runs_folder;
 use crate::support::company::opening_calls;
 use crate::support::dice::Dice;
 
@@ -26,7 +26,7 @@ fn start(runs: &Path, options: &[&str]) -> Child {
 }
 
 /// Returns random input for plain mode, about six lines per week.
-fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
+fn random_script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     let mut lines = String::new();
     if begins {
         opening_calls().iter().for_each(|(tool, args)| lines += &format!("{tool} {args}\n"));
@@ -78,7 +78,7 @@ fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value
 }
 
 /// Returns the tools of accepted calls and weeks in order, according to the output.
-fn answered_tools(answers: &[Value]) -> Vec<String> {
+fn confirmed_tools(answers: &[Value]) -> Vec<String> {
     let done = answers.iter().filter(|answer| answer["ok"] == true);
     let words = done.filter_map(|answer| answer["command"].as_str());
     words.filter(|word| !["sql", "memo", "undo"].contains(word)).map(str::to_owned).collect()
@@ -111,7 +111,7 @@ fn check_kills(count: usize) {
     let mut dice = Dice::for_test("kills");
     let mut weeks = 0;
     for number in 0..count {
-        let place = runs();
+        let place = temporary_runs_folder();
         // A run is killed up to three times. After each kill, all actions confirmed before must be recorded.
         let mut confirmed: Vec<String> = Vec::new();
         for life in 0..1 + dice.roll(3) {
@@ -120,10 +120,10 @@ fn check_kills(count: usize) {
             let seed = number.to_string();
             let options: &[&str] =
                 if exists { &["--run", "latest"] } else { &["--seed", &seed, "--days", "140"] };
-            let script = script(&mut dice, 12, !exists);
+            let script = random_script(&mut dice, 12, !exists);
             let answers = play_and_kill(start(place.path(), options), script, &mut dice);
             let Some(folder) = only_run(place.path()) else { continue };
-            confirmed.extend(answered_tools(&answers));
+            confirmed.extend(confirmed_tools(&answers));
             let recorded = recorded_tools(&folder);
             assert!(
                 recorded.len() >= confirmed.len() && recorded[..confirmed.len()] == confirmed,

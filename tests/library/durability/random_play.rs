@@ -57,13 +57,13 @@ impl RandomAction {
     }
 }
 
-fn amount(dice: &mut Dice, most: usize) -> f64 {
+fn random_amount(dice: &mut Dice, most: usize) -> f64 {
     dice.roll(most * 2) as f64 / 2.0
 }
 
-fn per_group(dice: &mut Dice, most: usize) -> Value {
+fn random_amounts_by_group(dice: &mut Dice, most: usize) -> Value {
     let count = dice.roll(4);
-    (0..count).map(|_| ((*dice.pick(&GROUPS)).to_owned(), json!(amount(dice, most)))).collect()
+    (0..count).map(|_| ((*dice.pick(&GROUPS)).to_owned(), json!(random_amount(dice, most)))).collect()
 }
 
 fn random_call(dice: &mut Dice, waiting: &[u32]) -> (&'static str, Value) {
@@ -73,27 +73,30 @@ fn random_call(dice: &mut Dice, waiting: &[u32]) -> (&'static str, Value) {
     match dice.roll(21) {
         0..=2 => (
             "set_prices",
-            json!({ "A": amount(dice, 30), "B": 10.0 + amount(dice, 40), plan: amount(dice, 90) }),
+            json!({ "A": random_amount(dice, 30), "B": 10.0 + random_amount(dice, 40), plan: random_amount(dice, 90) }),
         ),
         3 => ("set_model_tiers", json!({ plan: dice.roll(7) })),
         4 => ("set_usage_quotas", json!({ "A": 1000 * dice.roll(90), "B": 250_000, "C": 1_200_000 })),
-        5..=6 => {
-            ("set_daily_spend", json!({ "operations": amount(dice, 900), "development": amount(dice, 600) }))
-        }
+        5..=6 => (
+            "set_daily_spend",
+            json!({ "operations": random_amount(dice, 900), "development": random_amount(dice, 600) }),
+        ),
         7..=9 => {
-            let spend: Value =
-                (0..2).map(|_| ((*dice.pick(&CHANNELS)).to_owned(), per_group(dice, 3000))).collect();
+            let spend: Value = (0..2)
+                .map(|_| ((*dice.pick(&CHANNELS)).to_owned(), random_amounts_by_group(dice, 3000)))
+                .collect();
             ("set_targeted_ad_spend", json!({ "targeted_spend": spend }))
         }
-        10 => ("set_targeted_dev_spend", json!({ "targeted_spend": per_group(dice, 6000) })),
+        10 => ("set_targeted_dev_spend", json!({ "targeted_spend": random_amounts_by_group(dice, 6000) })),
         11 => (
             "set_targeted_ops_spend",
-            json!({ "by_group": per_group(dice, 500), "by_plan": { plan: amount(dice, 90) } }),
+            json!({ "by_group": random_amounts_by_group(dice, 500), "by_plan": { plan: random_amount(dice, 90) } }),
         ),
-        12 => {
-            ("set_promotion", json!({ "global_discount": amount(dice, 4), "by_group": per_group(dice, 5) }))
-        }
-        13 => ("set_ads_strength", json!({ "global_strength": amount(dice, 1) })),
+        12 => (
+            "set_promotion",
+            json!({ "global_discount": random_amount(dice, 4), "by_group": random_amounts_by_group(dice, 5) }),
+        ),
+        13 => ("set_ads_strength", json!({ "global_strength": random_amount(dice, 1) })),
         14 => ("set_capacity_tier", json!({ "tier": dice.roll(8) })),
         15 => ("research_market", json!({})),
         16 => ("research_group", json!({ "group_id": group })),
@@ -120,7 +123,7 @@ fn random_deal(dice: &mut Dice, waiting: &[u32]) -> (&'static str, Value) {
     if dice.roll(4) == 0 {
         return ("reject_enterprise_deal", json!({ "deals": [{ "customer_id": customer }] }));
     }
-    let offerings = json!([["B", 20.0 + amount(dice, 40)], ["C", 40.0 + amount(dice, 60)]]);
+    let offerings = json!([["B", 20.0 + random_amount(dice, 40)], ["C", 40.0 + random_amount(dice, 60)]]);
     ("send_enterprise_deal", json!({ "deals": [{ "customer_id": customer, "offerings": offerings }] }))
 }
 

@@ -18,7 +18,7 @@ use novamind::session::{Access, Session, read_afterwards, verify};
 use novamind::tools::ToolId;
 use serde_json::{Value, json};
 
-use super::run::{copy, runs};
+use super::run::{copy_run, temporary_runs_folder};
 use crate::support::forging::forge_lines;
 
 fn recorded_run_folder(build: &str) -> std::path::PathBuf {
@@ -42,8 +42,8 @@ fn runs_of_earlier_builds_verify() {
 
 #[test]
 fn recorded_run_with_every_setting_verifies() {
-    let place = runs();
-    let folder = copy(&recorded_run_folder("everything"), place.path());
+    let place = temporary_runs_folder();
+    let folder = copy_run(&recorded_run_folder("everything"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (119, 17));
     // The run must contain every tool, because a missing tool would not be tested.
@@ -70,9 +70,9 @@ fn recorded_run_with_every_setting_verifies() {
 }
 
 #[test]
-fn run_of_a_scenario_with_a_later_key_verifies() {
-    let place = runs();
-    let folder = copy(&recorded_run_folder("reference-seed42"), place.path());
+fn run_recorded_before_a_new_scenario_key_verifies() {
+    let place = temporary_runs_folder();
+    let folder = copy_run(&recorded_run_folder("reference-seed42"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (14, 2), "its results are compared in any notation of numbers");
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
@@ -175,12 +175,12 @@ fn run_toml_of_format_2_is_rebuilt_to_the_same_bytes() {
 }
 
 #[test]
-fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
+fn changed_answer_in_a_recorded_run_is_rejected() {
     for (tool, field) in
         [("get_cost_info", "/model_tiers/2/quality_multiplier"), ("set_prices", "/current/B")]
     {
-        let place = runs();
-        let folder = copy(&recorded_run_folder("reference-seed42"), place.path());
+        let place = temporary_runs_folder();
+        let folder = copy_run(&recorded_run_folder("reference-seed42"), place.path());
         forge_lines(&folder, |_, line| {
             if line["tool"] == tool {
                 *line["result"].pointer_mut(field).expect("a field") = json!(26);
@@ -192,9 +192,9 @@ fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
 }
 
 #[test]
-fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can() {
-    let place = runs();
-    let folder = copy(&recorded_run_folder("release"), place.path());
+fn runs_with_other_mechanics_or_parameters_are_rejected_with_the_required_version() {
+    let place = temporary_runs_folder();
+    let folder = copy_run(&recorded_run_folder("release"), place.path());
     let path = folder.join("trajectory.jsonl");
     let whole = fs::read_to_string(&path).expect("a trajectory");
     let (first, rest) = whole.split_once('\n').expect("lines");

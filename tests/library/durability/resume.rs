@@ -5,27 +5,27 @@ use std::fs;
 use novamind::session::{Access, Session, verify};
 
 use super::random_play::{advance_week, apply_random_action, apply_random_actions};
-use super::run::{copy, create, open, runs, view};
+use super::run::{copy_run, create_run, open_run, session_view, temporary_runs_folder};
 use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
 /// At every week and between its decisions, a reopened run equals the uninterrupted run and continues identically.
 #[test]
 fn snapshot_restores_the_complete_state() {
-    let (runs_folder, other) = (runs(), runs());
-    let mut straight = create(runs_folder.path(), 11, 120);
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
+    let mut straight = create_run(runs_folder.path(), 11, 120);
     let folder = straight.folder().expect("a folder").to_owned();
     let mut dice = Dice::for_test("snapshots");
     apply_opening_decisions(&mut straight);
     for number in 0..14 {
         apply_random_actions(&mut straight, &mut dice);
         straight.save().expect("saved");
-        let again = copy(&folder, &other.path().join(number.to_string()));
+        let again = copy_run(&folder, &other.path().join(number.to_string()));
         // A snapshot can only be used with an up-to-date database.
         assert!(again.join("snapshot.bin").exists());
-        let mut resumed = open(&again);
+        let mut resumed = open_run(&again);
         assert_eq!(resumed.remarks(), [""; 0], "week {number}");
-        assert_eq!(view(&mut resumed), view(&mut straight), "week {number}");
+        assert_eq!(session_view(&mut resumed), session_view(&mut straight), "week {number}");
         // Undo also reverts actions from before the run was closed.
         let seed = dice.roll(1 << 20) as u64;
         let go_on = |session: &mut Session| {
@@ -36,7 +36,7 @@ fn snapshot_restores_the_complete_state() {
         };
         go_on(&mut straight);
         go_on(&mut resumed);
-        let (mut left, mut right) = (view(&mut resumed), view(&mut straight));
+        let (mut left, mut right) = (session_view(&mut resumed), session_view(&mut straight));
         // The recorded time of submission differs, so it is replaced before the comparison.
         for view in [&mut left, &mut right] {
             view["rows"][4] = "submitted at".into();
@@ -51,8 +51,8 @@ fn snapshot_restores_the_complete_state() {
 
 #[test]
 fn unusable_snapshots_are_replaced_by_replay() {
-    let (runs_folder, other) = (runs(), runs());
-    let mut session = create(runs_folder.path(), 5, 60);
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
+    let mut session = create_run(runs_folder.path(), 5, 60);
     let folder = session.folder().expect("a folder").to_owned();
     apply_opening_decisions(&mut session);
     advance_week(&mut session);
@@ -60,10 +60,10 @@ fn unusable_snapshots_are_replaced_by_replay() {
     let early = fs::read(folder.join("snapshot.bin")).expect("a snapshot");
     (0..2).for_each(|_| advance_week(&mut session));
     session.save().expect("saved");
-    let expected = view(&mut session);
+    let expected = session_view(&mut session);
     drop(session);
     let late = fs::read(folder.join("snapshot.bin")).expect("a snapshot");
-    let mut foreign = create(other.path(), 6, 60);
+    let mut foreign = create_run(other.path(), 6, 60);
     apply_opening_decisions(&mut foreign);
     foreign.save().expect("saved");
     let foreign = fs::read(foreign.folder().expect("a folder").join("snapshot.bin")).expect("a snapshot");
@@ -82,40 +82,40 @@ fn unusable_snapshots_are_replaced_by_replay() {
         ("an empty one", Some(Vec::new()), Some("another version or is damaged")),
         ("one of another format", Some(of_the_future), Some("another version or is damaged")),
     ] {
-        let place = copy(&folder, &other.path().join(name));
+        let place = copy_run(&folder, &other.path().join(name));
         match bytes {
             Some(bytes) => fs::write(place.join("snapshot.bin"), bytes).expect("written"),
             None => fs::remove_file(place.join("snapshot.bin")).expect("gone"),
         }
-        let mut session = open(&place);
-        assert_eq!(view(&mut session), expected, "{name}");
+        let mut session = open_run(&place);
+        assert_eq!(session_view(&mut session), expected, "{name}");
         let remarks = session.remarks().join(" ");
         assert_eq!(text.is_some(), !remarks.is_empty(), "{name}: {remarks}");
         assert!(remarks.contains(text.unwrap_or_default()), "{name}: {remarks}");
         advance_week(&mut session);
         session.save().expect("saved");
         drop(session);
-        let mut session = open(&place);
+        let mut session = open_run(&place);
         assert_eq!(session.remarks(), [""; 0], "{name}: the new snapshot is good");
-        assert_eq!(view(&mut session)["observation"]["day"], 28);
+        assert_eq!(session_view(&mut session)["observation"]["day"], 28);
     }
 }
 
 /// Reading a run requires only its trajectory and changes no file.
 #[test]
 fn reading_a_run_changes_no_files() {
-    let runs_folder = runs();
-    let mut session = create(runs_folder.path(), 3, 60);
+    let runs_folder = temporary_runs_folder();
+    let mut session = create_run(runs_folder.path(), 3, 60);
     let folder = session.folder().expect("a folder").to_owned();
     apply_opening_decisions(&mut session);
     advance_week(&mut session);
     session.save().expect("saved");
-    let expected = view(&mut session);
+    let expected = session_view(&mut session);
     drop(session);
     let files = |name: &str| fs::read(folder.join(name)).expect("bytes");
     let before = ["snapshot.bin", "trajectory.jsonl", "run.toml", "world.db"].map(files);
     let mut reader = Session::open(&folder, Access::Read, true).expect("it opens");
-    assert_eq!(view(&mut reader), expected);
+    assert_eq!(session_view(&mut reader), expected);
     reader.save().expect("nothing to save");
     drop(reader);
     assert_eq!(["snapshot.bin", "trajectory.jsonl", "run.toml", "world.db"].map(files), before);

@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 /// Returns a temporary folder for runs.
-pub fn runs() -> TempDir {
+pub fn temporary_runs_folder() -> TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
 /// Creates a run with a seed and a number of days.
-pub fn create(runs: &Path, seed: u64, days: u32) -> Session {
+pub fn create_run(runs: &Path, seed: u64, days: u32) -> Session {
     let storage = Storage::Runs(runs.to_owned());
     let new = NewRun { seed: Some(seed), days: Some(days), storage, ..NewRun::default() };
     Session::create(new, &Configuration::bundled()).expect("the run begins")
@@ -22,12 +22,12 @@ pub fn create(runs: &Path, seed: u64, days: u32) -> Session {
 
 /// Opens a run for play.
 #[track_caller]
-pub fn open(folder: &Path) -> Session {
+pub fn open_run(folder: &Path) -> Session {
     Session::open(folder, Access::Write, true).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Copies a run folder.
-pub fn copy(folder: &Path, to: &Path) -> PathBuf {
+pub fn copy_run(folder: &Path, to: &Path) -> PathBuf {
     let path = to.join(folder.file_name().expect("a name"));
     fs::create_dir_all(&path).expect("a folder");
     for entry in fs::read_dir(folder).expect("a folder").flatten() {
@@ -37,7 +37,7 @@ pub fn copy(folder: &Path, to: &Path) -> PathBuf {
 }
 
 /// Returns all visible data of a session, and its state hash.
-pub fn view(session: &mut Session) -> Value {
+pub fn session_view(session: &mut Session) -> Value {
     let totals = [
         "SELECT COUNT(*), SUM(amount), SUM(id * amount) FROM ledger",
         "SELECT COUNT(*), SUM(customer_id * start_day) FROM subscriptions",

@@ -7,15 +7,15 @@ use novamind::record::folder::configuration::Configuration;
 use novamind::session::{Access, NewRun, SealKey, Session, Storage};
 
 use super::random_play::advance_week;
-use super::run::{copy, create, open, runs, view};
+use super::run::{copy_run, create_run, open_run, session_view, temporary_runs_folder};
 use crate::support::company::apply_opening_decisions;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
 
 #[test]
 fn snapshot_is_encrypted() {
-    let runs_folder = runs();
-    let mut session = create(runs_folder.path(), 5, 60);
+    let runs_folder = temporary_runs_folder();
+    let mut session = create_run(runs_folder.path(), 5, 60);
     apply_opening_decisions(&mut session);
     session.set_notes("content marketing").expect("notes");
     let folder = session.folder().expect("a folder").to_owned();
@@ -47,7 +47,7 @@ fn snapshot_is_encrypted() {
 
 #[test]
 fn study_snapshot_requires_its_seal_key() {
-    let (runs_folder, other) = (runs(), runs());
+    let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
     let key = SealKey::with_study_secret(&[3; 32]);
     let new = NewRun {
         seed: Some(5),
@@ -60,14 +60,14 @@ fn study_snapshot_requires_its_seal_key() {
     apply_opening_decisions(&mut session);
     advance_week(&mut session);
     session.save().expect("saved");
-    let expected = view(&mut session);
+    let expected = session_view(&mut session);
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
     let with = |name: &str, key: &SealKey| {
-        let place = copy(&folder, &other.path().join(name));
+        let place = copy_run(&folder, &other.path().join(name));
         let mut session =
             Session::open_sealed(&place, Access::Write, true, key.clone()).expect("the run opens anyway");
-        assert_eq!(view(&mut session), expected, "{name}");
+        assert_eq!(session_view(&mut session), expected, "{name}");
         session.remarks().join(" ")
     };
     assert_eq!(with("the secret", &key), "");
@@ -82,12 +82,12 @@ fn study_snapshot_requires_its_seal_key() {
     drop(session);
     assert_eq!(fs::read(folder.join("snapshot.bin")).expect("a snapshot")[TITLE.len()], b's');
     // A run that was created outside of a study can also be opened with the key of a study.
-    let mut plain = create(runs_folder.path(), 6, 60);
+    let mut plain = create_run(runs_folder.path(), 6, 60);
     plain.save().expect("saved");
     let folder = plain.folder().expect("a folder").to_owned();
     drop(plain);
     let session = Session::open_sealed(&folder, Access::Write, true, key).expect("it opens");
     assert_eq!(session.remarks(), [""; 0]);
     drop(session);
-    assert_eq!(open(&folder).day(), 0);
+    assert_eq!(open_run(&folder).day(), 0);
 }

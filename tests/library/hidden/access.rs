@@ -100,7 +100,7 @@ fn unfinished_runs_reject_hidden_queries_uniformly() {
     }
 }
 
-const FORMS: [&str; 12] = [
+const QUERY_FORMS: [&str; 12] = [
     "SELECT * FROM {t}",
     "SELECT count(*) FROM {t}",
     "SELECT day FROM {t} AS own",
@@ -132,7 +132,7 @@ fn other_connections_report_an_unknown_table() {
         let limits = session.company().query_limits();
         for table in hidden_tables() {
             let alone = table.name.strip_prefix("hidden.").expect("a schema");
-            for form in FORMS {
+            for form in QUERY_FORMS {
                 let unknown_table_error = |schema: &str| {
                     let sql = form.replace("{t}", &format!("{schema}.{alone}"));
                     let error = connection.query(&sql, limits).expect_err("unknown");

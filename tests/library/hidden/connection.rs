@@ -84,7 +84,7 @@ fn stopped_statement_keeps_hidden_tables() {
     open_many_markets(&mut session);
     advance_weeks(&mut session, 2);
     let interrupt = session.inspect().hidden_query_interrupt().expect("a debug run");
-    let ticket = interrupt.ticket();
+    let ticket = interrupt.issue_ticket();
     interrupt.stop();
     let refused = session
         .inspect()

@@ -18,7 +18,7 @@ use crate::support::company::advance_week;
 struct WatchedTables(BTreeMap<&'static str, Vec<Vec<Cell>>>);
 
 impl WatchedTables {
-    fn add(&mut self, table: &'static str, row: Vec<Cell>) {
+    fn add_rows(&mut self, table: &'static str, row: Vec<Cell>) {
         self.0.entry(table).or_default().push(row);
     }
 
@@ -34,7 +34,7 @@ impl WatchedTables {
             let expectation = world.market.drift.expectation(group);
             let mood = xray.mean_satisfaction(group);
             let economy = |dimension| cell(xray.macro_multiplier(group, dimension));
-            self.add(
+            self.add_rows(
                 "hidden.groups",
                 vec![
                     day.clone(),
@@ -56,7 +56,7 @@ impl WatchedTables {
             );
             let drift = &world.market.drift;
             let added = [drift.global_quality, drift.quality[group], drift.c_max[group]].map(cell);
-            self.add("hidden.drift", [vec![day.clone(), id.clone()], added.to_vec()].concat());
+            self.add_rows("hidden.drift", [vec![day.clone(), id.clone()], added.to_vec()].concat());
             if world.market.is_known(group) {
                 let lead_factors = xray.lead_factors(group);
                 let factors = [
@@ -75,11 +75,11 @@ impl WatchedTables {
                     cell(lead_factors.expected()),
                     integer(arrivals as i64),
                 ]);
-                self.add("hidden.factors", row);
+                self.add_rows("hidden.factors", row);
             }
         }
         let event = world.market.competitors.last().filter(|event| event.day == report.figures.day);
-        self.add(
+        self.add_rows(
             "hidden.competitors",
             vec![
                 day.clone(),
@@ -91,7 +91,7 @@ impl WatchedTables {
                 event.map_or(Cell::Null, |event| integer(event.by_feedback)),
             ],
         );
-        self.add("hidden.pmi", vec![day, cell(world.market.economy.pmi)]);
+        self.add_rows("hidden.pmi", vec![day, cell(world.market.economy.pmi)]);
     }
 }
 
@@ -143,7 +143,7 @@ fn hidden_tables_match_the_state_of_each_day() {
 }
 
 /// Returns the expected rows of all subscribers from the simulator state.
-fn subscribers(session: &Session) -> Vec<Vec<Cell>> {
+fn expected_subscriber_rows(session: &Session) -> Vec<Vec<Cell>> {
     let xray = session.debug_hidden_state().expect("a debug run");
     let mut rows = Vec::new();
     for group in Group::all() {
@@ -187,13 +187,13 @@ fn hidden_customers_match_the_requested_day() {
     let mut evenings = BTreeMap::new();
     for _ in 0..5 {
         advance_week(&mut session);
-        let current = subscribers(&session);
+        let current = expected_subscriber_rows(&session);
         assert_eq!(query_hidden(&mut session, SUBSCRIBERS), current, "day {}", session.day());
         evenings.insert(session.day(), current);
         make_offers(&mut session);
     }
     session.step(3, &mut |_| {}).expect("days");
-    evenings.insert(session.day(), subscribers(&session));
+    evenings.insert(session.day(), expected_subscriber_rows(&session));
     advance_week(&mut session);
     assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
     for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
@@ -255,7 +255,7 @@ fn hidden_threads_match_the_customer_view() {
             panic!("a company")
         };
         let thread_day = view
-            .threads_of_day()
+            .threads_on_shown_day()
             .find(|enterprise_thread_day| enterprise_thread_day.thread == number(1))
             .expect("its thread");
         let judged = thread_day.plans[Plan::B];

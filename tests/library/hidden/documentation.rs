@@ -29,7 +29,7 @@ fn tables_as_markdown(tables: &[Table]) -> String {
 }
 
 #[test]
-fn columns_of_hidden_tables_in_documents_are_those_that_exist() {
+fn documented_columns_of_hidden_tables_exist() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats/hidden-tables.md");
     let page = fs::read_to_string(&path).expect("a page");
     let mark = "<!-- hidden tables -->\n";

@@ -187,7 +187,7 @@ fn fractional_quotas_are_kept() {
 }
 
 #[test]
-fn tables_are_described_with_types_and_with_values_where_they_are_few() {
+fn table_descriptions_have_types_and_possible_values() {
     let mut session = create(Storage::Memory, &[]);
     let described = call_tool(&mut session, "describe_tables", json!({}));
     for table in novamind::database::tables() {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{export, played_run, read_table, run_id, text};
+use super::{export_run, played_run, read_table, run_id, text};
 use crate::support::home::{Home, ProgramOutput, read_bytes};
 
 fn collect(lab: &Home, sources: &[&Path], more: &[&str]) -> (ProgramOutput, std::path::PathBuf) {
@@ -31,7 +31,7 @@ fn collect_takes_each_run_in_its_latest_state() {
     let (one, two, lab) = (Home::new(), Home::new(), Home::new());
     let (first, second) = (played_run(&one, "P01"), played_run(&two, "P02"));
     // The run is exported as an archive and then continued.
-    let (archive, _) = export(&one, &first, "early.tar.gz");
+    let (archive, _) = export_run(&one, &first, "early.tar.gz");
     assert_eq!(one.play(&["--run", &run_id(&first)], "next \"the end\" naive\n").exit_code, 0);
     let sources = [one.runs(), archive, two.runs()];
     let sources: Vec<&Path> = sources.iter().map(std::path::PathBuf::as_path).collect();

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::{export, played_run, run_folders, text};
+use super::{export_run, played_run, run_folders, text};
 use crate::support::home::{Home, ProgramOutput, run_id, run_with_input};
 
 fn checksum(program_output: &ProgramOutput) -> String {
@@ -16,15 +16,15 @@ fn export_is_reproducible() {
     let home = Home::new();
     let run = played_run(&home, "P01");
     for ending in ["tar", "tar.gz"] {
-        let (first, said_first) = export(&home, &run, &format!("first.{ending}"));
-        let (second, said_second) = export(&home, &run, &format!("second.{ending}"));
+        let (first, said_first) = export_run(&home, &run, &format!("first.{ending}"));
+        let (second, said_second) = export_run(&home, &run, &format!("second.{ending}"));
         assert_eq!(checksum(&said_first), checksum(&said_second));
         assert!(fs::read(first).expect("bytes") == fs::read(second).expect("bytes"), "{ending}");
     }
     let go_on = home.play(&["--run", &run_id(&run)], "set_prices A=13\n");
     assert_eq!(go_on.exit_code, 0, "{}", go_on.stderr);
-    let (_, changed) = export(&home, &run, "third.tar");
-    let (_, program_output) = export(&home, &run, "fourth.tar");
+    let (_, changed) = export_run(&home, &run, "third.tar");
+    let (_, program_output) = export_run(&home, &run, "fourth.tar");
     assert_eq!(checksum(&changed), checksum(&program_output));
     let before = fs::read(home.0.path().join("first.tar")).expect("bytes");
     assert!(fs::read(home.0.path().join("third.tar")).expect("bytes") != before);
@@ -64,10 +64,10 @@ fn interrupted_export_leaves_no_file() {
 }
 
 #[test]
-fn a_run_is_imported_into_the_folder_of_its_participant() {
+fn run_is_imported_into_the_folder_of_its_participant() {
     let (home, lab) = (Home::new(), Home::new());
     let run = played_run(&home, "P01");
-    let (archive, _) = export(&home, &run, "run.tar");
+    let (archive, _) = export_run(&home, &run, "run.tar");
     let path = lab.runs().join("participants/P01");
     let import = |options: &[&str]| lab.run(&[options, &["runs", "import", &text(&archive)]].concat());
     import(&["--as", "P02"])

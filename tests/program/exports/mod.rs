@@ -45,13 +45,13 @@ fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn export(home: &Home, run: &Path, name: &str) -> (PathBuf, ProgramOutput) {
+fn export_run(home: &Home, run: &Path, name: &str) -> (PathBuf, ProgramOutput) {
     let archive = home.0.path().join(name);
     let program_output = home.run(&["runs", "export", &run_id(run), "--out", &text(&archive)]);
     (archive, program_output)
 }
 
-fn import(home: &Home, archive: &Path) -> ProgramOutput {
+fn import_archive(home: &Home, archive: &Path) -> ProgramOutput {
     home.run(&["runs", "import", &text(archive)])
 }
 
@@ -96,13 +96,13 @@ fn exported_run_imports_unchanged() {
     let run = played_run(&home, "P01");
     let before = read_bytes(&run, "trajectory.jsonl");
     for name in ["run.tar.gz", "run.tar"] {
-        let (archive, program_output) = export(&home, &run, name);
+        let (archive, program_output) = export_run(&home, &run, name);
         assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
         let checksum = program_output.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
         assert_eq!(checksum.len(), 64);
-        let (_, output) = export(&home, &run, name);
+        let (_, output) = export_run(&home, &run, name);
         output.assert_fails(1, &["already exists"]);
-        let imported = import(&other, &archive);
+        let imported = import_archive(&other, &archive);
         assert_eq!(imported.exit_code, 0, "{}", imported.stderr);
         assert!(imported.stdout.contains(&checksum), "{}", imported.stdout);
     }
@@ -115,10 +115,10 @@ fn exported_run_imports_unchanged() {
     assert_eq!(other.run(&["replay", &run_id(&run), "--verify"]).exit_code, 0);
     let go_on = other.play(&["--run", &run_id(&run)], "next \"the end\" naive\n");
     assert_eq!(go_on.exit_code, 0, "{}", go_on.stderr);
-    import(&other, &home.0.path().join("run.tar"))
+    import_archive(&other, &home.0.path().join("run.tar"))
         .assert_fails(1, &["already exists", "was continued after the export"]);
-    let (later, _) = export(&other, &run, "later.tar");
-    import(&home, &later).assert_fails(1, &["already exists", "later state"]);
+    let (later, _) = export_run(&other, &run, "later.tar");
+    import_archive(&home, &later).assert_fails(1, &["already exists", "later state"]);
     assert_eq!(read_bytes(&run, "trajectory.jsonl"), before, "nothing was overwritten");
 }
 
@@ -126,8 +126,8 @@ fn exported_run_imports_unchanged() {
 fn conflicting_record_is_imported_under_another_name() {
     let (home, other) = (Home::new(), Home::new());
     let run = played_run(&home, "P01");
-    let (archive, _) = export(&home, &run, "run.tar");
-    assert_eq!(import(&other, &archive).exit_code, 0);
+    let (archive, _) = export_run(&home, &run, "run.tar");
+    assert_eq!(import_archive(&other, &archive).exit_code, 0);
     // The original run and the imported run are continued differently.
     for (home, price) in [(&home, "A=11"), (&other, "A=19")] {
         let lines = format!("set_prices {price}\nnext \"on\" naive\n");
@@ -135,9 +135,9 @@ fn conflicting_record_is_imported_under_another_name() {
     }
     let there = other.runs().join(run_id(&run));
     let before = read_bytes(&there, "trajectory.jsonl");
-    let (second, _) = export(&home, &run, "second.tar");
+    let (second, _) = export_run(&home, &run, "second.tar");
     let parts = ["already exists", "differ from line", "the archive has", "lines up to day", "--under NAME"];
-    import(&other, &second).assert_fails(1, &parts);
+    import_archive(&other, &second).assert_fails(1, &parts);
     let path = text(&second);
     other.run(&["runs", "import", &path, "--under", "../out"]).assert_fails(1, &["is not a valid run name"]);
     other.run(&["runs", "import", &path, "--under", &run_id(&run)]).assert_fails(1, &["already exists in"]);
@@ -163,7 +163,7 @@ fn archive_database_opens_in_plain_sqlite() {
     let home = Home::new();
     let run = played_run(&home, "P01");
     fs::write(run.join("snapshot.bin"), "hidden").expect("a snapshot");
-    let (archive, _) = export(&home, &run, "run.tar");
+    let (archive, _) = export_run(&home, &run, "run.tar");
     let files = archive_contents(&archive);
     let names: Vec<&str> = files.keys().map(|name| name.split_once('/').expect("a folder").1).collect();
     assert_eq!(names, ["memo.md", "run.toml", "seal.toml", "trajectory.jsonl", "world.db"]);
@@ -217,16 +217,16 @@ fn archive_database_opens_in_plain_sqlite() {
 fn modified_archives_are_rejected() {
     let (home, other) = (Home::new(), Home::new());
     let run = played_run(&home, "P01");
-    let (archive, _) = export(&home, &run, "run.tar");
+    let (archive, _) = export_run(&home, &run, "run.tar");
     let files: Vec<(String, Vec<u8>)> = archive_contents(&archive).into_iter().collect();
     let bad = home.0.path().join("bad.tar");
     let refused = |files: &[(String, Vec<u8>)], parts: &[&str]| {
         write_forged_archive(&bad, files);
-        import(&other, &bad).assert_fails(3, &[parts, &["bad.tar", "Nothing was imported"]].concat());
+        import_archive(&other, &bad).assert_fails(3, &[parts, &["bad.tar", "Nothing was imported"]].concat());
         assert!(run_folders(&other.runs()).is_empty());
     };
     write_forged_archive(&bad, &files);
-    assert_eq!(import(&other, &bad).exit_code, 0, "the unchanged files are valid");
+    assert_eq!(import_archive(&other, &bad).exit_code, 0, "the unchanged files are valid");
     fs::remove_dir_all(other.runs().join(run_id(&run))).expect("it was there");
     for (at, (name, bytes)) in files.iter().enumerate().filter(|(_, (name, _))| !name.ends_with("seal.toml"))
     {
@@ -258,12 +258,12 @@ fn modified_archives_are_rejected() {
 }
 
 #[test]
-fn dangerous_and_foreign_files_are_refused() {
+fn archives_with_dangerous_or_foreign_files_are_rejected() {
     let home = Home::new();
     let bad = home.0.path().join("bad.tar");
     for name in ["../../evil", "/etc/evil", "0123abcd/../evil", "0123abcd/sub/run.toml", "latest/run.toml"] {
         write_forged_archive(&bad, &[(name.to_owned(), b"x".to_vec())]);
-        import(&home, &bad).assert_fails(3, &["is not a file of a run"]);
+        import_archive(&home, &bad).assert_fails(3, &["is not a file of a run"]);
     }
     for kind in
         [tar::EntryType::Symlink, tar::EntryType::Link, tar::EntryType::XHeader, tar::EntryType::GNULongName]
@@ -271,61 +271,61 @@ fn dangerous_and_foreign_files_are_refused() {
         let mut builder = tar::Builder::new(fs::File::create(&bad).expect("a file"));
         builder.append(&header("0123abcd/run.toml", 0, kind), &b""[..]).expect("an entry");
         builder.finish().expect("an archive");
-        import(&home, &bad).assert_fails(3, &["not a regular file"]);
+        import_archive(&home, &bad).assert_fails(3, &["not a regular file"]);
     }
     // The contents of a damaged archive are reported in one line without terminal control sequences.
     write_forged_archive(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
-    import(&home, &bad).assert_fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml is not a file of a run"]);
+    import_archive(&home, &bad).assert_fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml is not a file of a run"]);
     let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");
-    import(&home, &bad).assert_fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
+    import_archive(&home, &bad).assert_fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
     // A file with a false size is not read, and no memory is reserved for it.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");
-    import(&home, &bad).assert_fails(3, &["run.toml is too large"]);
+    import_archive(&home, &bad).assert_fails(3, &["run.toml is too large"]);
     fs::write(&bad, "this is a letter, not an archive").expect("a file");
-    import(&home, &bad).assert_fails(3, &["not an archive of a run"]);
+    import_archive(&home, &bad).assert_fails(3, &["not an archive of a run"]);
     fs::write(&bad, "").expect("a file");
-    import(&home, &bad).assert_fails(3, &["seal.toml is missing"]);
-    import(&home, &home.0.path().join("nowhere.tar")).assert_fails(3, &["nowhere.tar"]);
+    import_archive(&home, &bad).assert_fails(3, &["seal.toml is missing"]);
+    import_archive(&home, &home.0.path().join("nowhere.tar")).assert_fails(3, &["nowhere.tar"]);
     assert!(run_folders(&home.runs()).is_empty(), "nothing is left behind");
     assert!(!home.0.path().join("evil").exists());
 }
 
 #[test]
-fn a_compressed_archive_that_is_cut_or_flipped_anywhere_is_refused() {
+fn compressed_archive_with_any_truncation_or_bit_flip_is_rejected() {
     let (home, other) = (Home::new(), Home::new());
     let run = played_run(&home, "P01");
-    let (archive, _) = export(&home, &run, "run.tar.gz");
+    let (archive, _) = export_run(&home, &run, "run.tar.gz");
     let whole = fs::read(&archive).expect("bytes");
     let bad = home.0.path().join("bad.tar.gz");
     for share in [0.1, 0.5, 0.9, 0.999] {
         let at = (whole.len() as f64 * share) as usize;
         fs::write(&bad, &whole[..at]).expect("a cut");
-        import(&other, &bad).assert_fails(3, &["bad.tar.gz"]);
+        import_archive(&other, &bad).assert_fails(3, &["bad.tar.gz"]);
         let mut flipped = whole.clone();
         flipped[at] ^= 0x10;
         fs::write(&bad, &flipped).expect("a flip");
-        import(&other, &bad).assert_fails(3, &["bad.tar.gz"]);
+        import_archive(&other, &bad).assert_fails(3, &["bad.tar.gz"]);
         assert!(run_folders(&other.runs()).is_empty());
     }
 }
 
 #[test]
-fn damaged_runs_are_not_exported_and_unfinished_lines_are_left_out() {
+fn export_rejects_damaged_runs_and_omits_incomplete_lines() {
     let home = Home::new();
     let run = played_run(&home, "P01");
     let good = read_bytes(&run, "trajectory.jsonl");
     let torn = [&good[..], b"{\"seq\":99,\"ki"].concat();
     fs::write(run.join("trajectory.jsonl"), &torn).expect("a torn line");
-    let (archive, program_output) = export(&home, &run, "torn.tar");
+    let (archive, program_output) = export_run(&home, &run, "torn.tar");
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert_eq!(archive_contents(&archive)[&format!("{}/trajectory.jsonl", run_id(&run))], good);
     assert_eq!(read_bytes(&run, "trajectory.jsonl"), torn, "an export changes nothing");
     let text = String::from_utf8(good).expect("text");
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
-    let (archive, output) = export(&home, &run, "bad.tar");
+    let (archive, output) = export_run(&home, &run, "bad.tar");
     output.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
     assert!(!archive.exists());
     let hidden = |entry: &PathBuf| {
@@ -387,7 +387,7 @@ fn export_all_writes_consistent_tables() {
     for run in [&first, &second] {
         let archive = out.join(format!("{}.tar.gz", run_id(run)));
         let there = Home::new();
-        assert_eq!(import(&there, &archive).exit_code, 0);
+        assert_eq!(import_archive(&there, &archive).exit_code, 0);
     }
     // The export is repeated for one participant. Existing archives are allowed.
     let one = home.run(&["runs", "export", "--all", "--participant", "P01", "--out", &text(&out)]);

@@ -37,7 +37,7 @@ fn validate(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
     for (keyword, rule) in rules {
         let ok = match keyword.as_str() {
             "title" | "description" | "examples" | "$schema" | "$defs" => true,
-            "type" => types(rule).iter().any(|name| has_type(value, name)),
+            "type" => allowed_types(rule).iter().any(|name| has_type(value, name)),
             "const" => value == rule,
             "enum" => rule.as_array().expect("values").contains(value),
             "minimum" => value.as_f64().is_none_or(|actual| actual >= number(rule)),
@@ -48,7 +48,7 @@ fn validate(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
                 value.as_str().is_none_or(|text| is_hexadecimal(text, rule.as_str().expect("a pattern")))
             }
             "format" => value.as_str().is_none_or(|text| OffsetDateTime::parse(text, &Rfc3339).is_ok()),
-            "required" => names(rule).iter().all(|name| value.get(name).is_some()),
+            "required" => property_names(rule).iter().all(|name| value.get(name).is_some()),
             "properties" => {
                 for (name, property) in rule.as_object().expect("properties") {
                     inner.extend(
@@ -92,12 +92,12 @@ fn validate(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
     }
 }
 
-fn names(rule: &Value) -> Vec<&str> {
+fn property_names(rule: &Value) -> Vec<&str> {
     rule.as_array().into_iter().flatten().filter_map(Value::as_str).collect()
 }
 
-fn types(rule: &Value) -> Vec<&str> {
-    rule.as_str().map_or_else(|| names(rule), |one| vec![one])
+fn allowed_types(rule: &Value) -> Vec<&str> {
+    rule.as_str().map_or_else(|| property_names(rule), |one| vec![one])
 }
 
 fn has_type(value: &Value, name: &str) -> bool {
@@ -134,7 +134,7 @@ fn line_problems(root: &Value, line: &Value) -> Vec<String> {
     found
 }
 
-fn kinds(root: &Value) -> BTreeSet<String> {
+fn line_kinds(root: &Value) -> BTreeSet<String> {
     let references = root["oneOf"].as_array().expect("kinds").iter();
     references.map(|value| value["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
 }
@@ -147,10 +147,10 @@ pub fn check_examples(examples: &[Value]) {
     }
     let shown: BTreeSet<String> =
         examples.iter().filter_map(|line| line["kind"].as_str()).map(str::to_owned).collect();
-    assert_eq!(shown, kinds(&root));
+    assert_eq!(shown, line_kinds(&root));
 }
 
-fn lines_of(folder: &Path) -> Vec<Value> {
+fn trajectory_lines(folder: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
     text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
 }
@@ -165,7 +165,7 @@ fn note_every_activity(run: &mut Session) {
     }
     run.activity().attach(novamind::session::Interface { name: "console", window: Some((120, 40)) });
     run.activity().record_presence(PresenceEvent::Idle, Some(90_000), None);
-    run.activity().detach(LeavingCause::Quit);
+    run.activity().detach(DetachCause::Quit);
     run.activity().record(Activity::Clock(activity_from(example("clock"))));
     run.activity().record(Activity::Limit(activity_from(example("limit"))));
     run.activity().record(Activity::View(activity_from(example("view"))));
@@ -223,7 +223,7 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     }
     run.abandon().expect("it is given up");
     let folders = [run.folder(), branch.folder()].map(|folder| folder.expect("a folder").to_owned());
-    folders.iter().flat_map(|folder| lines_of(folder)).collect()
+    folders.iter().flat_map(|folder| trajectory_lines(folder)).collect()
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn recorded_lines_match_the_schema() {
     }
     let written: BTreeSet<String> =
         lines.iter().map(|line| line["kind"].as_str().expect("a kind").to_owned()).collect();
-    let mut missing = kinds(&root);
+    let mut missing = line_kinds(&root);
     missing.retain(|kind| !written.contains(kind));
     assert_eq!(
         missing.into_iter().collect::<Vec<_>>(),
@@ -262,7 +262,7 @@ fn recorded_lines_match_the_schema() {
 #[test]
 fn schema_has_examples_of_all_kinds_and_fields() {
     let root = schema();
-    for kind in kinds(&root) {
+    for kind in line_kinds(&root) {
         let value = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
         assert!(value["description"].as_str().is_some_and(|text| text.len() > 15), "{kind}");
         for (name, field) in value["properties"].as_object().expect("fields") {
@@ -280,10 +280,10 @@ fn schema_has_examples_of_all_kinds_and_fields() {
 #[test]
 fn invalid_lines_violate_the_schema() {
     let root = schema();
-    for kind in kinds(&root) {
+    for kind in line_kinds(&root) {
         let value = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
         let example: Map<String, Value> = value["examples"][0].as_object().expect("an example").clone();
-        for name in names(&value["required"]) {
+        for name in property_names(&value["required"]) {
             let mut without = example.clone();
             without.remove(name);
             assert!(!line_problems(&root, &without.into()).is_empty(), "{kind} without {name}");
@@ -300,7 +300,7 @@ fn invalid_lines_violate_the_schema() {
 }
 
 #[test]
-fn the_program_prints_the_schema() {
+fn runs_schema_prints_the_schema() {
     let program_output = Home::new().run(&["runs", "schema"]);
     assert_eq!(serde_json::from_str::<Value>(&program_output.stdout).expect("JSON"), schema());
 }

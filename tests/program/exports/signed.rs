@@ -4,11 +4,11 @@ use std::fs;
 
 use novamind::session::{LabKey, Seal};
 
-use super::{archive_contents, import, played_run, text, write_forged_archive};
+use super::{archive_contents, import_archive, played_run, text, write_forged_archive};
 use crate::support::home::{Home, run_id};
 
 /// Changes a file of an archive; `None` removes it.
-type Change<'a> = &'a dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>;
+type FileChange<'a> = &'a dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>;
 
 #[test]
 fn signature_names_the_signer_and_rejects_modifications() {
@@ -28,7 +28,7 @@ fn signature_names_the_signer_and_rejects_modifications() {
     let fingerprint = key.public_key().fingerprint();
 
     let bad = home.0.path().join("bad.tar");
-    let files = |change: Change<'_>| {
+    let files = |change: FileChange<'_>| {
         let changed =
             whole.iter().filter_map(|(name, bytes)| Some((name.clone(), change(name, bytes.clone())?)));
         write_forged_archive(&bad, &changed.collect::<Vec<_>>());
@@ -46,13 +46,13 @@ fn signature_names_the_signer_and_rejects_modifications() {
                 .into_bytes(),
         )
     });
-    import(&other, &bad).assert_fails(3, &["seal.sig does not belong to seal.toml"]);
+    import_archive(&other, &bad).assert_fails(3, &["seal.sig does not belong to seal.toml"]);
     files(&|name, bytes| Some(if name.ends_with("seal.sig") { Vec::new() } else { bytes }));
-    import(&other, &bad).assert_fails(3, &["seal.sig cannot be read"]);
+    import_archive(&other, &bad).assert_fails(3, &["seal.sig cannot be read"]);
     files(&|name, bytes| Some(if name.ends_with("seal.sig") { vec![b'#'; 4096] } else { bytes }));
-    import(&other, &bad).assert_fails(3, &["seal.sig is too large"]);
+    import_archive(&other, &bad).assert_fails(3, &["seal.sig is too large"]);
 
-    let program_output = import(&other, &archive);
+    let program_output = import_archive(&other, &archive);
     assert!(
         program_output.exit_code == 0
             && program_output.stdout.contains(&format!("signed by the lab key {fingerprint}")),
@@ -61,7 +61,7 @@ fn signature_names_the_signer_and_rejects_modifications() {
     );
     // Without its signature, the archive is a valid unsigned archive.
     files(&|name, bytes| (!name.ends_with("seal.sig")).then_some(bytes));
-    let output = import(&other, &bad);
+    let output = import_archive(&other, &bad);
     assert!(
         output.exit_code == 0 && output.stdout.contains("not signed"),
         "{}{}",

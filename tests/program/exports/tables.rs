@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::trajectory::record::{
-    Activity, Clock, ClockEvent, DialogOutcome, DialogStep, DialogUse, HelpRequest, LeavingCause, LimitScope,
+    Activity, Clock, ClockEvent, DetachCause, DialogOutcome, DialogStep, DialogUse, HelpRequest, LimitScope,
     ObjectSelection, PresenceEvent, QuestionAnswer, QuestionShown, TextEdit, TextEditOutcome, Via,
 };
 use novamind::session::{Access, Interface, NewRun, Session, Storage};
 
 use super::{played_run, read_table, run_folders, text};
 use crate::support::home::{Home, run_id};
-use crate::support::python::recompute;
+use crate::support::python::recompute_measures;
 
 /// Commands that play a run of four weeks to its end, with many events that the measures count.
 const FOUR_WEEKS: &str = "set_prices A=12 B=25 C=55
@@ -132,7 +132,7 @@ fn run_with_all_activity_lines(home: &Home) {
         run.activity().record_view("cash", "overview", 40);
         let forecasts = run.company().naive_forecasts();
         run.advance("until then", &forecasts, Via::Form, &mut |_| {}).expect("a week");
-        run.activity().detach(LeavingCause::Quit);
+        run.activity().detach(DetachCause::Quit);
         drop(run);
         run = Session::open(&folder, Access::Write, true).expect("it opens");
     }
@@ -180,14 +180,14 @@ fn independent_script_reproduces_every_measure() {
     {
         assert!(!over[column].is_empty(), "{column}");
     }
-    let Some((output, code)) = recompute(&out) else { return };
+    let Some((output, code)) = recompute_measures(&out) else { return };
     assert!(code == Some(0) && output.contains("3 runs") && output.contains(" 0 differences"), "{output}");
     // A changed figure in the exported table must be detected by the comparison.
     let weeks = out.join("weeks.csv");
     let changed =
         std::fs::read_to_string(&weeks).expect("a table").replacen("set_prices=1", "set_prices=2", 1);
     std::fs::write(&weeks, changed).expect("a change");
-    let (output, code) = recompute(&out).expect("it ran before");
+    let (output, code) = recompute_measures(&out).expect("it ran before");
     assert!(code == Some(1) && output.contains(" 1 differences"), "{output}");
 }
 
@@ -330,7 +330,7 @@ fn anonymized_tables_can_be_linked_only_with_the_secret() {
 }
 
 #[test]
-fn the_loading_scripts_read_the_tables() {
+fn loading_scripts_read_the_tables() {
     let home = Home::new();
     run_with_all_activity_lines(&home);
     played_run(&home, "=P01");

@@ -111,7 +111,7 @@ fn week_without_its_line_is_simulated_again() {
 #[test]
 fn full_disk_is_not_reported_as_a_damaged_archive() {
     let (home, other) = (Home::new(), Home::new());
-    let run = home.two_weeks();
+    let run = home.play_two_weeks();
     let archive = home.0.path().join("run.tar.gz").to_string_lossy().into_owned();
     assert_eq!(home.run(&["runs", "export", &run_id(&run), "--out", &archive]).exit_code, 0);
     let program = env!("CARGO_BIN_EXE_novamind");
@@ -126,7 +126,7 @@ fn full_disk_is_not_reported_as_a_damaged_archive() {
 #[test]
 fn query_rebuilds_only_a_missing_database() {
     let home = Home::new();
-    let run = home.two_weeks();
+    let run = home.play_two_weeks();
     let ask = || home.run(&["query", &run_id(&run), "SELECT count(*), sum(amount) FROM ledger"]);
     let (before, trajectory) = (ask().stdout, read_bytes(&run, "trajectory.jsonl"));
     for snapshot in [true, false] {

@@ -17,7 +17,7 @@ use crate::support::home::{Home, ProgramOutput, read_bytes, run_id, run_with_inp
 const HEAD: &str = "title = \"Mine\"\ndescription = \"My own.\"\n";
 
 #[test]
-fn a_wrong_scenario_names_file_line_key_and_what_is_allowed() {
+fn invalid_scenario_error_names_file_line_key_and_allowed_values() {
     let home = Home::new();
     for (text, parts) in [
         ("title = \"Mine\ndescription = \"x\"\n".to_owned(), &["line 1"][..]),
@@ -86,7 +86,7 @@ fn valid_scenario_is_accepted_in_every_notation() {
 }
 
 #[test]
-fn invalid_scenario_does_not_hide_others() {
+fn invalid_scenario_does_not_hide_other_scenarios() {
     let home = Home::new();
     home.write("scenarios/bad.toml", "title = \n");
     home.write("scenarios/good.toml", HEAD);
@@ -112,7 +112,7 @@ fn user_parameters_are_checked_and_ignored_by_baseline_runs() {
 }
 
 #[test]
-fn a_wrong_policy_names_file_line_and_what_is_allowed() {
+fn invalid_policy_error_names_file_line_and_allowed_values() {
     let home = Home::new();
     for (text, parts) in [
         ("name = = 1\n", &["mine.toml, line 1"][..]),
@@ -135,23 +135,23 @@ fn a_wrong_policy_names_file_line_and_what_is_allowed() {
 /// A function that damages a trajectory of ten lines.
 type Damage = fn(&mut Vec<u8>);
 
-fn flip_after(bytes: &mut [u8], line: usize, word: &str) {
+fn flip_byte_after(bytes: &mut [u8], line: usize, word: &str) {
     let start: usize = split_lines(bytes)[..line - 1].iter().map(Vec::len).sum();
     let at = bytes[start..].windows(word.len()).position(|part| part == word.as_bytes()).expect("the word");
     bytes[start + at + word.len()] ^= 1;
 }
 
 #[test]
-fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
+fn damaged_trajectory_is_rejected_with_its_line_and_not_changed() {
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     let (id, good) = (run_id(&folder), read_bytes(&folder, "trajectory.jsonl"));
     assert_eq!(split_lines(&good).len(), 10);
     let cases: [(Damage, &[&str]); 9] = [
-        (|bytes| flip_after(bytes, 4, "\"B\":"), &["line 4", "its sum", "Lines 1 to 3 are valid"]),
-        (|bytes| flip_after(bytes, 1, "\"seed\":"), &["line 1", "its sum"]),
-        (|bytes| flip_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are valid"]),
-        (|bytes| flip_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "recover"]),
+        (|bytes| flip_byte_after(bytes, 4, "\"B\":"), &["line 4", "its sum", "Lines 1 to 3 are valid"]),
+        (|bytes| flip_byte_after(bytes, 1, "\"seed\":"), &["line 1", "its sum"]),
+        (|bytes| flip_byte_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are valid"]),
+        (|bytes| flip_byte_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "recover"]),
         (
             |bytes| *bytes = [split_lines(bytes)[..2].concat(), split_lines(bytes)[3..].concat()].concat(),
             &["line 3", "missing"],
@@ -186,9 +186,9 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
 #[test]
 fn modified_figure_is_detected_without_the_database() {
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     let mut bytes = read_bytes(&folder, "trajectory.jsonl");
-    flip_after(&mut bytes, 9, "\"cash\":");
+    flip_byte_after(&mut bytes, 9, "\"cash\":");
     fs::write(folder.join("trajectory.jsonl"), &bytes).expect("written");
     fs::remove_file(folder.join("world.db")).expect("gone");
     home.run(&["replay", &run_id(&folder), "--verify"]).assert_fails(3, &["line 9", "its sum"]);
@@ -199,7 +199,7 @@ fn incomplete_last_line_is_removed() {
     // The lines up to the end of the second week. Later lines were written when the session was closed.
     let played = || {
         let home = Home::new();
-        let folder = home.two_weeks();
+        let folder = home.play_two_weeks();
         let (id, good) =
             (run_id(&folder), split_lines(&read_bytes(&folder, "trajectory.jsonl"))[..9].concat());
         (home, folder, id, good)
@@ -240,7 +240,7 @@ fn incomplete_last_line_is_removed() {
 #[test]
 fn damaged_manifest_is_rebuilt() {
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     let (id, good) = (run_id(&folder), fs::read_to_string(folder.join("run.toml")).expect("text"));
     let trajectory = read_bytes(&folder, "trajectory.jsonl");
     let line = |name: &str| good.lines().position(|line| line.starts_with(name)).expect("a line") + 1;
@@ -294,7 +294,7 @@ fn damaged_manifest_is_rebuilt() {
 #[test]
 fn damaged_database_is_rebuilt() {
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     let question = "sql SELECT COUNT(*) AS n FROM ledger\n";
     let whole = home.play(&["--run", &run_id(&folder)], question).stdout;
     for bytes in [&b"no database at all"[..], b"", &read_bytes(&folder, "world.db")[..5000]] {
@@ -309,7 +309,7 @@ fn damaged_database_is_rebuilt() {
 #[test]
 fn blocking_files_are_reported() {
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     let id = run_id(&folder);
     // The root user can write anywhere, so folders are created instead of files to block writing.
     for file in ["lock", "world.db", "trajectory.jsonl"] {
@@ -347,7 +347,7 @@ fn run_with_runs_folder(program: &mut Command, runs: &Path) -> ProgramOutput {
 fn unwritable_folder_is_reported() {
     use std::os::unix::fs::PermissionsExt;
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     let allow = |mode| fs::set_permissions(&folder, fs::Permissions::from_mode(mode)).expect("changed");
     allow(0o555);
     // The root user can write to the folder, so the test is skipped.
@@ -394,7 +394,7 @@ fn run_in_use_is_not_opened() {
 #[test]
 fn recovery_creates_a_branch_of_the_undamaged_prefix() {
     let home = Home::new();
-    let folder = home.two_weeks();
+    let folder = home.play_two_weeks();
     home.run(&["runs", "recover", &run_id(&folder)]).assert_fails(2, &["not damaged"]);
     let path = folder.join("trajectory.jsonl");
     let mut bytes = fs::read(&path).expect("a trajectory");
@@ -413,9 +413,9 @@ fn recovery_creates_a_branch_of_the_undamaged_prefix() {
 }
 
 #[test]
-fn a_run_whose_trajectory_cannot_be_read_is_listed_as_such() {
+fn run_list_marks_runs_with_an_unreadable_trajectory() {
     let home = Home::new();
-    let path = home.two_weeks().join("trajectory.jsonl");
+    let path = home.play_two_weeks().join("trajectory.jsonl");
     let whole = fs::read(&path).expect("a trajectory");
     for damaged in [Some(&b""[..]), Some(b"\0\0\0\0\n"), None] {
         match damaged {
@@ -438,7 +438,7 @@ fn a_run_whose_trajectory_cannot_be_read_is_listed_as_such() {
 #[test]
 fn database_of_another_run_is_rebuilt() {
     let (home, other) = (Home::new(), Home::new());
-    let (path, foreign) = (home.two_weeks(), other.two_weeks());
+    let (path, foreign) = (home.play_two_weeks(), other.play_two_weeks());
     let hash = |home: &Home| home.run(&["query", "latest", "SELECT sum(amount) FROM ledger"]).stdout;
     let before = hash(&home);
     for suffix in ["", "-wal", "-shm"] {
@@ -475,9 +475,9 @@ fn misplaced_options_are_rejected() {
 }
 
 #[test]
-fn unknown_runs_are_named_with_the_way_to_the_list() {
+fn unknown_run_error_names_the_run_and_the_list_command() {
     let home = Home::new();
-    home.two_weeks();
+    home.play_two_weeks();
     for arguments in [
         &["play", "--plain", "--run", "nothere"][..],
         &["runs", "show", "nothere"],

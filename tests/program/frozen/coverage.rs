@@ -6,7 +6,7 @@ use super::case::{cases, groups};
 use crate::support::home::Home;
 
 /// Options that select an output format or an output file.
-const FORMS: [&str; 10] = [
+const OUTPUT_OPTIONS: [&str; 10] = [
     "--json",
     "--csv",
     "--format",
@@ -40,15 +40,15 @@ const EXCEPTIONS: [(&str, &str); 15] = [
 
 /// The subcommands and options that the help of a command lists.
 #[derive(Default)]
-struct Help {
+struct CommandHelp {
     commands: Vec<String>,
-    /// Options of `FORMS` with their possible values.
+    /// Options of `OUTPUT_OPTIONS` with their possible values.
     forms: BTreeMap<String, Vec<String>>,
 }
 
-impl Help {
-    fn read(text: &str) -> Help {
-        let mut help = Help::default();
+impl CommandHelp {
+    fn read(text: &str) -> CommandHelp {
+        let mut help = CommandHelp::default();
         let (mut section, mut option) = ("", None::<String>);
         for line in text.lines() {
             if !line.starts_with(' ') && line.ends_with(':') {
@@ -63,7 +63,7 @@ impl Help {
                 }
                 // Names of options are indented by six spaces, or by two if they have a short form.
                 ("Options:", Some(name)) if line.starts_with("      --") => {
-                    option = FORMS.contains(name).then(|| (*name).to_owned());
+                    option = OUTPUT_OPTIONS.contains(name).then(|| (*name).to_owned());
                     help.forms.extend(option.iter().map(|name| (name.clone(), Vec::new())));
                 }
                 ("Options:", Some(_)) if line.starts_with("  -") => option = None,
@@ -92,7 +92,7 @@ impl Help {
 fn collect_expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     let program_output = home.run(&[path, &["--help"]].concat());
     assert_eq!(program_output.exit_code, 0, "{path:?}: {}", program_output.stderr);
-    let help = Help::read(&program_output.stdout);
+    let help = CommandHelp::read(&program_output.stdout);
     let name = path.join(" ");
     if help.commands.is_empty() {
         found.insert(name.clone());
@@ -122,7 +122,7 @@ fn collect_covered(arguments: &[String], commands: &BTreeSet<String>, found: &mu
     }
     found.insert(name.clone());
     for (word, next) in arguments.iter().zip(arguments[1..].iter().map(Some).chain([None])) {
-        if FORMS.contains(&word.as_str()) {
+        if OUTPUT_OPTIONS.contains(&word.as_str()) {
             found.insert(format!("{name} {word}"));
             found.extend(next.map(|value| format!("{name} {word} {value}")));
         }

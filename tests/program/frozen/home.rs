@@ -26,7 +26,7 @@ impl FrozenHome {
         let recorded = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded");
         let mut masks = Masks::new(home.0.path());
         let mut ids = BTreeMap::new();
-        for folder in sorted(&recorded) {
+        for folder in sorted_paths(&recorded) {
             let name = folder.file_name().expect("a name").to_string_lossy().into_owned();
             let Some(name) = name.strip_prefix("format2-") else { continue };
             let manifest: toml::Table = text(&folder.join("run.toml")).parse().expect("a manifest");
@@ -37,7 +37,7 @@ impl FrozenHome {
                 _ => home.runs(),
             };
             copy_masked(&folder, &parent.join(&id), &mut masks);
-            masks.keep_id(&id);
+            masks.exclude_id(&id);
             ids.insert(name.to_owned(), id);
         }
         let damaged = home.0.path().join("damaged").join(&ids["debug"]);
@@ -55,7 +55,7 @@ impl FrozenHome {
     }
 
     /// Runs a case and returns its output and the files that it wrote, with masks.
-    pub fn output_of(&mut self, case: &Case) -> String {
+    pub fn case_output(&mut self, case: &Case) -> String {
         let place = self.home.0.path().to_owned();
         let fill = |argument: String| {
             let filled =
@@ -76,10 +76,10 @@ impl FrozenHome {
             run_with_input(&mut command, &case.input)
         };
         self.masks.keys = case.mask.clone();
-        self.masks.find_new_ids(&self.home.runs());
+        self.masks.mask_new_ids(&self.home.runs());
         for file in &case.files {
-            self.masks.find_class(&place.join(file).join("class.toml"));
-            self.masks.find_new_ids(&place.join(file));
+            self.masks.mask_class_ids(&place.join(file).join("class.toml"));
+            self.masks.mask_new_ids(&place.join(file));
         }
         let mut output = stored_form(self.masks.apply(&program_output.stdout));
         if !program_output.stderr.is_empty() {
@@ -99,7 +99,7 @@ impl FrozenHome {
     fn write_file(&mut self, path: &Path, output: &mut String) {
         if path.is_dir() {
             // New runs have random ids, so files are sorted by their masked names.
-            let mut inner = sorted(path);
+            let mut inner = sorted_paths(path);
             inner.sort_by_key(|path| self.masks.apply(&path.display().to_string()));
             for path in inner {
                 self.write_file(&path, output);
@@ -127,7 +127,7 @@ impl FrozenHome {
 
     fn write_bytes(&mut self, name: &str, bytes: &[u8], output: &mut String) {
         let name = self.masks.apply(name);
-        let text = match (is_derived(&name), String::from_utf8(bytes.to_vec())) {
+        let text = match (is_content_ignored(&name), String::from_utf8(bytes.to_vec())) {
             (false, Ok(text)) => stored_form(self.masks.apply(&text)),
             _ => "(bytes)\n".to_owned(),
         };
@@ -156,12 +156,12 @@ fn run_line_by_line(command: &mut Command, lines: &str) -> ProgramOutput {
 }
 
 /// Returns whether the contents of a file are not compared: the database, the snapshot, and the lock with a process id.
-fn is_derived(name: &str) -> bool {
+fn is_content_ignored(name: &str) -> bool {
     ["world.db", "snapshot.bin", "lock"].iter().any(|end| name.ends_with(end))
 }
 
 /// Returns the paths in a folder, sorted by name.
-fn sorted(folder: &Path) -> Vec<PathBuf> {
+fn sorted_paths(folder: &Path) -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> =
         fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path()).collect();
     paths.sort();
@@ -182,13 +182,13 @@ fn damage_last_week(trajectory: &Path) {
 /// Copies a folder. Times in its files are excluded from masking.
 fn copy_masked(from: &Path, to: &Path, masks: &mut Masks) {
     fs::create_dir_all(to).expect("a folder");
-    for path in sorted(from) {
+    for path in sorted_paths(from) {
         let target = to.join(path.file_name().expect("a name"));
         if path.is_dir() {
             copy_masked(&path, &target, masks);
             continue;
         }
-        masks.keep_moments(&text(&path));
+        masks.exclude_times(&text(&path));
         fs::copy(&path, target).expect("copied");
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Length of a time without fractional seconds: `2026-11-27T13:30:46`.
-const SECOND: usize = 19;
+const TIME_LENGTH: usize = 19;
 
 /// Fields of new lines in `trajectory.jsonl`, `afterwards.jsonl` and `visits.jsonl` whose values depend on the machine
 /// or the time.
@@ -30,19 +30,19 @@ impl Masks {
     }
 
     /// Excludes the times in a text from masking.
-    pub fn keep_moments(&mut self, text: &str) {
-        self.seconds.extend(moments(text).map(|(_, moment)| moment[..SECOND].to_owned()));
+    pub fn exclude_times(&mut self, text: &str) {
+        self.seconds.extend(find_times(text).map(|(_, moment)| moment[..TIME_LENGTH].to_owned()));
     }
 
     /// Excludes an id from masking.
-    pub fn keep_id(&mut self, id: &str) {
+    pub fn exclude_id(&mut self, id: &str) {
         self.ids.insert(id.to_owned());
     }
 
     /// Masks the ids of new runs below a folder, starting with the oldest run.
-    pub fn find_new_ids(&mut self, below: &Path) {
+    pub fn mask_new_ids(&mut self, below: &Path) {
         let mut new = Vec::new();
-        self.new_runs(below, &mut new);
+        self.collect_new_runs(below, &mut new);
         new.sort();
         for (_, id) in new {
             self.mask_id(&id);
@@ -50,7 +50,7 @@ impl Masks {
     }
 
     /// Collects the creation time and the id of each new run below a folder.
-    fn new_runs(&self, below: &Path, found: &mut Vec<(String, String)>) {
+    fn collect_new_runs(&self, below: &Path, found: &mut Vec<(String, String)>) {
         for folder in fs::read_dir(below).into_iter().flatten().flatten().map(|entry| entry.path()) {
             let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
             match fs::read_to_string(folder.join("run.toml")) {
@@ -59,14 +59,14 @@ impl Masks {
                     let created = manifest.lines().find(|line| line.starts_with("created = "));
                     found.push((created.unwrap_or_default().to_owned(), id));
                 }
-                Err(_) if folder.is_dir() => self.new_runs(&folder, found),
+                Err(_) if folder.is_dir() => self.collect_new_runs(&folder, found),
                 Err(_) => {}
             }
         }
     }
 
     /// Masks the ids of a class and of the runs of its handouts, if the file exists.
-    pub fn find_class(&mut self, file: &Path) {
+    pub fn mask_class_ids(&mut self, file: &Path) {
         let Ok(text) = fs::read_to_string(file) else { return };
         let class: toml::Table = text.parse().expect("a class");
         let students = class["student"].as_array().expect("students").iter().map(|student| &student["run"]);
@@ -86,20 +86,24 @@ impl Masks {
     pub fn apply(&self, text: &str) -> String {
         let text = text.replace(&self.place, "HOME");
         let text = self.new_ids.iter().fold(text, |text, (id, mask)| text.replace(id, mask));
-        let text = self.without_moments(&text);
+        let text = self.mask_times(&text);
         let text = self.keys.iter().fold(text, |text, key| {
-            without_value(without_value(text, &format!("\"{key}\":")), &format!("\n{key} = "))
+            remove_values(remove_values(text, &format!("\"{key}\":")), &format!("\n{key} = "))
         });
         // Recorded lines are not masked. A line is new only if its time is masked.
         let lines = text.split_inclusive('\n');
         lines
-            .map(|line| if line.contains("\"at\":\"NOW\"") { masked_line(line) } else { line.to_owned() })
+            .map(
+                |line| if line.contains("\"at\":\"NOW\"") { mask_line_fields(line) } else { line.to_owned() },
+            )
             .collect()
     }
 
-    fn without_moments(&self, text: &str) -> String {
+    fn mask_times(&self, text: &str) -> String {
         let (mut masked, mut done) = (String::new(), 0);
-        for (at, moment) in moments(text).filter(|(_, moment)| !self.seconds.contains(&moment[..SECOND])) {
+        for (at, moment) in
+            find_times(text).filter(|(_, moment)| !self.seconds.contains(&moment[..TIME_LENGTH]))
+        {
             masked.push_str(&text[done..at]);
             masked.push_str("NOW");
             done = at + moment.len();
@@ -110,31 +114,31 @@ impl Masks {
 }
 
 /// Returns the RFC 3339 times in a text with their positions.
-fn moments(text: &str) -> impl Iterator<Item = (usize, &str)> {
+fn find_times(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let starts = text.match_indices('T').filter_map(|(at, _)| at.checked_sub("0000-00-00".len()));
-    starts.filter_map(|at| Some((at, moment_at(text.get(at..)?)?)))
+    starts.filter_map(|at| Some((at, time_at_start(text.get(at..)?)?)))
 }
 
 /// Returns the RFC 3339 time at the start of a text, or `None` if the text does not start with a time.
-fn moment_at(text: &str) -> Option<&str> {
+fn time_at_start(text: &str) -> Option<&str> {
     let bytes = text.as_bytes();
     let pattern = b"0000-00-00T00:00:00";
     let fits = |(byte, form): (&u8, &u8)| if *form == b'0' { byte.is_ascii_digit() } else { byte == form };
-    if bytes.len() < SECOND || !bytes.iter().zip(pattern).all(fits) {
+    if bytes.len() < TIME_LENGTH || !bytes.iter().zip(pattern).all(fits) {
         return None;
     }
-    let more = bytes[SECOND..].iter().take_while(|byte| byte.is_ascii_digit() || **byte == b'.').count();
-    let zone = bytes.get(SECOND + more).is_some_and(|byte| *byte == b'Z');
-    text.get(..SECOND + more + usize::from(zone))
+    let more = bytes[TIME_LENGTH..].iter().take_while(|byte| byte.is_ascii_digit() || **byte == b'.').count();
+    let zone = bytes.get(TIME_LENGTH + more).is_some_and(|byte| *byte == b'Z');
+    text.get(..TIME_LENGTH + more + usize::from(zone))
 }
 
 /// Returns a new line of a record without the values of `LINE_FIELDS`.
-fn masked_line(line: &str) -> String {
-    LINE_FIELDS.iter().fold(line.to_owned(), |line, field| without_value(line, &format!("\"{field}\":")))
+fn mask_line_fields(line: &str) -> String {
+    LINE_FIELDS.iter().fold(line.to_owned(), |line, field| remove_values(line, &format!("\"{field}\":")))
 }
 
 /// Removes the values of a key from JSON and TOML text.
-fn without_value(mut text: String, key: &str) -> String {
+fn remove_values(mut text: String, key: &str) -> String {
     let mut from = 0;
     while let Some(at) = text[from..].find(key).map(|at| from + at + key.len()) {
         let end = text[at..].find([',', '}', '\n']).map_or(text.len(), |end| at + end);

@@ -27,8 +27,10 @@ fn root() -> PathBuf {
 /// Runs the cases of a group in one home, in order, and compares each output with the expected output.
 fn check_group(group: &str) {
     let mut home = FrozenHome::new();
-    let found =
-        cases(group).iter().filter_map(|case| compare(group, &case.name, &home.output_of(case))).collect();
+    let found = cases(group)
+        .iter()
+        .filter_map(|case| compare_or_write(group, &case.name, &home.case_output(case)))
+        .collect();
     report(found);
 }
 
@@ -43,7 +45,7 @@ fn report(differences: Vec<String>) {
 }
 
 /// Compares an output with the expected output, or writes the expected output. Returns a description of the first difference.
-fn compare(group: &str, name: &str, output: &str) -> Option<String> {
+fn compare_or_write(group: &str, name: &str, output: &str) -> Option<String> {
     let path = root().join(group).join(format!("{name}.txt"));
     if std::env::var_os("NOVAMIND_WRITE_FROZEN").is_some() {
         fs::create_dir_all(root().join(group)).expect("a folder");

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::home::FrozenHome;
-use super::{compare, report, stored_form};
+use super::{compare_or_write, report, stored_form};
 use crate::interfaces::{Server, predictions};
 
 #[test]
@@ -11,7 +11,7 @@ fn output_of_http_routes() {
     let mut frozen = FrozenHome::new();
     let run = frozen.id("http").to_owned();
     let server = Server::start(&frozen.home, &["--run", &run]);
-    frozen.masks.find_new_ids(&frozen.home.runs());
+    frozen.masks.mask_new_ids(&frozen.home.runs());
     let call = |tool: &str, args: Value| ("POST", "/call", json!({ "tool": tool, "args": args }));
     let requests = [
         ("openapi", "GET", "/openapi.json", Value::Null),
@@ -56,7 +56,7 @@ fn output_of_http_routes() {
         let (head, body) = answer.split_once("\r\n\r\n").expect("a head");
         let status = head.lines().next().unwrap_or_default();
         let output = format!("{status}\n{}\n", stored_form(frozen.masks.apply(body)));
-        found.extend(compare("served", name, &output));
+        found.extend(compare_or_write("served", name, &output));
     }
     report(found);
 }

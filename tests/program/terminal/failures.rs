@@ -80,7 +80,7 @@ fn full_disk_message_disappears_once_saved() {
 }
 
 #[test]
-fn the_screen_is_drawn_again_on_request() {
+fn screen_is_redrawn_on_request() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (100, 30));
     terminal.wait_for("Action needed");
@@ -146,7 +146,7 @@ fn invalid_theme_or_key_file_is_reported_before_startup() {
 }
 
 #[test]
-fn ascii_and_no_colour_are_honoured() {
+fn ascii_and_no_color_options_are_applied() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--ascii", "--theme", "mono", "--new"], (100, 30));
     terminal.wait_for("day 0/500");

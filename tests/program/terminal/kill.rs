@@ -11,7 +11,7 @@ use crate::support::dice::Dice;
 
 const KILLS: usize = 8;
 /// Number of kills in `.ci/full`.
-const ALL_KILLS: usize = 100;
+const FULL_TEST_KILLS: usize = 100;
 
 fn only_run(runs: &Path) -> PathBuf {
     let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
@@ -35,7 +35,7 @@ fn set_price(terminal: &mut Terminal, price: usize) {
     terminal.wait_for("set_prices: done");
 }
 
-fn begin_a_week(terminal: &mut Terminal) {
+fn start_week(terminal: &mut Terminal) {
     terminal.type_keys("n");
     terminal.wait_for("[1 review]");
     terminal.type_keys("\rbecause\r");
@@ -54,14 +54,14 @@ fn check_kills(count: usize) {
         set_price(&mut terminal, 10);
         calls += 1;
         for week in 1..=dice.roll(3) {
-            begin_a_week(&mut terminal);
+            start_week(&mut terminal);
             terminal.wait_for(&format!("Week {week} · day"));
             terminal.type_keys("\r");
             weeks += 1;
         }
         // An action is in progress when the program is killed.
         match *dice.pick(&["week", "call"]) {
-            "week" => begin_a_week(&mut terminal),
+            "week" => start_week(&mut terminal),
             _ => terminal.type_keys("8\r\r17\r\x13"),
         }
         let (moment, patience) = (Instant::now(), Duration::from_micros(dice.roll(60_000) as u64));
@@ -95,5 +95,5 @@ fn confirmed_changes_survive_a_kill() {
 #[test]
 #[ignore = "slow: .ci/full runs it"]
 fn confirmed_changes_survive_every_kill() {
-    check_kills(ALL_KILLS);
+    check_kills(FULL_TEST_KILLS);
 }

@@ -3,7 +3,7 @@
 use super::pty::{Terminal, play_policy};
 
 #[test]
-fn a_person_starts_plays_two_weeks_leaves_and_continues() {
+fn user_plays_two_weeks_leaves_and_resumes() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &[], (120, 40));
     terminal.wait_for("New run");
@@ -70,7 +70,7 @@ fn first_run_starts_the_tour() {
 }
 
 #[test]
-fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
+fn sql_statement_is_completed_and_run_and_a_slow_statement_is_cancelled() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "5"], (120, 40));
     terminal.wait_for("day 0/500");
@@ -100,7 +100,7 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
 }
 
 #[test]
-fn many_companies_are_answered_by_one_rule() {
+fn one_rule_answers_many_enterprises() {
     let runs = tempfile::tempdir().expect("a folder");
     play_policy(runs.path(), &["--policy", "P10", "--seed", "3", "--until", "35"]);
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
@@ -140,7 +140,7 @@ fn mouse_can_be_disabled() {
 }
 
 #[test]
-fn a_call_is_copied_through_the_terminal() {
+fn tool_call_is_copied_through_the_terminal() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
     terminal.wait_for("day 0/500");

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 
-fn cells(count: u16) -> NonZeroU16 {
+fn screen_cells(count: u16) -> NonZeroU16 {
     NonZeroU16::new(count).expect("a size")
 }
 
@@ -67,7 +67,7 @@ impl Terminal {
             master: pair.master,
             writer,
             bytes,
-            screen: vt100::Parser::new(cells(rows), cells(columns), 0),
+            screen: vt100::Parser::new(screen_cells(rows), screen_cells(columns), 0),
             written: Vec::new(),
         }
     }
@@ -124,7 +124,7 @@ impl Terminal {
 
     /// Returns whether the terminal is in raw mode.
     pub fn is_raw(&self) -> bool {
-        !self.settings().split_whitespace().any(|word| word == "icanon")
+        !self.read_terminal_settings().split_whitespace().any(|word| word == "icanon")
     }
 
     /// Waits until the program has set raw mode.
@@ -149,7 +149,7 @@ impl Terminal {
         terminal_settings(&self.path(), &["icanon", "echo"]);
     }
 
-    fn settings(&self) -> String {
+    fn read_terminal_settings(&self) -> String {
         terminal_settings(&self.path(), &["-a"])
     }
 
@@ -214,7 +214,7 @@ impl Terminal {
     pub fn resize(&mut self, columns: u16, rows: u16) {
         let size = PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 };
         self.master.resize(size).expect("resized");
-        self.screen.screen_mut().set_size(cells(rows), cells(columns));
+        self.screen.screen_mut().set_size(screen_cells(rows), screen_cells(columns));
     }
 
     /// Waits for the end of a process that was killed.

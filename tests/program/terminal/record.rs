@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use novamind::record::trajectory::record::{Activity, LeavingCause, PresenceEvent};
+use novamind::record::trajectory::record::{Activity, DetachCause, PresenceEvent};
 use novamind::record::trajectory::{Record, Trajectory};
 
 use super::pty::Terminal;
@@ -13,7 +13,7 @@ fn only_run(runs: &Path) -> PathBuf {
 }
 
 /// Returns the presence events of the run, with the cause of each end of a session.
-fn presence(runs: &Path) -> Vec<(PresenceEvent, Option<LeavingCause>)> {
+fn presence_events(runs: &Path) -> Vec<(PresenceEvent, Option<DetachCause>)> {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
     let of = |record: &Record| match record {
         Record::Activity(Activity::Session(presence)) => Some((presence.event, presence.cause)),
@@ -23,7 +23,7 @@ fn presence(runs: &Path) -> Vec<(PresenceEvent, Option<LeavingCause>)> {
 }
 
 #[test]
-fn what_was_typed_survives_a_kill_of_the_console() {
+fn typed_text_survives_a_kill_of_the_console() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "4"], (100, 30));
     terminal.wait_for("day 0/500");
@@ -49,13 +49,13 @@ fn what_was_typed_survives_a_kill_of_the_console() {
 }
 
 #[test]
-fn every_end_of_a_session_has_its_cause() {
+fn session_ends_are_recorded_with_their_cause() {
     for (arguments, signal, cause) in [
-        (&["--new", "--seed", "4"][..], "-TERM", LeavingCause::Signal),
-        (&["--new", "--seed", "4"], "-HUP", LeavingCause::Hangup),
-        (&["--new", "--seed", "4", "--plain"], "-TERM", LeavingCause::Signal),
-        (&["--new", "--seed", "4", "--plain"], "-HUP", LeavingCause::Hangup),
-        (&["--new", "--seed", "4", "--plain"], "-INT", LeavingCause::Signal),
+        (&["--new", "--seed", "4"][..], "-TERM", DetachCause::Signal),
+        (&["--new", "--seed", "4"], "-HUP", DetachCause::Hangup),
+        (&["--new", "--seed", "4", "--plain"], "-TERM", DetachCause::Signal),
+        (&["--new", "--seed", "4", "--plain"], "-HUP", DetachCause::Hangup),
+        (&["--new", "--seed", "4", "--plain"], "-INT", DetachCause::Signal),
     ] {
         let runs = tempfile::tempdir().expect("a folder");
         let mut terminal = Terminal::start(runs.path(), arguments, (100, 30));
@@ -63,14 +63,14 @@ fn every_end_of_a_session_has_its_cause() {
         terminal.signal(signal);
         let (code, _) = terminal.wait_for_end();
         assert!(code > 128, "{arguments:?} {signal}: {code}");
-        let events = presence(runs.path());
+        let events = presence_events(runs.path());
         assert_eq!(events.first(), Some(&(PresenceEvent::Opened, None)), "{arguments:?} {signal}");
         assert_eq!(events.last(), Some(&(PresenceEvent::Closed, Some(cause))), "{arguments:?} {signal}");
     }
 }
 
 #[test]
-fn a_suspended_console_says_so() {
+fn suspension_of_the_console_is_recorded() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "4"], (100, 30));
     terminal.wait_for("day 0/500");
@@ -80,7 +80,8 @@ fn a_suspended_console_says_so() {
     terminal.wait_until_raw();
     terminal.type_keys("\x03");
     terminal.wait_for_end();
-    let events: Vec<PresenceEvent> = presence(runs.path()).into_iter().map(|(event, _)| event).collect();
+    let events: Vec<PresenceEvent> =
+        presence_events(runs.path()).into_iter().map(|(event, _)| event).collect();
     use PresenceEvent::{Closed, Opened, Resumed, Suspended};
     assert_eq!(events, [Opened, Suspended, Resumed, Closed]);
 }

@@ -10,7 +10,7 @@ fn has_python() -> bool {
 }
 
 /// Opens the form of python_exec and pastes an endless script.
-fn run_an_endless_script(terminal: &mut Terminal) {
+fn run_endless_script(terminal: &mut Terminal) {
     terminal.type_keys("8");
     terminal.wait_for("set_prices");
     terminal.type_keys("/python_exec\r\r");
@@ -32,7 +32,7 @@ fn script_can_be_stopped_and_does_not_block_quitting() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", "1"], (100, 30));
     terminal.wait_for("day 0/500");
-    run_an_endless_script(&mut terminal);
+    run_endless_script(&mut terminal);
     terminal.wait_for("esc stops it");
     terminal.type_keys("\x1b");
     terminal.wait_for("the script was cancelled");

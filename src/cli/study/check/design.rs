@@ -13,7 +13,7 @@ pub(super) fn design_checks(study: &Study, configuration: &Configuration) -> Vec
     };
     let mut points: Vec<CheckItem> = check_questionnaires(study, days.div_ceil(7)).into_iter().collect();
     points
-        .extend(incomplete_block(study).map(|words| CheckItem::new("assignment", CheckOutcome::Note(words))));
+        .extend(check_last_block(study).map(|words| CheckItem::new("assignment", CheckOutcome::Note(words))));
     points.push(CheckItem::new("forecasts", check_forecasts(days, &horizons)));
     points
 }
@@ -54,7 +54,7 @@ fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
 }
 
 /// Reports a last block of the assignment that does not contain every cell of the design.
-fn incomplete_block(study: &Study) -> Option<String> {
+fn check_last_block(study: &Study) -> Option<String> {
     let (places, cells) = (study.assignment.as_ref()?.rows.len(), study.protocol.seeds.cell_count());
     (!study.protocol.seeds.block.is_empty() && !places.is_multiple_of(cells)).then(|| {
         format!(
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn forecasts_that_never_come_due_are_counted() {
+    fn check_forecasts_counts_forecasts_that_come_due() {
         let CheckOutcome::Note(words) = check_forecasts(28, &[7, 28, 84, 182]) else { panic!("a note") };
         assert_eq!(
             words,

@@ -97,7 +97,7 @@ impl ComparisonView {
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let mut rest = area;
         let lines = self.lines_per_milestone(area);
-        let milestones = self.comparison.milestones(self.days_per_week).len() * lines;
+        let milestones = self.comparison.milestone_days(self.days_per_week).len() * lines;
         let table = milestones as u16 + 1;
         // In a small window, the first line is omitted to leave space for the table.
         if area.height > table + self.comparison.branches.len() as u16 {
@@ -164,7 +164,7 @@ impl ComparisonView {
 
     fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect, lines: usize) {
         let figure = self.shown_figure();
-        let days = self.comparison.milestones(self.days_per_week);
+        let days = self.comparison.milestone_days(self.days_per_week);
         let first = WEEK_COLUMN_WIDTH.min(area.width);
         let width = (area.width - first) / self.comparison.branches.len().max(1) as u16;
         let place =
@@ -181,7 +181,7 @@ impl ComparisonView {
             let week = milestone_label(&self.comparison, day, self.days_per_week);
             canvas.draw_text(*first_row, &week, Role::Dim);
             for number in 0..self.comparison.branches.len() {
-                for (row, text) in rows.iter().zip(self.cell(number, figure, day, lines)) {
+                for (row, text) in rows.iter().zip(self.format_milestone(number, figure, day, lines)) {
                     let text = format!(" {}", truncate_to_width(&text, usize::from(width).saturating_sub(1)));
                     canvas.draw_text(place(*row, number), &text, Role::Text);
                 }
@@ -190,7 +190,7 @@ impl ComparisonView {
     }
 
     /// Formats a figure of a branch at a milestone in one or two lines.
-    fn cell(&self, number: usize, figure: BranchFigure, day: u32, lines: usize) -> Vec<String> {
+    fn format_milestone(&self, number: usize, figure: BranchFigure, day: u32, lines: usize) -> Vec<String> {
         match &self.futures {
             Some(futures) if lines > 1 => futures_cell_lines(futures, number, figure, day).into(),
             Some(futures) => vec![futures_cell(futures, number, figure, day)],
@@ -208,10 +208,12 @@ impl ComparisonView {
     fn lines_per_milestone(&self, area: Rect) -> usize {
         let width =
             area.width.saturating_sub(WEEK_COLUMN_WIDTH) / self.comparison.branches.len().max(1) as u16;
-        let days = self.comparison.milestones(self.days_per_week);
+        let days = self.comparison.milestone_days(self.days_per_week);
         let cells = (0..self.comparison.branches.len())
             .flat_map(|number| days.iter().map(move |day| (number, *day)))
-            .map(|(number, day)| self.cell(number, self.shown_figure(), day, 1).concat().chars().count());
+            .map(|(number, day)| {
+                self.format_milestone(number, self.shown_figure(), day, 1).concat().chars().count()
+            });
         let is_cut = cells.max().is_some_and(|longest| longest >= usize::from(width));
         let has_room = usize::from(area.height) > 2 * days.len() + self.comparison.branches.len();
         if is_cut && (has_room || self.futures.is_some()) { 2 } else { 1 }

@@ -94,7 +94,7 @@ impl DecisionList {
     /// Returns the edits, followed by the recorded decisions from the start week on.
     fn rows(&self) -> Vec<DecisionRow> {
         let edits = self.alternatives[self.current].iter().enumerate();
-        let free = edits.filter(|(_, edit)| line_of(edit).is_none()).map(|(at, _)| DecisionRow::Edit(at));
+        let free = edits.filter(|(_, edit)| source_line(edit).is_none()).map(|(at, _)| DecisionRow::Edit(at));
         let from = (self.week - 1) * self.days_per_week;
         let past = self
             .recorded()
@@ -104,8 +104,8 @@ impl DecisionList {
         free.chain(past.map(|(at, _)| DecisionRow::Recorded(at))).collect()
     }
 
-    fn edit_of_line(&self, line: u64) -> Option<usize> {
-        self.alternatives[self.current].iter().position(|edit| line_of(edit) == Some(line))
+    fn position_of_edit(&self, line: u64) -> Option<usize> {
+        self.alternatives[self.current].iter().position(|edit| source_line(edit) == Some(line))
     }
 
     pub(super) fn select(&mut self, row: usize) {
@@ -148,7 +148,7 @@ impl DecisionList {
                 .any(|recorded_decision| recorded_decision.seq() == line && recorded_decision.day() >= from)
         };
         for edits in &mut self.alternatives {
-            edits.retain(|edit| line_of(edit).is_none_or(later));
+            edits.retain(|edit| source_line(edit).is_none_or(later));
         }
         self.select(self.selected);
     }
@@ -174,7 +174,7 @@ impl DecisionList {
             Some(DecisionRow::Edit(at)) => drop(self.current_edits().remove(*at)),
             Some(DecisionRow::Recorded(at)) => {
                 let line = self.recorded()[*at].seq();
-                match self.edit_of_line(line) {
+                match self.position_of_edit(line) {
                     Some(edit) => drop(self.current_edits().remove(edit)),
                     None => self.current_edits().push(DecisionEdit::Drop(line)),
                 }
@@ -195,7 +195,7 @@ impl DecisionList {
                     return Err(PARAMETER_EDIT_ERROR.to_owned());
                 };
                 let changed =
-                    self.edit_of_line(call.seq).map(|edit| self.alternatives[self.current][edit].clone());
+                    self.position_of_edit(call.seq).map(|edit| self.alternatives[self.current][edit].clone());
                 let args = match changed {
                     Some(DecisionEdit::Change { args, .. }) => args,
                     _ => call.args.clone(),
@@ -215,7 +215,7 @@ impl DecisionList {
             Some(line) => format!("change {line} {text}").parse()?,
             None => text.parse()?,
         };
-        if let Some(at) = line_of(&edit).and_then(|line| self.edit_of_line(line)) {
+        if let Some(at) = source_line(&edit).and_then(|line| self.position_of_edit(line)) {
             self.current_edits().remove(at);
         }
         self.current_edits().push(edit);
@@ -282,7 +282,7 @@ impl DecisionList {
         let recorded_decision = &self.recorded()[at];
         let week = recorded_decision.day() / self.days_per_week + 1;
         let edit =
-            self.edit_of_line(recorded_decision.seq()).map(|edit| &self.alternatives[self.current][edit]);
+            self.position_of_edit(recorded_decision.seq()).map(|edit| &self.alternatives[self.current][edit]);
         let (sign, rest, role) = match edit {
             Some(DecisionEdit::Drop(_)) => ("×", " · omitted".to_owned(), Role::Bad),
             Some(DecisionEdit::Change { args, .. }) => ("~", format!(" → {args}"), Role::Strong),
@@ -301,7 +301,7 @@ impl DecisionList {
     }
 }
 
-fn line_of(edit: &DecisionEdit) -> Option<u64> {
+fn source_line(edit: &DecisionEdit) -> Option<u64> {
     match edit {
         DecisionEdit::Drop(line) | DecisionEdit::Change { seq: line, .. } => Some(*line),
         _ => None,

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::*;
 use crate::keys::KeyBindings;
-use crate::test_kit::{asked, dialog_action, dialog_text, new_company};
+use crate::test_kit::{dialog_action, dialog_text, new_company, only_question};
 use novamind_insight::{DecisionEdit, RecordedCall, RecordedDecision};
 use novamind_tools::ToolId;
 
@@ -77,7 +77,7 @@ fn typed_decisions_and_alternatives_are_kept() {
     dialog_action(&mut page, Action::NextAlternative, &company);
     type_text(&mut page, "keep set_prices");
     let effects = dialog_action(&mut page, Action::SimulateBranches, &company).effects;
-    let BranchesQuestion::Compare { week: 5, alternatives, futures: None } = asked(&effects) else {
+    let BranchesQuestion::Compare { week: 5, alternatives, futures: None } = only_question(&effects) else {
         panic!("{effects:?}")
     };
     let texts: Vec<String> =

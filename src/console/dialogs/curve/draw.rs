@@ -108,7 +108,7 @@ impl CurveDialog {
         for (row, plan) in row_rects(area).zip(Plan::ALL) {
             let mark = self.selection_mark(plan);
             let role = if mark == "›" { Role::Strong } else { Role::Text };
-            canvas.draw_text(row, &format!("{mark} {}", line_of(opened, plan)), role);
+            canvas.draw_text(row, &format!("{mark} {}", plan_line(opened, plan)), role);
             canvas.register_click(row, Click::Row(0, plan.index()));
         }
     }
@@ -163,7 +163,7 @@ impl CurveDialog {
 }
 
 /// Describes a plan and its changes: `A $12 → $15, quality 0.20, taken by 12.3%`.
-fn line_of(opened: &CurveExploration, plan: Plan) -> String {
+fn plan_line(opened: &CurveExploration, plan: Plan) -> String {
     let (now, was) = (&opened.plans[plan], &opened.explorer.plans[plan]);
     let words = describe_plan(plan, now, opened.outcome.plan_shares.as_ref());
     let mut changes = Vec::new();

@@ -48,7 +48,7 @@ impl CurveDialog {
 
     fn set_result(&mut self, explorer: CurveExplorer) -> CurveExploration {
         let plans = explorer.plans;
-        let outcome = explorer.outcome(&plans);
+        let outcome = explorer.outcome_for_plans(&plans);
         // Plans that all have the same quality and price are dragged together.
         if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
             self.selected_plan = None;
@@ -67,7 +67,7 @@ impl CurveDialog {
         for plan in Plan::ALL.into_iter().filter(|plan| chosen.is_none_or(|selected| selected == *plan)) {
             change(&mut opened.plans[plan]);
         }
-        opened.outcome = opened.explorer.outcome(&opened.plans);
+        opened.outcome = opened.explorer.outcome_for_plans(&opened.plans);
     }
 
     fn adjust_price(&mut self, steps: f64) {
@@ -88,7 +88,7 @@ impl CurveDialog {
     fn reset(&mut self) {
         if let Some(Ok(opened)) = &mut self.exploration {
             opened.plans = opened.explorer.plans;
-            opened.outcome = opened.explorer.outcome(&opened.plans);
+            opened.outcome = opened.explorer.outcome_for_plans(&opened.plans);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Tests of the curve explorer: keys drag plans, the responses change, and no setting changes.
 
 use super::*;
-use crate::test_kit::{asked, dialog_action, dialog_text, played_session};
+use crate::test_kit::{dialog_action, dialog_text, only_question, played_session};
 use novamind_insight::CurveExplorer;
 use novamind_worker::company::DisplayedCompany;
 
@@ -59,10 +59,10 @@ fn adjusted_prices_fill_the_form_without_a_call() {
             if arguments.as_object().is_some_and(|prices| prices.len() == 1 && prices.contains_key("A")))
     );
     let next = dialog_action(&mut page, Action::NextCurve, &company);
-    assert_eq!(asked::<CurveQuestion>(&next.effects).0.id(), "S2");
+    assert_eq!(only_question::<CurveQuestion>(&next.effects).0.id(), "S2");
     assert!(dialog_text(&page, &company, 80, 21).contains("asking 2000 leads"));
     let back = dialog_action(&mut page, Action::PreviousCurve, &company);
-    assert_eq!(asked::<CurveQuestion>(&back.effects).0.id(), "S1");
+    assert_eq!(only_question::<CurveQuestion>(&back.effects).0.id(), "S1");
     assert!(dialog_action(&mut page, Action::Close, &company).closes);
 }
 

@@ -7,7 +7,7 @@ use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::forecast_fan::draw_fan;
 use novamind_base::formatting::{dollars, percent};
-use novamind_session::ErrorBands;
+use novamind_session::ErrorIntervals;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -66,7 +66,7 @@ impl NextWeekDialog {
         let mut lines: Vec<(String, Role)> =
             wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !context.company.is_baseline() {
-            let coverage = wrap(&ErrorBands::bundled().describe_coverage(), width);
+            let coverage = wrap(&ErrorIntervals::bundled().describe_coverage(), width);
             lines.extend(coverage.into_iter().map(|line| (line, Role::Dim)));
         }
         lines

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::symbols::Marker;
 
-use super::model::{Amounts, WeeklyLedger, CATEGORIES, CATEGORY_COUNT, format_money, sum_side};
+use super::model::{CategoryAmounts, WeeklyLedger, CATEGORIES, CATEGORY_COUNT, format_money, sum_side};
 use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
@@ -28,7 +28,7 @@ impl Pane<Cash> for BarsPane {
     }
 
     fn figure(&self, cash: &Cash, _: &ScreenContext<'_>) -> Option<Figure> {
-        cash.figure_of(cash.selected_subject_in_week())
+        cash.subject_figure(cash.selected_subject_in_week())
     }
 
     fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -127,7 +127,7 @@ struct BarScale {
 }
 
 impl BarScale {
-    fn for_weeks(weeks: &[(u32, Amounts)], height: u16) -> BarScale {
+    fn for_weeks(weeks: &[(u32, CategoryAmounts)], height: u16) -> BarScale {
         let most =
             |income: bool| weeks.iter().map(|(_, amounts)| sum_side(amounts, income).abs()).fold(0.0, f64::max);
         let (income, costs) = (most(true), most(false));
@@ -172,7 +172,7 @@ fn draw_axis(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
 type BarSegmentEnd = (usize, u32);
 
 /// Returns the segments on one side of a bar, starting at the zero line.
-fn bar_segments(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarSegmentEnd> {
+fn bar_segments(amounts: &CategoryAmounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarSegmentEnd> {
     let mut sum = 0.0;
     let side_categories = CATEGORIES.iter().enumerate().filter(|(_, category)| category.is_income == income);
     let end = side_categories.map(|(at, _)| {
@@ -208,7 +208,7 @@ fn segments_in_row(parts: &[BarSegmentEnd], row: u16) -> Option<(usize, u32, Opt
 
 /// Draws the bar of a week in eighths of rows with one color per category. Without colors, each row shows the glyph of
 /// a category.
-fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &BarScale) {
+fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &CategoryAmounts, scale: &BarScale) {
     let coloured = has_category_colors(canvas);
     for income in [true, false] {
         let rows = if income { scale.above } else { scale.below };
@@ -259,7 +259,7 @@ fn draw_eighths(
     canvas.buffer.set_style(cell, style);
 }
 
-fn draw_net_label(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
+fn draw_net_label(canvas: &mut Canvas<'_>, place: Rect, amounts: &CategoryAmounts) {
     let net: f64 = amounts.iter().sum();
     let (sign, role) = if net < 0.0 { ('-', Role::Bad) } else { ('+', Role::Good) };
     let text = format!("{sign}{}", novamind_base::formatting::compact_number(net.abs()));
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_end_at_eighths_and_cells_hold_two_categories() {
+    fn bars_end_at_eighths_and_cells_contain_two_categories() {
         let scale = BarScale { above: 3, below: 3, dollars: 80.0 };
         let mut amounts = [0.0; CATEGORY_COUNT];
         (amounts[0], amounts[1]) = (90.0, 40.0);

@@ -26,7 +26,7 @@ impl Pane<Cash> for CurvePane {
     }
 
     fn figure(&self, cash: &Cash, _: &ScreenContext<'_>) -> Option<Figure> {
-        cash.figure_of(selected_week_net(cash))
+        cash.subject_figure(selected_week_net(cash))
     }
 
     fn handle_action(&self, cash: &mut Cash, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {

@@ -9,7 +9,7 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{percent, short_dollars};
-use novamind_session::{ScoredForecast, IntervalPosition, filed_forecasts};
+use novamind_session::{ScoredForecast, IntervalPosition, submitted_forecasts};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_width;
@@ -29,7 +29,7 @@ impl Pane<Cash> for ForecastsPane {
 
     fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return vec![Effect::Do(Action::Journal)];
+            return vec![Effect::Execute(Action::Journal)];
         }
         cash.forecasts.handle_action(action, context.page_rows);
         Vec::new()
@@ -84,7 +84,7 @@ pub struct ForecastsState {
 
 impl ForecastsState {
     pub fn update(&mut self, company: &DisplayedCompany) {
-        self.forecasts = filed_forecasts(&company.journal, &company.cash_by_day);
+        self.forecasts = submitted_forecasts(&company.journal, &company.cash_by_day);
         self.horizons = company.forecast_scores.iter().map(|score| score.horizon_days).collect();
         self.rebuild_table();
     }
@@ -109,7 +109,7 @@ impl ForecastsState {
             TableColumn::numeric("error"),
             TableColumn::text("95 %"),
         ];
-        let rows = self.forecasts_in_table_order().map(row_of).collect();
+        let rows = self.forecasts_in_table_order().map(forecast_row).collect();
         self.table.set_columns_and_rows(columns, rows);
     }
 
@@ -186,7 +186,7 @@ impl ForecastsState {
     }
 }
 
-fn row_of(filed: &ScoredForecast) -> Vec<TableCell> {
+fn forecast_row(filed: &ScoredForecast) -> Vec<TableCell> {
     let amount = |value: f64| TableCell::from_number(value, short_dollars(value));
     let (outcome, miss) = match (filed.outcome, filed.relative_error(), filed.describe_error()) {
         (Some(outcome), Some(miss), Some(shown)) => {

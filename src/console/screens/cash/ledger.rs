@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{Amounts, WeeklyLedger, CATEGORIES, LedgerSubject, days_of_week, format_money, sum_side};
+use super::model::{CategoryAmounts, WeeklyLedger, CATEGORIES, LedgerSubject, days_of_week, format_money, sum_side};
 use super::{Cash, SelectedSubject, ledger_rows};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
@@ -31,7 +31,7 @@ impl Pane<Cash> for LedgerPane {
     }
 
     fn figure(&self, cash: &Cash, _: &ScreenContext<'_>) -> Option<Figure> {
-        cash.figure_of(selected(cash))
+        cash.subject_figure(selected(cash))
     }
 
     fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -85,7 +85,7 @@ fn week_label(week: u32, company: &DisplayedCompany) -> String {
 }
 
 /// Returns the ledger table of a week: its columns, the subjects of its rows, and its rows.
-pub fn table_of(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
+pub fn ledger_table(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
     let before = week.saturating_sub(1);
     let columns = vec![
         TableColumn::text("category").with_max_width(14),
@@ -103,12 +103,12 @@ pub fn table_of(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<Ledg
         subjects.push(if income { LedgerSubject::Income } else { LedgerSubject::Costs });
         subjects.extend((0..CATEGORIES.len()).filter(used).map(LedgerSubject::Category));
     }
-    let all = [ledger.week(week), ledger.week(before), ledger.mean_of_four(week), ledger.total()];
-    let rows = subjects.iter().map(|subject| row_of(subject, &all, week)).collect();
+    let all = [ledger.week(week), ledger.week(before), ledger.four_week_mean(week), ledger.total()];
+    let rows = subjects.iter().map(|subject| ledger_row(subject, &all, week)).collect();
     (columns, subjects, rows)
 }
 
-fn row_of(subject: &LedgerSubject, all: &[Amounts; 4], week: u32) -> Vec<TableCell> {
+fn ledger_row(subject: &LedgerSubject, all: &[CategoryAmounts; 4], week: u32) -> Vec<TableCell> {
     let [now, before, mean, total] = [0, 1, 2, 3].map(|at| subject.amount(&all[at]));
     let name = subject.name();
     let (income, role) = match subject {

@@ -12,9 +12,9 @@ mod waterfall;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::ledger::table_of;
+use self::ledger::ledger_table;
 use self::forecasts::ForecastsState;
-use self::model::{WeeklyLedger, CashStep, LedgerSubject, statement, cash_steps};
+use self::model::{WeeklyLedger, CashStep, LedgerSubject, ledger_query, cash_steps};
 use super::ScreenState;
 use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
@@ -67,7 +67,7 @@ impl Cash {
     }
 
     fn rebuild_table(&mut self) {
-        let (columns, subjects, rows) = table_of(&self.ledger, self.week());
+        let (columns, subjects, rows) = ledger_table(&self.ledger, self.week());
         if self.subjects.is_empty() {
             self.table = Table::new(Vec::new()).with_cell_selection();
             self.table.set_columns_and_rows(columns, rows);
@@ -111,7 +111,7 @@ impl Cash {
         cash_steps(&self.ledger, company, self.week(), usize::MAX)
     }
 
-    fn figure_of(&self, selected: Option<SelectedSubject>) -> Option<Figure> {
+    fn subject_figure(&self, selected: Option<SelectedSubject>) -> Option<Figure> {
         let (subject, (from, to)) = selected?;
         let weeks = match (from, to) {
             (1, to) if to == self.ledger.open_week() => "the whole run".to_owned(),
@@ -120,7 +120,7 @@ impl Cash {
         };
         let title = format!("{} of {weeks}", subject.name());
         let figure =
-            Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), week_quantity: None };
+            Figure { title, term: subject.term(), sql: Some(ledger_query(&subject, (from, to))), week_quantity: None };
         let quantity = subject.figure().and_then(WeekQuantity::for_company);
         // Only simulated weeks have weekly quantities. Purchases since the last week belong to the next week.
         Some(figure.with_week_quantity(quantity.filter(|_| to <= self.ledger.last_week()), to))
@@ -128,7 +128,7 @@ impl Cash {
 }
 
 fn ledger_rows(selected: Option<SelectedSubject>) -> Vec<Effect> {
-    selected.map(|(subject, weeks)| Effect::RunSql(statement(&subject, weeks))).into_iter().collect()
+    selected.map(|(subject, weeks)| Effect::RunSql(ledger_query(&subject, weeks))).into_iter().collect()
 }
 
 fn week_keys(context: &ScreenContext<'_>) -> String {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use novamind_base::formatting::grouped_number;
 use novamind_record::figures::{CategoryTotals, WeekFigure};
 use novamind_report::category_name;
-use novamind_session::{Category, entries_of_weeks_sql, week_of};
+use novamind_session::{Category, ledger_weeks_condition_sql, week_of_day};
 use novamind_worker::company::DisplayedCompany;
 
 #[derive(Debug, PartialEq, Eq)]
@@ -45,22 +45,22 @@ pub static CATEGORIES: [CategoryDisplay; CATEGORY_COUNT] = [
 ];
 
 /// Dollars by category, with negative amounts for costs.
-pub type Amounts = [f64; CATEGORY_COUNT];
+pub type CategoryAmounts = [f64; CATEGORY_COUNT];
 
 /// Dollars by week and category from the first week, without the opening cash.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct WeeklyLedger {
-    weeks: BTreeMap<u32, Amounts>,
+    weeks: BTreeMap<u32, CategoryAmounts>,
     /// The last simulated week. Later purchases belong to the next week.
     last_week: u32,
 }
 
 impl WeeklyLedger {
     pub fn from_company(company: &DisplayedCompany) -> WeeklyLedger {
-        let last = week_of(company.observation.day);
+        let last = week_of_day(company.observation.day);
         let mut weeks = BTreeMap::new();
         for figures in &company.weeks {
-            weeks.insert(week_of(figures.day), category_amounts(&figures.booked));
+            weeks.insert(week_of_day(figures.day), category_amounts(&figures.booked));
         }
         weeks.insert(company.weeks.len() as u32 + 1, category_amounts(&company.observation.booked_since));
         WeeklyLedger { weeks, last_week: last }
@@ -76,12 +76,12 @@ impl WeeklyLedger {
         self.weeks.keys().next_back().copied().unwrap_or(0)
     }
 
-    pub fn week(&self, week: u32) -> Amounts {
+    pub fn week(&self, week: u32) -> CategoryAmounts {
         self.weeks.get(&week).copied().unwrap_or([0.0; CATEGORY_COUNT])
     }
 
     /// Returns the mean amounts of up to four weeks, the last of which is the given week.
-    pub fn mean_of_four(&self, week: u32) -> Amounts {
+    pub fn four_week_mean(&self, week: u32) -> CategoryAmounts {
         let from = week.saturating_sub(3).max(1);
         let count = f64::from((week + 1).saturating_sub(from).max(1));
         let mut mean = [0.0; CATEGORY_COUNT];
@@ -91,7 +91,7 @@ impl WeeklyLedger {
         mean
     }
 
-    pub fn total(&self) -> Amounts {
+    pub fn total(&self) -> CategoryAmounts {
         let mut total = [0.0; CATEGORY_COUNT];
         for amounts in self.weeks.values() {
             total.iter_mut().zip(amounts).for_each(|(sum, amount)| *sum += amount);
@@ -104,8 +104,8 @@ impl WeeklyLedger {
         self.weeks.values().any(|amounts| amounts[category] != 0.0)
     }
 
-    pub fn last_weeks(&self, count: usize) -> Vec<(u32, Amounts)> {
-        let mut last: Vec<(u32, Amounts)> = self
+    pub fn last_weeks(&self, count: usize) -> Vec<(u32, CategoryAmounts)> {
+        let mut last: Vec<(u32, CategoryAmounts)> = self
             .weeks
             .iter()
             .rev()
@@ -118,12 +118,12 @@ impl WeeklyLedger {
     }
 }
 
-fn category_amounts(booked: &CategoryTotals) -> Amounts {
-    std::array::from_fn(|at| booked.total_of(CATEGORIES[at].category))
+fn category_amounts(booked: &CategoryTotals) -> CategoryAmounts {
+    std::array::from_fn(|at| booked.category_total(CATEGORIES[at].category))
 }
 
 /// Returns the sum of all income categories or of all cost categories.
-pub fn sum_side(amounts: &Amounts, income: bool) -> f64 {
+pub fn sum_side(amounts: &CategoryAmounts, income: bool) -> f64 {
     let side_amounts = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.is_income == income);
     side_amounts.map(|(amount, _)| amount).sum()
 }
@@ -203,7 +203,7 @@ pub fn format_money(value: f64) -> String {
 }
 
 /// Returns the query for the ledger rows of a subject in a range of weeks.
-pub fn statement(what: &LedgerSubject, (first, last): (u32, u32)) -> String {
+pub fn ledger_query(what: &LedgerSubject, (first, last): (u32, u32)) -> String {
     let condition = match what {
         LedgerSubject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].category.id()),
         LedgerSubject::Income => "\n    AND amount > 0".to_owned(),
@@ -213,7 +213,7 @@ pub fn statement(what: &LedgerSubject, (first, last): (u32, u32)) -> String {
     let weeks = if first == last { format!("week {last}") } else { format!("weeks {first} to {last}") };
     format!(
         "-- {weeks}\nSELECT day, category, amount, note\nFROM ledger\nWHERE {}{condition}\nORDER BY id",
-        entries_of_weeks_sql(first, last)
+        ledger_weeks_condition_sql(first, last)
     )
 }
 
@@ -257,7 +257,7 @@ impl LedgerSubject {
         }
     }
 
-    pub fn amount(self, amounts: &Amounts) -> f64 {
+    pub fn amount(self, amounts: &CategoryAmounts) -> f64 {
         match self {
             LedgerSubject::Category(at) => amounts[at],
             LedgerSubject::Income => sum_side(amounts, true),

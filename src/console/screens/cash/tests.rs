@@ -3,13 +3,13 @@ use super::*;
 use crate::screens::Screen;
 use crate::test_kit::{handle_action, screen_text, played_screen, played_session};
 use novamind_database::Cell as Value;
-use novamind_session::{WEEK_OF_ENTRY_SQL, filed_forecasts};
+use novamind_session::{LEDGER_WEEK_SQL, submitted_forecasts};
 
 #[test]
 fn weekly_ledger_agrees_with_the_database() {
     let (mut session, company, screen) = played_screen::<Cash>(5);
     let weekly_ledger = &screen.ledger;
-    let sql = format!("SELECT {WEEK_OF_ENTRY_SQL}, category, sum(amount) FROM ledger GROUP BY 1, 2");
+    let sql = format!("SELECT {LEDGER_WEEK_SQL}, category, sum(amount) FROM ledger GROUP BY 1, 2");
     let mut entries = 0;
     for row in session.query(&sql).expect("an answer").rows {
         let (Value::Integer(week), Value::Text(category), Value::Real(amount)) = (&row[0], &row[1], &row[2])
@@ -121,7 +121,7 @@ fn every_pane_returns_its_selected_figure() {
 #[test]
 fn forecasts_are_scored_once_due() {
     let company = DisplayedCompany::from_session(&played_session(2));
-    let all = filed_forecasts(&company.journal, &company.cash_by_day);
+    let all = submitted_forecasts(&company.journal, &company.cash_by_day);
     assert_eq!((all.len(), all.iter().filter(|one| one.outcome.is_some()).count()), (8, 2));
 }
 
@@ -129,7 +129,7 @@ fn forecasts_are_scored_once_due() {
 fn mean_covers_at_most_four_weeks() {
     let ledger = WeeklyLedger::from_company(&DisplayedCompany::from_session(&played_session(6)));
     for (week, weeks) in [(6, vec![3, 4, 5, 6]), (4, vec![1, 2, 3, 4]), (2, vec![1, 2]), (1, vec![1])] {
-        let mean = ledger.mean_of_four(week);
+        let mean = ledger.four_week_mean(week);
         for (category, mean) in mean.iter().enumerate() {
             let sum: f64 = weeks.iter().map(|week| ledger.week(*week)[category]).sum();
             assert!((mean - sum / weeks.len() as f64).abs() < 1e-9, "category {category} of week {week}");

@@ -23,7 +23,7 @@ impl Pane<Cash> for WaterfallPane {
     }
 
     fn figure(&self, cash: &Cash, context: &ScreenContext<'_>) -> Option<Figure> {
-        cash.figure_of(selected(cash, context.company))
+        cash.subject_figure(selected(cash, context.company))
     }
 
     fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {

@@ -3,8 +3,8 @@
 use super::true_values::TrueValue;
 use super::model::{GroupFacts, CustomerData, total_ad_budget, development_budget};
 use crate::context::Figure;
-use crate::screens::market::model::{level_of, name_of};
-use novamind_base::formatting::{cents, compact_number, dollars, grouped_number, percent};
+use crate::screens::market::model::{study_level, group_name};
+use novamind_base::formatting::{dollars_and_cents, compact_number, dollars, grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
 use novamind_session::identifiers::Group;
@@ -88,7 +88,7 @@ fn market_share(group: Group, facts: &GroupFacts, company: &DisplayedCompany) ->
     (market > 0).then(|| (customers / most, customers / least))
 }
 
-pub fn row_of(group: Group, facts: &GroupFacts, company: &DisplayedCompany, market: &CustomerData) -> Vec<TableCell> {
+pub fn group_row(group: Group, facts: &GroupFacts, company: &DisplayedCompany, market: &CustomerData) -> Vec<TableCell> {
     visible_columns(company).map(|(what, ..)| group_cell(*what, group, facts, company, market)).collect()
 }
 
@@ -116,7 +116,7 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
         GroupColumn::TrueValue(value) => value.cell(group, company),
         GroupColumn::GroupKind => TableCell::from_text(if large { "comp." } else { "indiv." }).with_role(Role::Dim),
         GroupColumn::StudyLevel => {
-            let level = level_of(company, group);
+            let level = study_level(company, group);
             let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
             TableCell::from_number(f64::from(level), format!("{level} ±{}", percent(noise, 0)))
         }
@@ -141,12 +141,12 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
             let monthly = facts.sum(|held| held.monthly_revenue);
             optional_cell((monthly > 0.0).then_some(monthly), &dollars)
         }
-        GroupColumn::RevenuePerSeat => optional_cell(facts.revenue_per_seat(), &cents),
+        GroupColumn::RevenuePerSeat => optional_cell(facts.revenue_per_seat(), &dollars_and_cents),
         GroupColumn::Usage => optional_cell(facts.usage(), &compact_number),
         GroupColumn::AdBudget => budget(total_ad_budget(company, group)),
         GroupColumn::AcquisitionCost => {
             let (spend, signed) = (market.ad_spend(group), facts.sum_of_last_weeks(week, 4, |flow| flow.signups));
-            optional_cell((spend > 0.0 && signed > 0.0).then(|| spend / signed), &cents)
+            optional_cell((spend > 0.0 && signed > 0.0).then(|| spend / signed), &dollars_and_cents)
         }
         GroupColumn::DevelopmentBudget => budget(development_budget(company, group)),
         GroupColumn::Trend => {
@@ -155,7 +155,7 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
             let some = trend.iter().any(|new| *new > 0.0);
             TableCell::from_text(if some { sparkline(&trend, 12) } else { String::new() }).with_role(Role::Series(0))
         }
-        GroupColumn::Name => TableCell::from_text(name_of(company, group)).with_role(Role::Dim),
+        GroupColumn::Name => TableCell::from_text(group_name(company, group)).with_role(Role::Dim),
     }
 }
 

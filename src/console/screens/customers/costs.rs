@@ -8,7 +8,7 @@ use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{cents, dollars, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number};
 use novamind_report::lead_costs::{AdWindow, LeadCost};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
@@ -37,7 +37,7 @@ impl Pane<Customers> for CostsPane {
         let pair = selected(customers, context.company)?;
         let (channel, group) = (pair.channel, pair.group);
         let title = format!("cost of leads of {group} through {}", channel.id());
-        Some(Figure { title, term: "cost-per-lead", sql: Some(statement(channel, group)), week_quantity: None })
+        Some(Figure { title, term: "cost-per-lead", sql: Some(cost_query(channel, group)), week_quantity: None })
     }
 
     fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -78,9 +78,9 @@ pub fn columns() -> Vec<TableColumn> {
 }
 
 /// Returns the table row of a channel and group.
-pub fn row_of(pair: &LeadCost) -> Vec<TableCell> {
+pub fn cost_row(pair: &LeadCost) -> Vec<TableCell> {
     let each = |value: Option<f64>| match value {
-        Some(value) => TableCell::from_number(value, cents(value)),
+        Some(value) => TableCell::from_number(value, dollars_and_cents(value)),
         None => TableCell::from_text("–").with_role(Role::Dim),
     };
     let before = |figure: fn(&AdWindow) -> Option<f64>| each(pair.cheapest.as_ref().and_then(figure));
@@ -98,7 +98,7 @@ pub fn row_of(pair: &LeadCost) -> Vec<TableCell> {
 }
 
 /// Returns a query for the leads, spending and first bills of a channel and group by week.
-pub fn statement(channel: Channel, group: Group) -> String {
+pub fn cost_query(channel: Channel, group: Group) -> String {
     let channel = channel.id();
     format!(
         "WITH bills AS (\n    SELECT (c.created_day + 6) / 7 AS week, count(*) AS first_bills\n    FROM customers c\n    \

@@ -8,9 +8,9 @@ use super::selection::show_rows_effect;
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::market::model::name_of;
+use crate::screens::market::model::group_name;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{cents, compact_number, dollars, grouped_number, percent};
+use novamind_base::formatting::{dollars_and_cents, compact_number, dollars, grouped_number, percent};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
@@ -23,7 +23,7 @@ pub struct FactsPane;
 impl FactsPane {
     fn lines(&self, customers: &Customers, context: &ScreenContext<'_>, bars: usize) -> Vec<FactLine> {
         customers.group(context.company).map_or(Vec::new(), |group| {
-            facts(context.company, &customers.data, &customers.data.facts_of_group(group), group, bars)
+            fact_lines(context.company, &customers.data, &customers.data.facts_of_group(group), group, bars)
         })
     }
 }
@@ -65,7 +65,7 @@ impl Pane<Customers> for FactsPane {
     fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         customers.group(context.company).map_or_else(PaneBorder::default, |group| {
             let segment = if group.is_enterprise() { "enterprise" } else { "individual" };
-            let note = name_of(context.company, group).to_owned();
+            let note = group_name(context.company, group).to_owned();
             PaneBorder { title: format!("{group} · {segment}"), note, ..PaneBorder::default() }
         })
     }
@@ -105,7 +105,7 @@ fn figure_line(words: String, figures: String, title: String, term: &'static str
 }
 
 /// Returns the lines of facts about a group. Bars are `bars` cells wide.
-fn facts(
+fn fact_lines(
     company: &DisplayedCompany,
     market: &CustomerData,
     facts: &GroupFacts,
@@ -114,8 +114,8 @@ fn facts(
 ) -> Vec<FactLine> {
     // Money is last, because small windows cut off the last lines and money changes least.
     let mut lines = enterprise_lines(company, group);
-    lines.extend(plans(facts, group, bars));
-    lines.extend(sources(company, facts, group));
+    lines.extend(plan_lines(facts, group, bars));
+    lines.extend(source_lines(company, facts, group));
     lines.extend(money_lines(company, market, facts, group));
     lines
 }
@@ -151,7 +151,7 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
     lines
 }
 
-fn plans(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
+fn plan_lines(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
     let customers = facts.sum(|plan_subscribers| plan_subscribers.customers).max(1.0);
     let line = |(plan, subscribers): (&Plan, &super::model::PlanSubscribers)| {
         let share = subscribers.customers / customers;
@@ -169,7 +169,7 @@ fn plans(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
     lines
 }
 
-fn sources(company: &DisplayedCompany, facts: &GroupFacts, group: Group) -> Vec<FactLine> {
+fn source_lines(company: &DisplayedCompany, facts: &GroupFacts, group: Group) -> Vec<FactLine> {
     let heads = format!("{:>6}{:>6}{:>6}", "leads", "share", "conv.");
     let mut lines = vec![heading_line("sources, 12 weeks", heads)];
     let mut sources: Vec<_> = facts.sources.iter().collect();
@@ -214,7 +214,7 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
         ("revenue a month", dollars(facts.sum(|plan_subscribers| plan_subscribers.monthly_revenue)), "mrr", rows(&revenue)),
         (
             if group.is_enterprise() { "per seat" } else { "per subscriber" },
-            or_none(facts.revenue_per_seat(), cents),
+            or_none(facts.revenue_per_seat(), dollars_and_cents),
             "arpu",
             rows(&revenue),
         ),

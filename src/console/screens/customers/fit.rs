@@ -62,8 +62,8 @@ impl Pane<Customers> for FitPane {
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let company = context.company;
         let Some(fit) = customers.group(company).and_then(|group| company.fit(group)) else { return };
-        let tier = |plan: Plan| format_number(company.setting(ToolId::SetModelTiers, plan.id()));
-        let lines = lines(fit, placement.area.width as usize, &tier);
+        let tier = |plan: Plan| format_number(company.current_setting(ToolId::SetModelTiers, plan.id()));
+        let lines = fit_lines(fit, placement.area.width as usize, &tier);
         let last = lines.len().saturating_sub(placement.area.height as usize);
         let from = if placement.focused { customers.group_state.fit_line.min(last) } else { 0 };
         for (row, line) in row_rects(placement.area).zip(&lines[from..]) {
@@ -82,7 +82,7 @@ fn line(text: String, role: Role) -> FitLine {
 }
 
 /// Returns all lines of the pane, at most `width` columns wide.
-fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
+fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
     let company = fit.group.is_enterprise();
     let mut lines = vec![line(format!("quality  required {}", fit.floor.format_quality()), Role::Header)];
     let qualities = Plan::ALL.map(|plan| fit.plans[plan].quality);

@@ -21,7 +21,7 @@ mod weeks;
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::cohorts::Cohorts;
-use self::columns::{columns, row_of};
+use self::columns::{columns, group_row};
 use self::model::CustomerData;
 use self::open_group::OpenGroupState;
 use super::ScreenState;
@@ -121,13 +121,13 @@ impl Customers {
 
     fn rebuild_tables(&mut self, company: &DisplayedCompany) {
         let groups = &company.observation.known_groups;
-        let row = |group: &Group| row_of(*group, &self.data.facts_of_group(*group), company, &self.data);
+        let row = |group: &Group| group_row(*group, &self.data.facts_of_group(*group), company, &self.data);
         let rows: Vec<_> = groups.iter().map(row).collect();
         if self.table.rows().is_empty() {
             self.table = Table::new(Vec::new()).with_cell_selection();
         }
         self.table.set_columns_and_rows(columns(company), rows);
-        self.costs.set_columns_and_rows(costs::columns(), company.lead_costs.iter().map(costs::row_of).collect());
+        self.costs.set_columns_and_rows(costs::columns(), company.lead_costs.iter().map(costs::cost_row).collect());
         let last = groups.len().saturating_sub(1);
         self.open_group = self.open_group.map(|open| open.min(last)).filter(|_| !groups.is_empty());
         self.map_cell.group = self.map_cell.group.min(last);

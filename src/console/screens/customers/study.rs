@@ -7,7 +7,7 @@ use super::selection::{move_index, show_rows_effect};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::market::model::level_of;
+use crate::screens::market::model::study_level;
 use crate::screens::market::report;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::percent;
@@ -37,7 +37,7 @@ impl Pane<Customers> for StudyPane {
 
     fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         customers.group(context.company).map_or_else(PaneBorder::default, |group| {
-            let level = level_of(context.company, group);
+            let level = study_level(context.company, group);
             let noise = context.company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
             let note = format!(
                 "study level {level} · ±{} · {}",

@@ -11,7 +11,7 @@ const DAYS_PER_MONTH: f64 = 30.0;
 
 /// Returns the prices, quotas, unit costs and usage that rules read.
 pub fn rules_market(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEconomics {
-    let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.setting(tool, plan.id()));
+    let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.current_setting(tool, plan.id()));
     let studied = company.insights.iter().map(|(group, group_insights)| (*group, group_insights.estimates.usage_volume));
     PlanEconomics {
         list_prices: per_plan(ToolId::SetPrices),
@@ -46,7 +46,7 @@ pub struct OfferEconomics {
 impl OfferEconomics {
     pub fn for_offer(usage: &SeatUsage, company: &DisplayedCompany, thread: &Thread, (plan, price): (Plan, f64)) -> OfferEconomics {
         let wanted = usage_per_seat(usage, company, &thread.group).map(|(units, _)| units * thread.seats);
-        let quota = company.setting(ToolId::SetUsageQuotas, plan.id());
+        let quota = company.current_setting(ToolId::SetUsageQuotas, plan.id());
         let compute =
             wanted.zip(unit_cost(company, plan)).map(|(units, cost)| units.min(quota) * DAYS_PER_MONTH * cost);
         let covered = wanted.filter(|wanted| *wanted > quota).map(|wanted| (quota, wanted));
@@ -61,7 +61,7 @@ impl OfferEconomics {
 
 /// Returns the compute cost of a plan's model, $ per unit.
 fn unit_cost(company: &DisplayedCompany, plan: Plan) -> Option<f64> {
-    let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u8;
+    let tier = company.current_setting(ToolId::SetModelTiers, plan.id()) as u8;
     Some(company.price_list.model_tiers.get(&tier)?.cost_per_usage_unit)
 }
 

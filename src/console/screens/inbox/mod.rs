@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::estimate::rules_market;
-use self::thread_list::{columns, row_of};
+use self::thread_list::{columns, thread_row};
 use self::model::{ThreadStore, ThreadState, Thread};
 use self::offer::{OfferDraft, MAX_TERMS, PlanChoice};
 use self::outcomes::FirstOfferOutcomes;
@@ -130,7 +130,7 @@ pub struct Inbox {
     marked: BTreeSet<u32>,
     drafts: BTreeMap<u32, OfferDraft>,
     /// Draft of the offer to all marked threads.
-    rule: Option<OfferDraft>,
+    bulk_offer: Option<OfferDraft>,
     /// Last sent offer that can be reused for other enterprises.
     last_offer: Option<OfferDraft>,
     selected_term: usize,
@@ -162,7 +162,7 @@ impl Inbox {
     fn rebuild_table(&mut self, (shown, here): (Vec<u32>, Option<u32>)) {
         let threads = &self.threads.threads;
         self.rows = (0..threads.len()).filter(|at| self.view.includes(threads[*at].state)).collect();
-        let row = |at: &usize| row_of(&threads[*at], self.marked.contains(&threads[*at].number));
+        let row = |at: &usize| thread_row(&threads[*at], self.marked.contains(&threads[*at].number));
         let rows = self.rows.iter().map(row).collect();
         self.table.set_columns_and_rows(columns(self.view), rows);
         let from = here.and_then(|here| shown.iter().position(|number| *number == here)).unwrap_or(0);
@@ -215,7 +215,7 @@ impl Inbox {
 
     fn current_offer(&self) -> OfferDraft {
         if !self.marked.is_empty() {
-            return self.rule.clone().unwrap_or_else(OfferDraft::at_list_price);
+            return self.bulk_offer.clone().unwrap_or_else(OfferDraft::at_list_price);
         }
         let Some(thread) = self.selected_thread() else { return OfferDraft::at_list_price() };
         let offer_draft = self.drafts.get(&thread.number).or(self.last_offer.as_ref()).cloned();
@@ -224,7 +224,7 @@ impl Inbox {
 
     fn set_offer(&mut self, offer: OfferDraft) {
         match self.selected_thread().map(|thread| thread.number) {
-            _ if !self.marked.is_empty() => self.rule = Some(offer),
+            _ if !self.marked.is_empty() => self.bulk_offer = Some(offer),
             Some(number) => {
                 self.drafts.insert(number, offer);
             }
@@ -251,7 +251,7 @@ impl Inbox {
                 Vec::new()
             }
             None if field.is_empty() => Vec::new(),
-            None => vec![Effect::Complain(NUMBER_HINT.to_owned())],
+            None => vec![Effect::ShowError(NUMBER_HINT.to_owned())],
         }
     }
 
@@ -295,7 +295,7 @@ impl Inbox {
 
 /// Returns the list prices of the plans, $ per month and seat.
 fn list_prices(company: &DisplayedCompany) -> [f64; 3] {
-    ["A", "B", "C"].map(|plan| company.setting(ToolId::SetPrices, plan))
+    ["A", "B", "C"].map(|plan| company.current_setting(ToolId::SetPrices, plan))
 }
 
 impl ScreenState for Inbox {
@@ -351,7 +351,7 @@ impl ScreenState for Inbox {
     }
 
     fn has_unsent_text(&self) -> bool {
-        !self.drafts.is_empty() || (self.rule.is_some() && !self.marked.is_empty())
+        !self.drafts.is_empty() || (self.bulk_offer.is_some() && !self.marked.is_empty())
     }
 }
 
@@ -410,7 +410,7 @@ impl PaneScreen for Inbox {
             }
         }
         if self.selected_thread().is_none() && THREAD_ACTIONS.contains(&action) {
-            return Some(vec![Effect::Complain(NO_THREAD_ERROR.to_owned())]);
+            return Some(vec![Effect::ShowError(NO_THREAD_ERROR.to_owned())]);
         }
         match action {
             Action::Mark | Action::MarkAll => {
@@ -430,7 +430,7 @@ impl PaneScreen for Inbox {
             Action::MatchAskedPrice => {
                 let targets = self.targets();
                 if !targets.is_empty() && targets.iter().all(|thread| thread.asked_price().is_none()) {
-                    return Some(vec![Effect::Complain("No asked price yet. Type a price.".to_owned())]);
+                    return Some(vec![Effect::ShowError("No asked price yet. Type a price.".to_owned())]);
                 }
                 self.set_offer(OfferDraft::at_asked_price());
             }
@@ -445,7 +445,7 @@ impl PaneScreen for Inbox {
                 let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
                 return Some(effect.into_iter().collect());
             }
-            Action::InboxSql => return Some(self.selected_thread().map(sending::statement).into_iter().collect()),
+            Action::InboxSql => return Some(self.selected_thread().map(sending::open_thread_query).into_iter().collect()),
             _ => return None,
         }
         Some(Vec::new())

@@ -181,7 +181,7 @@ impl ThreadStore {
         for (_, mut thread) in left.into_iter().rev() {
             let firm = self.enterprises.get(&thread.customer);
             thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
-            thread.state = state_of(&thread, firm);
+            thread.state = closed_or_waiting_state(&thread, firm);
             if !newest.insert(thread.customer) && thread.state == ThreadState::WaitingForCustomer {
                 thread.state = ThreadState::Lost;
             }
@@ -214,7 +214,7 @@ fn thread_from_waiting(asking: ThreadContext, read: &mut BTreeMap<u32, Thread>) 
 }
 
 /// Returns the state of a thread that does not wait for the player.
-fn state_of(thread: &Thread, firm: Option<&Enterprise>) -> ThreadState {
+fn closed_or_waiting_state(thread: &Thread, firm: Option<&Enterprise>) -> ThreadState {
     let Some(last) = thread.messages.last() else { return ThreadState::Lost };
     let there = firm.is_none_or(|firm| matches!(firm.status.as_str(), "lead" | "subscribed"));
     match (last.closing_reason.as_str(), last.sender.as_str()) {

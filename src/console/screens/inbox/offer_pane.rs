@@ -12,7 +12,7 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{cents, dollars, grouped_number, percent};
+use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number, percent};
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
@@ -72,7 +72,7 @@ impl Pane<Inbox> for OfferPane {
             return Vec::new();
         }
         let taken = inbox.value_field.as_mut().is_none_or(|field| field.handle_number_key(key));
-        if taken { Vec::new() } else { vec![Effect::Complain(NUMBER_HINT.to_owned())] }
+        if taken { Vec::new() } else { vec![Effect::ShowError(NUMBER_HINT.to_owned())] }
     }
 
     fn paste(&self, inbox: &mut Inbox, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -160,7 +160,7 @@ fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> V
         None => Vec::new(),
     };
     let lists = list_prices(context.company);
-    let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", cents(price)));
+    let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", dollars_and_cents(price)));
     notes.push((format!("list {}", list.collect::<Vec<_>>().join(" · ")), Role::Dim));
     notes
 }
@@ -191,7 +191,7 @@ fn offer_notes(
     if let Some((_, price)) = thread.asked_price() {
         let best = offers.iter().map(|(_, value)| value - price).fold(f64::INFINITY, f64::min);
         let sign = if best < 0.0 { "-" } else { "+" };
-        notes.push((format!("asked price {}; difference {sign}{}", cents(price), cents(best.abs())), Role::Text));
+        notes.push((format!("asked price {}; difference {sign}{}", dollars_and_cents(price), dollars_and_cents(best.abs())), Role::Text));
     }
     let Some((units, source)) = usage_per_seat(&inbox.usage, context.company, &thread.group) else {
         notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));
@@ -229,7 +229,7 @@ fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, o
     let mut text = format!("{:<6} {basis:<6} {value:>8}", term.plan_label());
     let single = inbox.selected_thread().filter(|_| inbox.marked.is_empty());
     if let Some((thread, sold)) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {
-        text += &format!(" {:>8} {:>9}", cents(sold.1), dollars(sold.1 * thread.seats));
+        text += &format!(" {:>8} {:>9}", dollars_and_cents(sold.1), dollars(sold.1 * thread.seats));
         if row.width >= MIN_FULL_WIDTH {
             let money = OfferEconomics::for_offer(&inbox.usage, context.company, thread, sold);
             let compute = money.compute_cost.map_or("–".to_owned(), dollars);
@@ -240,7 +240,7 @@ fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, o
         if row.width >= MIN_FULL_WIDTH + COMPARISON_WIDTH {
             let versus = thread.asked_price().map_or("–".to_owned(), |(_, asked)| {
                 let sign = if sold.1 < asked { '-' } else { '+' };
-                format!("{sign}{}", cents((sold.1 - asked).abs()))
+                format!("{sign}{}", dollars_and_cents((sold.1 - asked).abs()))
             });
             text += &format!(" {versus:>9}");
         }

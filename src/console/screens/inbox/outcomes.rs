@@ -51,7 +51,7 @@ pub struct FirstOfferOutcomes {
 impl FirstOfferOutcomes {
     pub fn set_rows(&mut self, rows: &QueryResult) {
         let found: Vec<FirstOfferOutcome> = rows.rows.iter().map(|row| parse_outcome(row)).collect();
-        self.table.set_columns_and_rows(columns(), found.iter().map(row_of).collect());
+        self.table.set_columns_and_rows(columns(), found.iter().map(outcome_row).collect());
         self.rows = Some(found);
     }
 
@@ -84,7 +84,7 @@ fn columns() -> Vec<TableColumn> {
     columns
 }
 
-fn row_of(offer_outcome: &FirstOfferOutcome) -> Vec<TableCell> {
+fn outcome_row(offer_outcome: &FirstOfferOutcome) -> Vec<TableCell> {
     let count = |value: f64| TableCell::from_number(value, grouped_number(value, 0));
     let prices = format!("{}–{}", grouped_number(offer_outcome.price_from, 0), grouped_number(offer_outcome.price_below - 0.01, 2));
     vec![
@@ -101,7 +101,7 @@ fn row_of(offer_outcome: &FirstOfferOutcome) -> Vec<TableCell> {
 }
 
 /// Returns a query for the threads of a row, the oldest first.
-fn statement(offer_outcome: &FirstOfferOutcome) -> String {
+fn threads_query(offer_outcome: &FirstOfferOutcome) -> String {
     let FirstOfferOutcome { group, plan, price_from, price_below, week, .. } = offer_outcome;
     format!(
         "SELECT t.thread_id, t.customer_id, t.day, t.offer_json, s.status,\n    EXISTS (\n        SELECT 1 FROM \
@@ -139,7 +139,7 @@ impl Inbox {
             (Action::InboxOutcomes | Action::NextThreadView, Some(_)) => self.close_outcomes(),
             // Threads can be marked only in the list.
             (Action::Mark | Action::MarkAll, Some(_)) => {
-                return Some(vec![Effect::Complain("Close the outcomes (esc) to mark threads".to_owned())]);
+                return Some(vec![Effect::ShowError("Close the outcomes (esc) to mark threads".to_owned())]);
             }
             _ => return None,
         }
@@ -176,7 +176,7 @@ impl Pane<Inbox> for OutcomesPane {
         let offer_outcome = inbox.outcomes.as_ref()?.selected()?;
         let title =
             format!("threads of {} with a first offer of {} in week {}", offer_outcome.group, offer_outcome.plan, offer_outcome.week);
-        Some(Figure { title, term: "offer", sql: Some(statement(offer_outcome)), week_quantity: None })
+        Some(Figure { title, term: "offer", sql: Some(threads_query(offer_outcome)), week_quantity: None })
     }
 
     fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {

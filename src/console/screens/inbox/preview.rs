@@ -7,7 +7,7 @@ use super::offer::format_offers;
 use super::sending::{PlannedOffer, max_monthly_revenue};
 use crate::context::ScreenContext;
 use crate::screens::panes::{PaneBorder, PanePlacement};
-use novamind_base::formatting::{cents, dollars};
+use novamind_base::formatting::{dollars_and_cents, dollars};
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::theme::Role;
 
@@ -45,8 +45,8 @@ fn draw_planned_offer(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Pla
     };
     let before = match (thread.last_offer(), thread.asked_price()) {
         ([], None) => thread.asked_plan().map_or("–".to_owned(), |plan| format!("plan {plan}?")),
-        ([], Some((_, price))) => format!("asks {}", cents(price)),
-        ([(_, price)], _) => cents(*price),
+        ([], Some((_, price))) => format!("asks {}", dollars_and_cents(price)),
+        ([(_, price)], _) => dollars_and_cents(*price),
         (last_offers, _) => format!("{} offers", last_offers.len()),
     };
     let value = format!("{}/mo", dollars(max_monthly_revenue(thread, offers)));

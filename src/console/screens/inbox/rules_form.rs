@@ -9,7 +9,7 @@ use super::{Inbox, InboxPane};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, PanePlacement, draw_pane};
-use novamind_base::formatting::{cents, json_number};
+use novamind_base::formatting::{dollars_and_cents, json_number};
 use novamind_rules::{ThreadContext, RuleBatch, RuleError, RuleOutcome};
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
@@ -22,7 +22,7 @@ use novamind_worker::company::DisplayedCompany;
 /// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price have no rule.
 fn default_rules(company: &DisplayedCompany) -> String {
     let rule = |plan: Plan| {
-        let list = company.setting(ToolId::SetPrices, plan.id());
+        let list = company.current_setting(ToolId::SetPrices, plan.id());
         (list > 0.0).then(|| format!("accept asked_plan = {plan} and asked >= {}", json_number(list)))
     };
     Plan::ALL.into_iter().filter_map(rule).collect::<Vec<_>>().join("; ")
@@ -74,7 +74,7 @@ impl Inbox {
     pub(super) fn open_rules(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         let threads = self.waiting_threads(company);
         if threads.is_empty() {
-            return vec![Effect::Complain("No thread is waiting for an answer".to_owned())];
+            return vec![Effect::ShowError("No thread is waiting for an answer".to_owned())];
         }
         self.rules_form = Some(RulesForm::new(self.last_rules.as_deref(), &threads, company, self));
         self.focus = InboxPane::Offer;
@@ -104,17 +104,17 @@ impl Inbox {
     pub(super) fn send_rule_answers(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(ruling) = &self.rules_form else { return Vec::new() };
         if !company.is_running() {
-            return vec![Effect::Complain("The run is over; offers are not answered".to_owned())];
+            return vec![Effect::ShowError("The run is over; offers are not answered".to_owned())];
         }
         let batch = match &ruling.batch {
             Ok(batch) => batch,
             Err(problem) => {
-                return vec![Effect::Complain(format!("{} (column {})", problem.text, problem.column))];
+                return vec![Effect::ShowError(format!("{} (column {})", problem.text, problem.column))];
             }
         };
         let calls = batch.tool_calls();
         if calls.is_empty() {
-            return vec![Effect::Complain("These rules match no waiting thread".to_owned())];
+            return vec![Effect::ShowError("These rules match no waiting thread".to_owned())];
         }
         let text = batch.summary().join("\n");
         self.last_rules = Some(ruling.field.text().to_owned());
@@ -190,7 +190,7 @@ impl Inbox {
 fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, context: &ScreenContext<'_>) {
     let waiting_thread = &ruled.thread.waiting;
     let rule = ruled.rule_index.map_or(0, |at| at + 1);
-    let asked = waiting_thread.asked.map_or("–".to_owned(), cents);
+    let asked = waiting_thread.asked.map_or("–".to_owned(), dollars_and_cents);
     let words = format!(
         "{rule}  #{} {}  {asked} → {}  {}",
         waiting_thread.customer,

@@ -23,7 +23,7 @@ const REJECT_TOOL: ToolId = ToolId::RejectEnterpriseDeal;
 pub(super) type PlannedOffer<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
 
 /// Returns the effect that opens a query for the rows of a thread in the SQL editor.
-pub(super) fn statement(thread: &Thread) -> Effect {
+pub(super) fn open_thread_query(thread: &Thread) -> Effect {
     Effect::EditSql(format!(
         "SELECT day, turn_number, sender, message_text, offer_json, seat_count, close_reason\n\
          FROM enterprise_turns WHERE thread_id = {} ORDER BY message_id",
@@ -32,8 +32,8 @@ pub(super) fn statement(thread: &Thread) -> Effect {
 }
 
 /// Returns a figure of a thread, with a query for the turns of the thread.
-pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
-    let sql = match statement(thread) {
+pub(super) fn thread_figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
+    let sql = match open_thread_query(thread) {
         Effect::EditSql(sql) => Some(sql),
         _ => None,
     };
@@ -71,7 +71,7 @@ impl Inbox {
     /// Sends the offer to all recipients. Asks for confirmation first if necessary.
     pub(super) fn send_offers(&self, company: &DisplayedCompany) -> Vec<Effect> {
         if !company.is_running() {
-            return vec![Effect::Complain("The run is over; offers are not answered".to_owned())];
+            return vec![Effect::ShowError("The run is over; offers are not answered".to_owned())];
         }
         let planned = self.planned_offers(company);
         let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
@@ -82,7 +82,7 @@ impl Inbox {
                 Some(Err(why)) => format!("Nothing to send: {why}"),
                 _ => "No thread is selected. Press o for other threads.".to_owned(),
             };
-            return vec![Effect::Complain(why)];
+            return vec![Effect::ShowError(why)];
         };
         let deal = |(thread, offers): &(&Thread, &Vec<(Plan, f64)>)| {
             let offers: Vec<Value> = offers.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
@@ -112,7 +112,7 @@ impl Inbox {
     pub(super) fn confirm_rejection(&self, company: &DisplayedCompany) -> Vec<Effect> {
         let open: Vec<&Thread> = self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
         if !company.is_running() || open.is_empty() {
-            return vec![Effect::Complain("No open thread to end".to_owned())];
+            return vec![Effect::ShowError("No open thread to end".to_owned())];
         }
         let leads = open.iter().filter(|thread| thread.kind == "new_lead");
         let (leads, seats) = leads.fold((0, 0.0), |(count, seats), thread| (count + 1, seats + thread.seats));
@@ -157,8 +157,8 @@ impl Inbox {
         let failed = results.len() - done.len();
         let what = if offered { "offered" } else { "ended" };
         match failed {
-            0 => vec![Effect::Say(format!("{} {what}", done.len()))],
-            _ => vec![Effect::Complain(format!(
+            0 => vec![Effect::ShowStatus(format!("{} {what}", done.len()))],
+            _ => vec![Effect::ShowError(format!(
                 "{} {what}, {failed} rejected. Press 0 for the reasons.",
                 done.len()
             ))],

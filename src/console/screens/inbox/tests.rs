@@ -151,7 +151,7 @@ fn two_hundred_threads_are_answered_in_under_forty_keys() {
     let (effects, more) = press(&mut screen, &company, "e p p p '90' b b down p p p '85' ctrl-s");
     keys += more + 1;
     let sent = sent_deals(&effects);
-    assert_eq!(sent.len(), 134, "{:?}", screen.rule);
+    assert_eq!(sent.len(), 134, "{:?}", screen.bulk_offer);
     apply_answers(&mut screen, &mut company, &sent);
     assert!(screen.rows.is_empty());
     assert!(keys < 40, "{keys} keys");
@@ -196,7 +196,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     press(&mut screen, &company, "R");
     assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R focuses the rules");
     let (effects, _) = press(&mut screen, &company, "ctrl-n 'ofer' ctrl-s");
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
+    assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("did you mean offer")));
     draw_at_all_sizes(&mut screen, &company);
 }
 
@@ -215,11 +215,11 @@ fn answering_a_thread_selects_the_next_one() {
         apply_answers(&mut screen, &mut company, &sent);
     }
     let (effects, _) = press(&mut screen, &company, "ctrl-s");
-    assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowError(_)]), "{effects:?}");
 }
 
 #[test]
-fn a_draft_survives_and_belongs_to_its_thread() {
+fn draft_is_kept_for_its_thread() {
     let (mut screen, company) = crowded_screen();
     press(&mut screen, &company, "e '95' down");
     assert_eq!(screen.current_offer().0[0].value, 95.0);
@@ -231,7 +231,7 @@ fn a_draft_survives_and_belongs_to_its_thread() {
     press(&mut screen, &company, "e '7' esc");
     assert_eq!(screen.current_offer().0[0].value, 95.0, "cancelled input is discarded");
     let (effects, _) = press(&mut screen, &company, "enter 'x'");
-    assert!(matches!(&effects[..], [Effect::Complain(_)]) && screen.value_field.is_some());
+    assert!(matches!(&effects[..], [Effect::ShowError(_)]) && screen.value_field.is_some());
 }
 
 #[test]
@@ -293,7 +293,7 @@ fn empty_inbox_explains_how_leads_arrive() {
     for action in
         [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(THREAD_ACTIONS)
     {
-        assert!(matches!(&handle_action(&mut screen, action, &company)[..], [Effect::Complain(_)]), "{action:?}");
+        assert!(matches!(&handle_action(&mut screen, action, &company)[..], [Effect::ShowError(_)]), "{action:?}");
     }
     draw_at_all_sizes(&mut screen, &company);
 }
@@ -456,7 +456,7 @@ fn outcomes_replace_the_list_until_closed() {
     press(&mut screen, &company, "esc");
     assert_eq!(screen.focus, InboxPane::Outcomes, "esc returns from the offer to the outcomes");
     for marks in ["space", "a"] {
-        assert!(matches!(&press(&mut screen, &company, marks).0[..], [Effect::Complain(_)]));
+        assert!(matches!(&press(&mut screen, &company, marks).0[..], [Effect::ShowError(_)]));
     }
     assert_eq!(screen.marked.len(), 0);
     for closes in ["esc", "O", "o"] {

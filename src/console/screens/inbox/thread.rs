@@ -9,7 +9,7 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
-use novamind_base::formatting::cents;
+use novamind_base::formatting::dollars_and_cents;
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
 use novamind_tui::theme::Role;
@@ -29,7 +29,7 @@ impl Pane<Inbox> for ThreadPane {
     }
 
     fn figure(&self, inbox: &Inbox, _: &ScreenContext<'_>) -> Option<Figure> {
-        inbox.selected_thread().map(|thread| sending::figure(thread, "thread with", "thread"))
+        inbox.selected_thread().map(|thread| sending::thread_figure(thread, "thread with", "thread"))
     }
 
     fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -126,7 +126,7 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
             text += &format!(" · main concern: {concern}");
         }
         let terms = match firm.status.as_str() {
-            "subscribed" => format!("plan {} at {} since day {}", firm.plan, cents(firm.price), firm.since_day),
+            "subscribed" => format!("plan {} at {} since day {}", firm.plan, dollars_and_cents(firm.price), firm.since_day),
             "lead" => format!("not a customer; asked on day {}", firm.since_day),
             other => format!("{other}; arrived on day {}", firm.since_day),
         };
@@ -146,12 +146,12 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
         };
         let head = format!("day {:>3} {who:<5}", turn.day);
         let indent = " ".repeat(2);
-        let words = words_of(turn);
+        let words = message_text(turn);
         let whole = format!("{head}{words}");
         let mut wrapped = wrap(&whole, width).into_iter();
         lines.extend(wrapped.next().map(|line| (line, role)));
         let rest: String = wrapped.collect::<Vec<_>>().join(" ");
-        let more = lines_of(&rest, width.saturating_sub(2));
+        let more = wrap_or_empty(&rest, width.saturating_sub(2));
         lines.extend(more.into_iter().map(|line| (format!("{indent}{line}"), role)));
     }
     if let Some(end) = thread.lost_reason() {
@@ -160,11 +160,11 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
     lines
 }
 
-fn lines_of(text: &str, width: usize) -> Vec<String> {
+fn wrap_or_empty(text: &str, width: usize) -> Vec<String> {
     if text.is_empty() { Vec::new() } else { wrap(text, width) }
 }
 
-fn words_of(turn: &ThreadMessage) -> String {
+fn message_text(turn: &ThreadMessage) -> String {
     match (turn.closing_reason.as_str(), turn.sender.as_str()) {
         ("agent_rejected", _) => "ended the thread".to_owned(),
         (_, "agent") => format!("offered {}", format_offers(&turn.offers)),

@@ -60,9 +60,9 @@ impl Pane<Inbox> for ThreadListPane {
     fn figure(&self, inbox: &Inbox, _: &ScreenContext<'_>) -> Option<Figure> {
         let thread = inbox.selected_thread()?;
         Some(match inbox.table.selected_column() {
-            5 => sending::figure(thread, "seats of", "seats"),
-            6 => sending::figure(thread, "price asked by", "offer"),
-            _ => sending::figure(thread, "thread with", "thread"),
+            5 => sending::thread_figure(thread, "seats of", "seats"),
+            6 => sending::thread_figure(thread, "price asked by", "offer"),
+            _ => sending::thread_figure(thread, "thread with", "thread"),
         })
     }
 
@@ -163,7 +163,7 @@ fn number_cell(value: Option<f64>) -> TableCell {
     }
 }
 
-pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<TableCell> {
+pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
     let day = match (thread.state, thread.messages.last()) {
         (ThreadState::WaitingForPlayer(left), _) => {
             let (mark, role) = match left {

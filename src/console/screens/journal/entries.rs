@@ -8,7 +8,7 @@ use novamind_base::formatting::{compact_number, dollars, grouped_number, short_d
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Reversal;
 use novamind_report::deals::describe_deals;
-use novamind_report::parameters::{describe_parameter_entry, describe_start_day};
+use novamind_report::parameters::{describe_recorded_parameter_change, describe_start_day};
 use novamind_session::{EnterpriseNames, JournalEntry, ScoredForecast, describe_naive_share, undone_call_lines};
 use novamind_tools::{Forecast, ToolKind, ToolSpec};
 use novamind_tui::text::format_number;
@@ -246,7 +246,7 @@ fn call_line(
 fn parameter_line(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
     JournalLine {
         day,
-        text: format!("  {}", describe_parameter_entry(key, [old, new], from_day)),
+        text: format!("  {}", describe_recorded_parameter_change(key, [old, new], from_day)),
         role: Role::Text,
         title: format!("{key} · day {day}"),
         full_text: format!("set {key}{}\n\nbefore: {old}\nafter: {new}", describe_start_day(from_day)),

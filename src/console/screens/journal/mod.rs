@@ -95,7 +95,7 @@ impl Journal {
         if self.has_unsaved_notes() {
             vec![Effect::Request(Request::SetNotes(self.notes.text()))]
         } else {
-            vec![Effect::Say("Notes already saved".to_owned())]
+            vec![Effect::ShowStatus("Notes already saved".to_owned())]
         }
     }
 }
@@ -138,7 +138,7 @@ impl ScreenState for Journal {
     fn take_answers(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         match self.asked.try_take() {
             Some((_, Ok(tree))) => self.set_tree(tree, context.company),
-            Some((_, Err(refusal))) => return vec![Effect::Complain(refusal.message)],
+            Some((_, Err(refusal))) => return vec![Effect::ShowError(refusal.message)],
             None => {}
         }
         Vec::new()
@@ -186,7 +186,7 @@ impl PaneScreen for Journal {
             Action::EditNotes => (self.focus, self.editing) = (JournalPane::Notes, true),
             Action::ShowTree if self.has_tree() => self.set_focused_pane(JournalPane::Branches),
             Action::ShowTree => {
-                return Some(vec![Effect::Complain("This run has no related runs".to_owned())]);
+                return Some(vec![Effect::ShowError("This run has no related runs".to_owned())]);
             }
             Action::SaveNotes => return Some(self.save_notes()),
             Action::LeaveEditor => self.editing = false,

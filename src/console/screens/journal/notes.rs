@@ -33,7 +33,7 @@ impl Pane<Journal> for NotesPane {
 
     fn handle_key(&self, journal: &mut Journal, key: &KeyEvent, _: &ScreenContext<'_>) -> Vec<Effect> {
         if key.code == KeyCode::BackTab {
-            return vec![Effect::Do(Action::FocusPrevious)];
+            return vec![Effect::Execute(Action::FocusPrevious)];
         }
         if journal.editing {
             journal.notes.handle_key(key);

@@ -8,14 +8,14 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{percent, short_dollars};
-use novamind_session::{ForecastScore, ScoredForecast, filed_forecasts};
+use novamind_session::{ForecastScore, ScoredForecast, submitted_forecasts};
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
 /// Returns the due forecasts with a horizon, the newest first.
 pub fn due_forecasts(company: &DisplayedCompany, horizon: u32) -> Vec<ScoredForecast> {
-    let mut all = filed_forecasts(&company.journal, &company.cash_by_day);
+    let mut all = submitted_forecasts(&company.journal, &company.cash_by_day);
     all.retain(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some());
     all.reverse();
     all
@@ -89,11 +89,11 @@ impl Pane<Journal> for ScoresPane {
             canvas.draw_text(row, &head, Role::Header);
         }
         for ((at, score), row) in company.forecast_scores.iter().enumerate().zip(rows.by_ref()) {
-            let usual_role = if summary { role_of(score) } else { Role::Text };
+            let usual_role = if summary { score_role(score) } else { Role::Text };
             let role = if placement.focused && at == journal.horizon { Role::Selection } else { usual_role };
             let counted = || format!("{:<9}{:>10}", format_weeks(score.horizon_days), score.scored);
             canvas.clear(row, role);
-            canvas.draw_text(row, &if summary { line_of(score) } else { counted() }, role);
+            canvas.draw_text(row, &if summary { score_line(score) } else { counted() }, role);
             canvas.register_click(row, Click::Row(placement.index, at));
         }
         if let Some(row) = rows.next() {
@@ -144,7 +144,7 @@ fn capped_percent(share: f64) -> String {
     if share < 10.0 { percent(share, 1) } else { "> 999%".to_owned() }
 }
 
-fn line_of(score: &ForecastScore) -> String {
+fn score_line(score: &ForecastScore) -> String {
     let horizon = format_weeks(score.horizon_days);
     if score.scored == 0 {
         return format!("{horizon:<9}{:>10}{:>8}{:>8}", "–", "–", "–");
@@ -154,7 +154,7 @@ fn line_of(score: &ForecastScore) -> String {
 }
 
 /// Returns the warning role if the coverage is low and at least four forecasts are scored.
-fn role_of(score: &ForecastScore) -> Role {
+fn score_role(score: &ForecastScore) -> Role {
     match score.scored {
         0 => Role::Dim,
         scored if scored >= 4 && f64::from(score.covered) < 0.8 * f64::from(scored) => Role::Warning,

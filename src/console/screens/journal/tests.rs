@@ -37,7 +37,7 @@ fn played_company() -> DisplayedCompany {
     DisplayedCompany::from_session(&session)
 }
 
-fn journal_of(company: &DisplayedCompany) -> Journal {
+fn journal_with_company(company: &DisplayedCompany) -> Journal {
     let mut screen = Journal::default();
     with_context(company, |context| screen.on_company_change(context));
     screen
@@ -50,7 +50,7 @@ fn contains(lines: &[String], part: &str) -> bool {
 #[test]
 fn newest_week_is_first() {
     let company = played_company();
-    let screen = journal_of(&company);
+    let screen = journal_with_company(&company);
     let texts: Vec<String> = screen.table.rows().iter().map(|row| row[1].text.clone()).collect();
     assert_eq!(texts[0], "week 2 · now · 2 actions");
     assert_eq!(texts[1], "  undone: set_prices A 12 → 13");
@@ -65,7 +65,7 @@ fn newest_week_is_first() {
 fn every_row_has_a_term_and_source_rows() {
     let mut session = crate::test_kit::played_session(2);
     let company = DisplayedCompany::from_session(&session);
-    let mut screen = journal_of(&company);
+    let mut screen = journal_with_company(&company);
     let mut terms = Vec::new();
     for _ in 0..screen.table.rows().len() {
         let figure = with_context(&company, |context| screen.figure(context)).expect("a figure");
@@ -92,7 +92,7 @@ fn every_row_has_a_term_and_source_rows() {
 #[test]
 fn opening_an_entry_shows_its_text() {
     let company = played_company();
-    let mut screen = journal_of(&company);
+    let mut screen = journal_with_company(&company);
     for _ in 0..4 {
         handle_action(&mut screen, &company, Action::Down);
     }
@@ -107,7 +107,7 @@ fn opening_an_entry_shows_its_text() {
 #[test]
 fn the_screen_shows_list_scores_and_notes() {
     let company = played_company();
-    let screen = journal_of(&company);
+    let screen = journal_with_company(&company);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let lines = screen_rows(&screen, &company, width, height);
         for part in ["Journal", "week 1 · day 7", " of 1 ", "26 weeks", "Notes"] {
@@ -119,7 +119,7 @@ fn the_screen_shows_list_scores_and_notes() {
 #[test]
 fn unsaved_notes_survive_until_they_are_saved() {
     let mut company = new_company();
-    let mut screen = journal_of(&company);
+    let mut screen = journal_with_company(&company);
     handle_action(&mut screen, &company, Action::EditNotes);
     assert_eq!(screen.scopes(), [Scope::Editor, Scope::Notes]);
     type_notes(&mut screen, &company, "watch S3");
@@ -140,7 +140,7 @@ fn unsaved_notes_survive_until_they_are_saved() {
 #[test]
 fn screen_is_drawn_at_every_size() {
     for company in [new_company(), played_company()] {
-        let mut screen = journal_of(&company);
+        let mut screen = journal_with_company(&company);
         draw_at_all_sizes(&mut screen, &company);
         handle_action(&mut screen, &company, Action::Filter);
         draw_at_all_sizes(&mut screen, &company);

@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::Market;
-use super::model::{ResearchAttempt, name_of};
+use super::model::{ResearchAttempt, group_name};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
@@ -73,9 +73,9 @@ pub fn columns() -> Vec<TableColumn> {
     vec![TableColumn::numeric("day"), TableColumn::numeric("cost"), TableColumn::text("found")]
 }
 
-pub fn row_of(attempt: &ResearchAttempt, company: &DisplayedCompany) -> Vec<TableCell> {
+pub fn attempt_row(attempt: &ResearchAttempt, company: &DisplayedCompany) -> Vec<TableCell> {
     let found = match attempt.group {
-        Some(group) => TableCell::from_text(format!("{group} {}", name_of(company, group))).with_role(Role::Good),
+        Some(group) => TableCell::from_text(format!("{group} {}", group_name(company, group))).with_role(Role::Good),
         None => TableCell::from_text("nothing").with_role(Role::Dim),
     };
     vec![

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{GroupKnowledge, level_of, name_of, running_study, target_level, undiscovered_count};
+use super::model::{GroupKnowledge, study_level, group_name, running_study, target_level, undiscovered_count};
 use super::{Market, knowledge_figure};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
@@ -97,8 +97,8 @@ pub fn columns() -> Vec<TableColumn> {
     columns
 }
 
-pub fn row_of(group: Group, known: GroupKnowledge, company: &DisplayedCompany) -> Vec<TableCell> {
-    let level = level_of(company, group);
+pub fn group_row(group: Group, known: GroupKnowledge, company: &DisplayedCompany) -> Vec<TableCell> {
+    let level = study_level(company, group);
     let none = || TableCell::from_text("–").with_role(Role::Dim);
     if level == 0 {
         let not_found = TableCell::from_text("not found yet").with_role(Role::Dim);
@@ -132,7 +132,7 @@ pub fn row_of(group: Group, known: GroupKnowledge, company: &DisplayedCompany) -
     };
     vec![
         TableCell::from_text(group.id()).with_role(Role::Strong),
-        TableCell::from_text(name_of(company, group)),
+        TableCell::from_text(group_name(company, group)),
         TableCell::from_number(f64::from(level), level.to_string()),
         TableCell::from_number(noise, format!("±{}", percent(noise, 0))),
         next,

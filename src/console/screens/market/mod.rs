@@ -14,7 +14,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::model::{MarketFacts, level_of, name_of, target_level, undiscovered_count};
+use self::model::{MarketFacts, study_level, group_name, target_level, undiscovered_count};
 use self::news::CompetitorNews;
 use super::ScreenState;
 use super::panes::{Pane, PaneScreen, draw_pane};
@@ -32,7 +32,7 @@ use novamind_worker::question::Pending;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::posts::Posts;
-use novamind_worker::page_questions::CallCheck;
+use novamind_worker::page_questions::PreviewCallQuestion;
 use novamind_worker::readings::Reading;
 
 /// Panes of the market screen in tab order.
@@ -76,7 +76,7 @@ pub struct Market {
     target_level: Option<u8>,
     first_line: usize,
     /// Check of the tool call before the user confirms the call.
-    pending_call: Pending<CallCheck>,
+    pending_call: Pending<PreviewCallQuestion>,
 }
 
 impl Market {
@@ -95,14 +95,14 @@ impl Market {
         match answer {
             Answer::ResearchMarket(DiscoveryAttempt::Found { discovered_group_id: group }) => {
                 self.show_group(*group);
-                vec![Effect::Say(format!("Found {group}: {}", name_of(company, *group)))]
+                vec![Effect::ShowStatus(format!("Found {group}: {}", group_name(company, *group)))]
             }
             Answer::ResearchMarket(DiscoveryAttempt::Nothing { .. }) => {
-                vec![Effect::Say("No group found this time".to_owned())]
+                vec![Effect::ShowStatus("No group found this time".to_owned())]
             }
             Answer::ResearchGroup(study) => {
                 self.target_level = None;
-                vec![Effect::Say(format!("The study is due on day {}", study.expected_completion_day))]
+                vec![Effect::ShowStatus(format!("The study is due on day {}", study.expected_completion_day))]
             }
             _ => Vec::new(),
         }
@@ -122,8 +122,8 @@ impl Market {
 
     /// Opens the customers screen with the selected group.
     fn show_customers_effect(&self, company: &DisplayedCompany) -> Vec<Effect> {
-        let effect = self.group().map(|group| match level_of(company, group) {
-            0 => Effect::Complain(format!("{group} has not been found yet")),
+        let effect = self.group().map(|group| match study_level(company, group) {
+            0 => Effect::ShowError(format!("{group} has not been found yet")),
             _ => Effect::ShowGroup(ScreenId::Customers, group),
         });
         effect.into_iter().collect()
@@ -131,8 +131,8 @@ impl Market {
 
     /// Opens the participation curve of the selected group.
     fn show_curve_effect(&self, company: &DisplayedCompany) -> Vec<Effect> {
-        let effect = self.group().map(|group| match level_of(company, group) {
-            0 => Effect::Complain(format!("{group} has not been found yet")),
+        let effect = self.group().map(|group| match study_level(company, group) {
+            0 => Effect::ShowError(format!("{group} has not been found yet")),
             _ => Effect::ShowCurve(Some(group)),
         });
         effect.into_iter().collect()
@@ -144,36 +144,36 @@ impl Market {
 
     fn rebuild_tables(&mut self, company: &DisplayedCompany) {
         let kept = self.group();
-        let known = |group: &Group| level_of(company, *group) > 0;
+        let known = |group: &Group| study_level(company, *group) > 0;
         self.groups = company.observation.known_groups.clone();
         self.groups.extend(Group::all().filter(|group| !known(group)));
         let known = |group: &Group| self.facts.known.get(group).copied().unwrap_or_default();
-        let rows = self.groups.iter().map(|group| groups::row_of(*group, known(group), company)).collect();
+        let rows = self.groups.iter().map(|group| groups::group_row(*group, known(group), company)).collect();
         self.table.set_columns_and_rows(groups::columns(), rows);
         if let Some(row) = self.groups.iter().position(|shown_group| Some(*shown_group) == kept) {
             self.table.select(row);
         }
-        let tried = self.facts.attempts.iter().map(|attempt| attempts::row_of(attempt, company)).collect();
+        let tried = self.facts.attempts.iter().map(|attempt| attempts::attempt_row(attempt, company)).collect();
         self.attempts.set_columns_and_rows(attempts::columns(), tried);
         if std::sync::Arc::ptr_eq(&self.posts, &company.posts) {
             return;
         }
         self.posts = company.posts.clone();
         self.news = news::competitor_news(company);
-        self.headlines.set_columns_and_rows(news::columns(), self.news.iter().map(news::row_of).collect());
+        self.headlines.set_columns_and_rows(news::columns(), self.news.iter().map(news::news_row).collect());
     }
 
     fn check_call(&mut self, tool: ToolId, arguments: Value) -> Vec<Effect> {
-        vec![Effect::Ask(self.pending_call.ask(CallCheck { tool, arguments }))]
+        vec![Effect::Ask(self.pending_call.ask(PreviewCallQuestion { tool, arguments }))]
     }
 
     fn order_study(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
-        match self.group().filter(|group| level_of(company, *group) > 0) {
+        match self.group().filter(|group| study_level(company, *group) > 0) {
             Some(group) => {
                 let level = target_level(company, group, self.target_level);
                 self.check_call(STUDY_TOOL, json!({ "group_id": group.id(), "target_level": level }))
             }
-            None => vec![Effect::Complain("Only known groups can be studied".to_owned())],
+            None => vec![Effect::ShowError("Only known groups can be studied".to_owned())],
         }
     }
 
@@ -233,14 +233,14 @@ impl ScreenState for Market {
     }
 
     fn open_object(&self, context: &ScreenContext<'_>) -> Option<(&'static str, String)> {
-        let group = self.group().filter(|group| level_of(context.company, *group) > 0)?;
+        let group = self.group().filter(|group| study_level(context.company, *group) > 0)?;
         Some(("study", group.id().to_owned()))
     }
 
     fn take_answers(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         match self.pending_call.try_take() {
             Some((call, Ok(preview))) => vec![self.confirm_effect(call.tool, call.arguments, &preview, context.company)],
-            Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
+            Some((_, Err(refusal))) => vec![Effect::ShowError(refusal.to_string())],
             None => Vec::new(),
         }
     }
@@ -283,7 +283,7 @@ impl PaneScreen for Market {
             Action::FindGroup => Some(self.check_call(FIND_TOOL, json!({}))),
             // The user must see the selected group before ordering a study.
             Action::StudyGroup if !matches!(self.focus, MarketPane::Groups | MarketPane::Report) => {
-                Some(vec![Effect::Complain("First select the group in the groups pane".to_owned())])
+                Some(vec![Effect::ShowError("First select the group in the groups pane".to_owned())])
             }
             Action::StudyGroup => Some(self.order_study(context.company)),
             Action::GroupCurve => Some(self.show_curve_effect(context.company)),
@@ -352,7 +352,7 @@ fn move_in_table(table: &mut Table, action: Action, context: &ScreenContext<'_>)
 
 /// Returns a figure about what the player knows of a group.
 fn knowledge_figure(group: Group, company: &DisplayedCompany, term: &'static str, what: &str) -> Option<Figure> {
-    let what = if level_of(company, group) == 0 { "facts about" } else { what };
+    let what = if study_level(company, group) == 0 { "facts about" } else { what };
     Some(Figure {
         title: format!("{what} {group}"),
         term,

@@ -111,12 +111,12 @@ pub fn running_study(company: &DisplayedCompany, group: Group) -> Option<&Runnin
 }
 
 /// Returns the study level of a known group, from its insight report.
-pub fn level_of(company: &DisplayedCompany, group: Group) -> u8 {
+pub fn study_level(company: &DisplayedCompany, group: Group) -> u8 {
     company.insights.get(&group).map_or(0, |insights| insights.info_level)
 }
 
 /// Returns the name of a known group.
-pub fn name_of(company: &DisplayedCompany, group: Group) -> &str {
+pub fn group_name(company: &DisplayedCompany, group: Group) -> &str {
     company.insights.get(&group).map_or("", |insights| &insights.group_name)
 }
 
@@ -128,7 +128,7 @@ pub fn undiscovered_count(company: &DisplayedCompany) -> usize {
 /// Returns the level of the next study: the chosen level if that level is allowed, otherwise the next level.
 pub fn target_level(company: &DisplayedCompany, group: Group, chosen: Option<u8>) -> u8 {
     let (least, most) = company.tool_limits.targets;
-    let now = level_of(company, group);
+    let now = study_level(company, group);
     let lowest = now.max(least).min(most);
     chosen.unwrap_or(now.saturating_add(1)).clamp(lowest, most)
 }

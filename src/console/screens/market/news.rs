@@ -105,7 +105,7 @@ pub fn columns() -> Vec<TableColumn> {
     vec![TableColumn::numeric("day"), TableColumn::text("about"), TableColumn::text("news").with_max_width(u16::MAX)]
 }
 
-pub fn row_of(item: &CompetitorNews) -> Vec<TableCell> {
+pub fn news_row(item: &CompetitorNews) -> Vec<TableCell> {
     vec![
         TableCell::from_number(f64::from(item.post.day), item.post.day.to_string()).with_role(Role::Dim),
         TableCell::from_text(item.competitor.as_deref().unwrap_or("economy")).with_role(match item.competitor {

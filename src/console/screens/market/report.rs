@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use super::model::{level_of, name_of, running_study, target_level};
+use super::model::{study_level, group_name, running_study, target_level};
 use super::{Market, MarketPane, knowledge_figure};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
@@ -98,7 +98,7 @@ fn format_share(value: f64) -> String {
 /// Returns the lines of the insight report of a known group.
 pub fn lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
-    let noise = company.tool_limits.study_level(level_of(company, group)).map_or(0.0, |level| level.noise);
+    let noise = company.tool_limits.study_level(study_level(company, group)).map_or(0.0, |level| level.noise);
     let mut lines = vec![ReportLine::heading("mean of the group", "range")];
     for (estimate, words, unit, write) in ESTIMATE_FIELDS {
         let Some(value) = estimate(&insights.estimates) else { continue };
@@ -163,7 +163,7 @@ fn study_offer_text(company: &DisplayedCompany, group: Group, chosen: Option<u8>
     }
     let target = target_level(company, group, chosen);
     let Some(terms) = company.tool_limits.study_level(target) else { return String::new() };
-    let what = match target == level_of(company, group) {
+    let what = match target == study_level(company, group) {
         true => format!("update at level {target}"),
         false => format!("to level {target}"),
     };
@@ -212,13 +212,13 @@ impl Pane<Market> for ReportPane {
         let Some(group) = market.group() else {
             return PaneBorder { title: "Insight report".to_owned(), ..PaneBorder::default() };
         };
-        let level = level_of(company, group);
+        let level = study_level(company, group);
         if level == 0 {
             return PaneBorder { title: format!("{group} · not found yet"), ..PaneBorder::default() };
         }
         let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
         PaneBorder {
-            title: format!("{group} · {}", name_of(company, group)),
+            title: format!("{group} · {}", group_name(company, group)),
             note: format!("level {level} · ±{} · {}", percent(noise, 0), study_date_text(company, group)),
             keys: context.hints(&[Action::StudyGroup, Action::LevelUp, Action::LevelDown]),
             shows_keys_always: true,
@@ -228,7 +228,7 @@ impl Pane<Market> for ReportPane {
     fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let (company, inside) = (context.company, placement.area);
         let Some(group) = market.group().filter(|_| !inside.is_empty()) else { return };
-        if level_of(company, group) == 0 {
+        if study_level(company, group) == 0 {
             return draw_unknown(canvas, inside, context);
         }
         let running = running_study(company, group).is_some();

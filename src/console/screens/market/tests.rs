@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::*;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, asked, screen_text, played_screen, played_session, loaded_screen};
+use crate::test_kit::{handle_action, only_question, screen_text, played_screen, played_session, loaded_screen};
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_worker::posts::PostKind;
@@ -17,7 +17,7 @@ fn with_context<T>(company: &DisplayedCompany, work: impl FnOnce(&ScreenContext<
 fn confirm_and_call(screen: &mut Market, session: &mut Session, action: Action) -> (String, Vec<Effect>) {
     let company = DisplayedCompany::from_session(session);
     let effects = handle_action(screen, action, &company);
-    let CallCheck { tool, arguments } = asked(&effects);
+    let PreviewCallQuestion { tool, arguments } = only_question(&effects);
     screen.pending_call.set_answer(session.preview_call(*tool, arguments));
     let effects = with_context(&company, |context| screen.take_answers(context));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
@@ -48,7 +48,7 @@ fn study_is_confirmed_ordered_and_shown_while_running() {
     for part in ["A study of S1 to level 2.", "$60,000", "day 10", "cannot be undone"] {
         assert!(question.contains(part), "{part} in {question}");
     }
-    assert!(matches!(&effects[..], [Effect::Say(text)] if text.contains("day 10")), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowStatus(text)] if text.contains("day 10")), "{effects:?}");
     let company = DisplayedCompany::from_session(&session);
     let text = screen_text(&screen, &company, 120, 37);
     assert!(text.contains("→2 due day 10") && text.contains("study to level 2 due on day 10"), "{text}");
@@ -70,7 +70,7 @@ fn research_attempts_are_listed() {
             question.contains("30 % chance to find") && question.contains("$25,000 at once"),
             "{question}"
         );
-        let [Effect::Say(text)] = &effects[..] else { panic!("{effects:?}") };
+        let [Effect::ShowStatus(text)] = &effects[..] else { panic!("{effects:?}") };
         if text.contains("Found ") {
             found = screen.group();
             break;
@@ -119,11 +119,11 @@ fn known_groups_open_customers_and_unknown_groups_are_explained() {
     handle_action(&mut screen, Action::Last, &company);
     let effects = handle_action(&mut screen, Action::Open, &company);
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.contains("not been found yet")),
+        matches!(&effects[..], [Effect::ShowError(text)] if text.contains("not been found yet")),
         "{effects:?}"
     );
     let effects = handle_action(&mut screen, Action::StudyGroup, &company);
-    assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowError(_)]), "{effects:?}");
     let text = screen_text(&screen, &company, 120, 37);
     assert!(text.contains("30 % of attempts"), "{text}");
 }

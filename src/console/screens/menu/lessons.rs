@@ -9,7 +9,7 @@ use novamind_course::Lesson;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_report::pluralize;
-use novamind_session::{LessonEntry, NewRun};
+use novamind_session::{LessonOptions, NewRun};
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -45,11 +45,11 @@ impl LessonList {
     pub(super) fn start_lesson(&self, selected: usize) -> Vec<Effect> {
         match self.lessons.get(selected).map(|listed_lesson| &listed_lesson.lesson) {
             Some(Ok(lesson)) => {
-                let entry = LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true };
+                let entry = LessonOptions { lesson: lesson.clone(), part: 0, is_judged: true };
                 let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
                 vec![Effect::Request(Request::Create(Box::new(new)))]
             }
-            Some(Err(problem)) => vec![Effect::Complain(problem.clone())],
+            Some(Err(problem)) => vec![Effect::ShowError(problem.clone())],
             None => Vec::new(),
         }
     }

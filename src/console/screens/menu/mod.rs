@@ -320,7 +320,7 @@ impl StartMenu {
     fn open_latest(&self) -> Vec<Effect> {
         match self.latest() {
             Some(run) => vec![Effect::Request(Request::Open(run.id.clone(), Access::Write))],
-            None => vec![Effect::Complain("No unfinished run. Start one with n.".to_owned())],
+            None => vec![Effect::ShowError("No unfinished run. Start one with n.".to_owned())],
         }
     }
 
@@ -338,11 +338,11 @@ impl StartMenu {
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
-                effects.push(Effect::Say("Mark two or more runs, then compare".to_owned()));
+                effects.push(Effect::ShowStatus("Mark two or more runs, then compare".to_owned()));
                 return effects;
             }
             Some(HomeEntry::PublishedResults) => (self.page, self.selected) = (MenuPage::PublishedResults, 0),
-            Some(HomeEntry::Quit) => return vec![Effect::Do(Action::Quit)],
+            Some(HomeEntry::Quit) => return vec![Effect::Execute(Action::Quit)],
             None => {}
         }
         Vec::new()
@@ -367,7 +367,7 @@ impl StartMenu {
                 field.handle_key(key);
             }),
             _ if key.code == KeyCode::Char('q') && self.question.is_none() => {
-                return vec![Effect::Do(Action::Quit)];
+                return vec![Effect::Execute(Action::Quit)];
             }
             _ => {}
         }

@@ -74,7 +74,7 @@ impl PathForm {
         // Terminals put quotes around the paths of dropped files.
         let typed = self.field.text().trim().trim_matches(['\'', '"']);
         if typed.is_empty() {
-            return vec![Effect::Complain(format!("Type a path: {}", self.purpose.prompt().to_lowercase()))];
+            return vec![Effect::ShowError(format!("Type a path: {}", self.purpose.prompt().to_lowercase()))];
         }
         let path = PathBuf::from(typed);
         vec![Effect::Request(match self.purpose {

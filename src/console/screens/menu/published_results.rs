@@ -8,7 +8,7 @@ use novamind_record::folder::runs::RunSummary;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_report::ranking::{describe_published_conditions, published_results};
-use novamind_report::ranking_eligibility::{RankingCriteria, RankingObstacle, describe_not_ranked};
+use novamind_report::ranking_eligibility::{RankingCriteria, RankingObstacle, explain_unranked_runs};
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -84,7 +84,7 @@ impl StartMenu {
     /// Explains why runs are not ranked, or how the user's ranked runs are marked.
     fn own_results_text(&self, ranked: usize) -> String {
         let finished: Vec<Vec<RankingObstacle>> = self.runs().iter().filter_map(obstacles).collect();
-        match (ranked, describe_not_ranked(&finished)) {
+        match (ranked, explain_unranked_runs(&finished)) {
             (_, Some(left_out)) => left_out,
             (0, None) => "Finish a 500-day run to appear here.".to_owned(),
             (_, None) => "Your runs are marked; bankrupt runs count as $0.".to_owned(),

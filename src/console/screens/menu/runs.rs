@@ -109,7 +109,7 @@ impl StartMenu {
             Action::EndRun => {
                 match self.selected_run().filter(|run| run.ended.is_none() && run.problem.is_none()) {
                     Some(run) => self.question = Some(MenuQuestion::EndRun(run.id.clone())),
-                    None => return vec![Effect::Complain("This run is already over".to_owned())],
+                    None => return vec![Effect::ShowError("This run is already over".to_owned())],
                 }
             }
             Action::DeleteRun => {
@@ -138,7 +138,7 @@ impl StartMenu {
                 self.marked.remove(at);
             }
             None if self.marked.len() == MAX_COMPARED_RUNS => {
-                return vec![Effect::Complain(format!("you can compare at most {MAX_COMPARED_RUNS} runs"))];
+                return vec![Effect::ShowError(format!("you can compare at most {MAX_COMPARED_RUNS} runs"))];
             }
             None => self.marked.push(id),
         }
@@ -156,7 +156,7 @@ impl StartMenu {
 
     fn open_comparison(&mut self) -> Vec<Effect> {
         if self.marked.len() < 2 {
-            return vec![Effect::Complain("Mark two or more runs first".to_owned())];
+            return vec![Effect::ShowError("Mark two or more runs first".to_owned())];
         }
         let effects = self.request_marked_previews();
         self.page = super::MenuPage::Compare;
@@ -188,17 +188,17 @@ impl StartMenu {
             (Action::Agree, Some(MenuQuestion::Consent(new, text))) => match text.consent() {
                 Some(consent_given) => {
                     vec![Effect::Request(Request::Create(Box::new(NewRun {
-                        agreed: Some(consent_given.given_now()),
+                        agreed: Some(consent_given.agree_now()),
                         ..*new
                     })))]
                 }
                 None => {
                     self.question = Some(MenuQuestion::Consent(new, text));
-                    vec![Effect::Complain(UNREAD_ERROR.to_owned())]
+                    vec![Effect::ShowError(UNREAD_ERROR.to_owned())]
                 }
             },
             (Action::Decline | Action::Close, Some(MenuQuestion::Consent(..))) => {
-                vec![Effect::Say("No run was started, and nothing was recorded".to_owned())]
+                vec![Effect::ShowStatus("No run was started, and nothing was recorded".to_owned())]
             }
             (action, Some(MenuQuestion::Consent(new, mut text))) => {
                 text.handle_scroll(action);

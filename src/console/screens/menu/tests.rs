@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::*;
-use crate::test_kit::{asked, render_rows};
+use crate::test_kit::{only_question, render_rows};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::{Access, SeekTarget};
@@ -54,7 +54,7 @@ fn preview() -> RunPreview {
     RunPreview { cash, subscribers: 41_950, seats: 1_240, recurring_revenue: 812_345.0 }
 }
 
-fn three() -> StartMenu {
+fn menu_with_three_runs() -> StartMenu {
     let mut menu = menu(vec![
         summary("aaaa0001"),
         RunSummary { ended: Some(RunEndReason::Horizon), day: 500, ..summary("bbbb0002") },
@@ -91,7 +91,7 @@ fn first_entry_without_runs_is_the_tour() {
 
 #[test]
 fn last_run_is_shown_next_to_the_entries() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     let screen = menu_text(&menu, 120, 39);
     for part in [
         "› Continue",
@@ -112,10 +112,10 @@ fn last_run_is_shown_next_to_the_entries() {
 fn previews_are_requested_once() {
     let mut menu = StartMenu::new(&Configuration::bundled());
     let effects = menu.set_runs(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
-    assert_eq!(asked::<PreviewQuestion>(&effects).id, "aaaa0001");
+    assert_eq!(only_question::<PreviewQuestion>(&effects).id, "aaaa0001");
     menu.page = MenuPage::Runs;
     assert!(menu.request_selected_preview().is_empty());
-    assert_eq!(asked::<PreviewQuestion>(&menu.handle_action(Action::Down)).id, "bbbb0002");
+    assert_eq!(only_question::<PreviewQuestion>(&menu.handle_action(Action::Down)).id, "bbbb0002");
     assert!(menu.handle_action(Action::Up).is_empty());
 }
 
@@ -152,12 +152,12 @@ fn new_run_list_keeps_the_selection() {
     let mut menu = menu(Vec::new());
     menu.handle_action(Action::Last);
     menu.set_runs(Ok(vec![summary("aaaa0001"), summary("bbbb0002")]));
-    assert!(matches!(menu.handle_action(Action::Open)[..], [Effect::Do(Action::Quit)]));
+    assert!(matches!(menu.handle_action(Action::Open)[..], [Effect::Execute(Action::Quit)]));
 }
 
 #[test]
 fn ending_and_deleting_runs_requires_confirmation() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     menu.page = MenuPage::Runs;
     for (action, words) in [(Action::EndRun, "Giving up"), (Action::DeleteRun, "Deleting")] {
         assert!(menu.handle_action(action).is_empty());
@@ -181,16 +181,16 @@ fn ending_and_deleting_runs_requires_confirmation() {
     );
     menu.handle_action(Action::Down);
     assert!(
-        matches!(&menu.handle_action(Action::EndRun)[..], [Effect::Complain(_)]),
+        matches!(&menu.handle_action(Action::EndRun)[..], [Effect::ShowError(_)]),
         "the run is already over"
     );
 }
 
 #[test]
 fn marked_runs_are_compared() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     menu.page = MenuPage::Runs;
-    assert!(matches!(&menu.handle_action(Action::CompareRuns)[..], [Effect::Complain(_)]));
+    assert!(matches!(&menu.handle_action(Action::CompareRuns)[..], [Effect::ShowError(_)]));
     menu.handle_action(Action::MarkRun);
     menu.handle_action(Action::MarkRun);
     menu.handle_action(Action::MarkRun);
@@ -209,7 +209,7 @@ fn marked_runs_are_compared() {
 
 #[test]
 fn run_list_can_be_filtered_and_sorted() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     menu.page = MenuPage::Runs;
     menu.handle_action(Action::Filter);
     assert_eq!(menu.scopes(), [Scope::Field]);
@@ -226,7 +226,7 @@ fn run_list_can_be_filtered_and_sorted() {
 
 #[test]
 fn form_shows_problems_while_typing() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     menu.handle_action(Action::NewRun);
     menu.form.selected_row = 3;
     type_text(&mut menu, "3");
@@ -288,7 +288,7 @@ fn unavailable_modes_are_not_offered() {
 
 #[test]
 fn handouts_and_classes_are_opened_by_path() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     let screen = menu_text(&menu, 80, 23);
     assert!(
         screen.contains("such as S07.nm") && screen.contains("Class") && screen.contains("Quit"),
@@ -298,7 +298,7 @@ fn handouts_and_classes_are_opened_by_path() {
     menu.handle_action(Action::Up);
     menu.handle_action(Action::Open);
     assert_eq!((menu.page, menu.scopes()), (MenuPage::PathForm, vec![Scope::Field]));
-    assert!(matches!(&menu.handle_action(Action::Commit)[..], [Effect::Complain(_)]), "no path is typed");
+    assert!(matches!(&menu.handle_action(Action::Commit)[..], [Effect::ShowError(_)]), "no path is typed");
     type_text(&mut menu, "'~/q class'");
     match &menu.handle_action(Action::Commit)[..] {
         [Effect::Request(Request::ReadClass(path, _))] => assert_eq!(path, std::path::Path::new("~/q class")),
@@ -321,7 +321,7 @@ fn handouts_and_classes_are_opened_by_path() {
 
 #[test]
 fn published_results_include_own_runs() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     menu.page = MenuPage::PublishedResults;
     let screen = menu_text(&menu, 120, 39);
     for part in
@@ -336,7 +336,7 @@ fn published_results_include_own_runs() {
 
 #[test]
 fn every_page_is_drawn_at_every_size() {
-    for mut menu in [menu(Vec::new()), three(), StartMenu::new(&Configuration::bundled())] {
+    for mut menu in [menu(Vec::new()), menu_with_three_runs(), StartMenu::new(&Configuration::bundled())] {
         menu.marked = menu.runs().iter().map(|run| run.id.clone()).collect();
         let pages = [
             MenuPage::Home,
@@ -359,7 +359,7 @@ fn every_page_is_drawn_at_every_size() {
 
 #[test]
 fn runs_are_replayed_from_the_list_and_the_first_page() {
-    let mut menu = three();
+    let mut menu = menu_with_three_runs();
     let replays = |effects: Vec<Effect>, wanted: &str| {
         let [
             Effect::Request(Request::Replay {
@@ -387,7 +387,7 @@ fn failed_open_offers_an_alternative() {
         (OpenFallback::Recover("aaaa0001".to_owned()), "as a branch?"),
     ] {
         for page in [MenuPage::Home, MenuPage::Runs] {
-            let mut menu = three();
+            let mut menu = menu_with_three_runs();
             menu.page = page;
             menu.show_open_error(long.clone(), Some(instead.clone()));
             for (width, height) in [(60, 15), (80, 23), (120, 39)] {
@@ -419,7 +419,7 @@ fn failed_open_offers_an_alternative() {
 fn run_starts_only_after_consent() {
     let text = "We keep what you do for a year.\n".repeat(40) + "\nYou can stop at any time.";
     let asked = || {
-        let mut menu = three();
+        let mut menu = menu_with_three_runs();
         menu.show_open_error(text.clone(), Some(OpenFallback::AskConsent(Box::default())));
         menu
     };
@@ -430,7 +430,7 @@ fn run_starts_only_after_consent() {
     }
     assert!(!screen.contains("stop at any time"));
     assert!(
-        matches!(menu.handle_action(Action::Agree)[..], [Effect::Complain(_)]),
+        matches!(menu.handle_action(Action::Agree)[..], [Effect::ShowError(_)]),
         "the end of the text was not shown"
     );
     (0..60).for_each(|_| drop(menu.handle_action(Action::Down)));
@@ -444,7 +444,7 @@ fn run_starts_only_after_consent() {
     }
     for no in [Action::Decline, Action::Close] {
         let mut menu = asked();
-        assert!(matches!(menu.handle_action(no)[..], [Effect::Say(_)]));
+        assert!(matches!(menu.handle_action(no)[..], [Effect::ShowStatus(_)]));
         assert!(!menu_text(&menu, 80, 23).contains("Before the session"));
     }
 }

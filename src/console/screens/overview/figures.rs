@@ -4,7 +4,7 @@ use crate::context::Figure;
 use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::{WeekFigure, WeekFigures};
-use novamind_session::{WEEK_OF_ENTRY_SQL, entries_of_weeks_sql};
+use novamind_session::{LEDGER_WEEK_SQL, ledger_weeks_condition_sql};
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, sparkline};
@@ -226,7 +226,7 @@ pub fn columns() -> Vec<TableColumn> {
 }
 
 /// Returns the first and the last week that a column covers, as numbers of weeks before the last week.
-fn weeks_of(column: usize) -> (u32, u32) {
+fn column_weeks(column: usize) -> (u32, u32) {
     match column {
         2 => (1, 0),
         3 => (11, 0),
@@ -237,8 +237,8 @@ fn weeks_of(column: usize) -> (u32, u32) {
 }
 
 /// Returns the table row of a figure.
-pub fn row_of(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell> {
-    let trend = company.trend(12, metric.read);
+pub fn metric_row(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell> {
+    let trend = company.recent_values(12, metric.read);
     let now = trend.last().copied();
     // Only cash has a value before the first week.
     let opening = matches!(metric.rows_source, RowsSource::Cash).then_some(company.observation.starting_cash);
@@ -276,7 +276,7 @@ pub fn row_of(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell> {
 /// Returns the figure that a column shows, with a query for its source rows.
 pub fn figure(metric: &Metric, column: usize, company: &DisplayedCompany) -> Figure {
     let week = company.observation.week;
-    let (from, to) = weeks_of(column);
+    let (from, to) = column_weeks(column);
     let (from, to) = (week.saturating_sub(from).max(1.min(week)), week.saturating_sub(to));
     let weeks = if from == to { format!("week {to}") } else { format!("weeks {from} to {to}") };
     let now = to == week;
@@ -296,13 +296,13 @@ fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");
     Some(match source {
         RowsSource::Cash => format!(
-            "SELECT {WEEK_OF_ENTRY_SQL} AS week, category, sum(amount) AS amount\nFROM ledger\nWHERE {}\nGROUP BY 1, 2\n\
+            "SELECT {LEDGER_WEEK_SQL} AS week, category, sum(amount) AS amount\nFROM ledger\nWHERE {}\nGROUP BY 1, 2\n\
              ORDER BY 1 DESC, 3 DESC",
-            entries_of_weeks_sql(0, weeks.1)
+            ledger_weeks_condition_sql(0, weeks.1)
         ),
         RowsSource::Ledger(condition) => format!(
             "SELECT day, category, amount, note\nFROM ledger\nWHERE {} AND {condition}\nORDER BY id",
-            entries_of_weeks_sql(weeks.0, weeks.1)
+            ledger_weeks_condition_sql(weeks.0, weeks.1)
         ),
         RowsSource::ActiveSubscriptions(condition) if now => format!(
             "SELECT s.customer_id, c.group_id, s.plan, s.seat_count, s.effective_price,\n    \

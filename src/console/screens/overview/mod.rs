@@ -85,14 +85,14 @@ impl ScreenState for Overview {
         let company = context.company;
         self.rebuild_news(company);
         self.selected_need = self.selected_need.min(company.action_items.len().saturating_sub(1));
-        let rows = METRICS.iter().map(|metric| figures::row_of(metric, company)).collect();
+        let rows = METRICS.iter().map(|metric| figures::metric_row(metric, company)).collect();
         let first = self.week.rows().is_empty();
         if first {
             self.week = Table::default().with_cell_selection();
             self.quality = Table::default().with_cell_selection();
         }
         self.week.set_columns_and_rows(figures::columns(), rows);
-        let (columns, rows) = quality::table_of(company);
+        let (columns, rows) = quality::quality_table(company);
         self.quality.set_columns_and_rows(columns, rows);
         if first {
             self.week.handle_action(Action::Right, 1);

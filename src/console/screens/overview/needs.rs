@@ -12,7 +12,7 @@ use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
 use novamind_report::action_items::{ActionItem, ActionTarget, Problem};
-use novamind_session::entries_of_weeks_sql;
+use novamind_session::ledger_weeks_condition_sql;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
@@ -26,7 +26,7 @@ impl Pane<Overview> for NeedsPane {
     }
 
     fn figure(&self, overview: &Overview, context: &ScreenContext<'_>) -> Option<Figure> {
-        context.company.action_items.get(overview.selected_need).map(|need| figure_of(need, context.company.observation.day))
+        context.company.action_items.get(overview.selected_need).map(|need| item_figure(need, context.company.observation.day))
     }
 
     fn handle_action(&self, overview: &mut Overview, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -64,23 +64,23 @@ impl Pane<Overview> for NeedsPane {
             };
             canvas.draw_text(placement.area, text, Role::Dim);
         }
-        linked_rows::draw(canvas, placement, &rows_of(context.company), overview.selected_need);
+        linked_rows::draw(canvas, placement, &item_rows(context.company), overview.selected_need);
     }
 }
 
-fn rows_of(company: &DisplayedCompany) -> Vec<LinkedRow> {
-    company.action_items.iter().map(|need| LinkedRow::new(screen_of(need), need.describe(), need.is_urgent)).collect()
+fn item_rows(company: &DisplayedCompany) -> Vec<LinkedRow> {
+    company.action_items.iter().map(|need| LinkedRow::new(item_screen(need), need.describe(), need.is_urgent)).collect()
 }
 
 /// Returns the height of the pane with its border, limited to `most`.
 pub fn pane_height(company: &DisplayedCompany, width: u16, most: u16) -> u16 {
     let room = width.saturating_sub(2);
-    let lines: usize = rows_of(company).iter().map(|row| row.lines(room).len()).sum();
+    let lines: usize = item_rows(company).iter().map(|row| row.lines(room).len()).sum();
     (lines.max(1) as u16 + 2).min(most.max(4))
 }
 
 /// Returns the screen on which the user can act on an item.
-pub fn screen_of(need: &ActionItem) -> ScreenId {
+pub fn item_screen(need: &ActionItem) -> ScreenId {
     match &need.target {
         ActionTarget::Call(..) => ScreenId::Tools,
         ActionTarget::Thread(_) => ScreenId::Inbox,
@@ -100,7 +100,7 @@ pub fn need_effect(need: &ActionItem) -> Effect {
 }
 
 /// Returns the figure of an item, with a query for its source rows.
-pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
+pub fn item_figure(need: &ActionItem, day: u32) -> Figure {
     let from = day.saturating_sub(6);
     let days = |columns: &str| {
         format!("SELECT {columns}\nFROM service_day\nWHERE day BETWEEN {from} AND {day}\nORDER BY day")
@@ -115,7 +115,7 @@ pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
     let (term, sql) = match need.problem {
         Problem::Runway => {
             let week = day.div_ceil(7);
-            let weeks = entries_of_weeks_sql(week.saturating_sub(3).max(1), week);
+            let weeks = ledger_weeks_condition_sql(week.saturating_sub(3).max(1), week);
             (
                 "runway",
                 Some(format!(
@@ -137,7 +137,7 @@ pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
         Problem::NoLeads => ("lead", None),
         Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
         Problem::NoRequests(group) => ("delivered-quality", Some(leads_of(group.id()))),
-        Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::statement(channel, group))),
+        Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::cost_query(channel, group))),
         Problem::Margin => ("gross-margin", None),
         Problem::Overload | Problem::Capacity => {
             ("overload", Some(days("day, total_usage_units, capacity_units, capacity_tier")))
@@ -153,11 +153,11 @@ pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
             )),
         ),
     };
-    Figure { title: need.text.clone(), term, sql, week_quantity: None }.with_week_quantity(quantity_of(need), day.div_ceil(7))
+    Figure { title: need.text.clone(), term, sql, week_quantity: None }.with_week_quantity(item_quantity(need), day.div_ceil(7))
 }
 
 /// Returns the weekly quantity that an item is about.
-fn quantity_of(need: &ActionItem) -> Option<WeekQuantity> {
+fn item_quantity(need: &ActionItem) -> Option<WeekQuantity> {
     match need.problem {
         Problem::Runway => WeekQuantity::for_company(WeekFigure::CashChange),
         Problem::NoLeads => WeekQuantity::for_company(WeekFigure::Leads),

@@ -76,8 +76,8 @@ impl Pane<Overview> for QualityPane {
     }
 }
 
-pub fn table_of(company: &DisplayedCompany) -> (Vec<TableColumn>, Vec<Vec<TableCell>>) {
-    let tier = |plan: &Plan| format_number(company.setting(ToolId::SetModelTiers, plan.id()));
+pub fn quality_table(company: &DisplayedCompany) -> (Vec<TableColumn>, Vec<Vec<TableCell>>) {
+    let tier = |plan: &Plan| format_number(company.current_setting(ToolId::SetModelTiers, plan.id()));
     let plans = Plan::ALL.iter().map(|plan| TableColumn::numeric(format!("{plan} tier {}", tier(plan))));
     let known = ["required", "as of"].map(TableColumn::numeric);
     let columns = [TableColumn::text("group")].into_iter().chain(plans).chain(known);

@@ -2,12 +2,12 @@ use super::*;
 use crate::context::ScreenId;
 use crate::effect::Effect;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, asked, session_with_negotiations, screen_text, played_screen, played_session, loaded_screen};
+use crate::test_kit::{handle_action, only_question, session_with_negotiations, screen_text, played_screen, played_session, loaded_screen};
 use news::NewsKind;
 use novamind_database::Cell as Value;
 use novamind_report::action_items::{ActionTarget, Problem};
 use novamind_session::Session;
-use novamind_worker::page_questions::CallCheck;
+use novamind_worker::page_questions::PreviewCallQuestion;
 
 fn sum_column(session: &mut Session, sql: &str, column: &str) -> f64 {
     let rows = session.query(&format!("SELECT {column} FROM ({sql})")).expect("an answer");
@@ -102,7 +102,7 @@ fn every_need_opens_its_object_and_has_source_rows() {
             (ActionTarget::Ledger, [Effect::Show(ScreenId::Cash)]) => {}
             other => panic!("{other:?}"),
         }
-        if let Some(sql) = needs::figure_of(need, company.observation.day).sql {
+        if let Some(sql) = needs::item_figure(need, company.observation.day).sql {
             session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
         }
         handle_action(&mut screen, Action::Down, &company);
@@ -113,7 +113,7 @@ fn every_need_opens_its_object_and_has_source_rows() {
 fn every_selection_has_a_term_or_tool() {
     let company = DisplayedCompany::from_session(&played_session(7));
     let day = company.observation.day;
-    let needs = company.action_items.iter().map(|need| needs::figure_of(need, day).term);
+    let needs = company.action_items.iter().map(|need| needs::item_figure(need, day).term);
     let metrics = METRICS.iter().map(|metric| metric.term);
     let kinds = [NewsKind::Research, NewsKind::Study, NewsKind::Economy, NewsKind::Posts, NewsKind::Press];
     let news = kinds.map(|kind| news::NewsItem { kind, text: String::new() }.figure(day).term);
@@ -128,7 +128,7 @@ fn waiting_threads_need_lists_those_threads() {
     let mut session = session_with_negotiations();
     let company = DisplayedCompany::from_session(&session);
     let need = company.action_items.iter().find(|need| need.problem == Problem::Threads).expect("threads wait");
-    let sql = needs::figure_of(need, company.observation.day).sql.expect("rows");
+    let sql = needs::item_figure(need, company.observation.day).sql.expect("rows");
     let open = sum_column(&mut session, &sql, "count(*)");
     assert_eq!(open, company.observation.waiting.len() as f64);
 }
@@ -142,7 +142,7 @@ fn proposed_call_fills_the_form() {
     let Effect::Prefill { tool, arguments } = needs::need_effect(need) else { panic!("{need:?}") };
     let mut tools = crate::screens::tools::Tools::default();
     let effects = tools.prefill(tool, &arguments, &company);
-    let checked = asked::<CallCheck>(&effects);
+    let checked = only_question::<PreviewCallQuestion>(&effects);
     assert_eq!((checked.tool, &checked.arguments), (tool, &arguments));
     session
         .call(tool, &arguments, novamind_record::trajectory::record::Via::Form)
@@ -172,7 +172,7 @@ fn needs_are_not_truncated_if_they_fit() {
 #[test]
 fn first_week_cash_change_matches_the_header() {
     let company = DisplayedCompany::from_session(&played_session(1));
-    let row = figures::row_of(&METRICS[0], &company);
+    let row = figures::metric_row(&METRICS[0], &company);
     assert_eq!(METRICS[0].name, "cash at week's end");
     let change = row[2].number.expect("a change");
     assert!((change - company.observation.cash_change).abs() < 0.01, "{row:?}");

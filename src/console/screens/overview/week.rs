@@ -8,7 +8,7 @@ use crate::action::Action;
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_session::week_of;
+use novamind_session::week_of_day;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 
@@ -35,7 +35,7 @@ impl Pane<Overview> for WeekPane {
     fn handle_action(&self, overview: &mut Overview, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             let metric = overview.week.selected().and_then(|row| METRICS.get(row));
-            return metric.map(|metric| Effect::Show(screen_of(metric.term))).into_iter().collect();
+            return metric.map(|metric| Effect::Show(details_screen(metric.term))).into_iter().collect();
         }
         overview.week.handle_action(action, context.page_rows);
         Vec::new()
@@ -44,7 +44,7 @@ impl Pane<Overview> for WeekPane {
     fn border(&self, overview: &Overview, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match overview.week.summary() {
             note if note.is_empty() => match &context.company.observation.last_week {
-                Some(week) => format!("week {} · to day {}", week_of(week.day), week.day),
+                Some(week) => format!("week {} · to day {}", week_of_day(week.day), week.day),
                 None => "no week yet".to_owned(),
             },
             note => note,
@@ -58,7 +58,7 @@ impl Pane<Overview> for WeekPane {
 }
 
 /// Returns the screen that shows details of the figure with a glossary term.
-fn screen_of(term: &str) -> ScreenId {
+fn details_screen(term: &str) -> ScreenId {
     match term {
         "cash" | "payments" | "running-costs" => ScreenId::Cash,
         "thread" | "seats" => ScreenId::Inbox,

@@ -22,7 +22,7 @@ use novamind_worker::company::DisplayedCompany;
 
 /// Returns the capacity tier of the last day and the capacity tier of the current setting.
 pub fn tiers(company: &DisplayedCompany, days: &[ServiceDay]) -> (Option<u32>, u32) {
-    (days.last().map(|day| day.tier), company.setting(ToolId::SetCapacityTier, "tier") as u32)
+    (days.last().map(|day| day.tier), company.current_setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
 /// Returns one-line summaries of capacity, the longest first.

@@ -40,12 +40,12 @@ impl PlanFacts {
 /// Returns the figures of all plans from their settings and sales.
 pub fn plans(sales: &PlanSales, company: &DisplayedCompany) -> [PlanFacts; 3] {
     Plan::ALL.map(|plan| {
-        let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
+        let tier = company.current_setting(ToolId::SetModelTiers, plan.id()) as u32;
         let model = company.price_list.model_tiers.get(&(tier as u8));
         PlanFacts {
             tier,
-            quota: company.setting(ToolId::SetUsageQuotas, plan.id()),
-            price: company.setting(ToolId::SetPrices, plan.id()),
+            quota: company.current_setting(ToolId::SetUsageQuotas, plan.id()),
+            price: company.current_setting(ToolId::SetPrices, plan.id()),
             unit_cost: model.map_or(0.0, |model| model.cost_per_usage_unit),
             usage: sales.usage_of_plan(plan),
         }
@@ -190,5 +190,5 @@ pub fn offers(company: &DisplayedCompany) -> Vec<ProjectOffer> {
 
 /// Returns the spending in a ledger category in dollars for each week, starting with the first week.
 pub fn weekly_spending(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
-    weeks.iter().map(|week| -week.booked.total_of(category)).collect()
+    weeks.iter().map(|week| -week.booked.category_total(category)).collect()
 }

@@ -10,7 +10,7 @@ use crate::action::Action;
 use crate::context::Figure;
 use crate::effect::Effect;
 use crate::screens::panes::PanePlacement;
-use novamind_base::formatting::{cents, compact_number, grouped_number, percent};
+use novamind_base::formatting::{dollars_and_cents, compact_number, grouped_number, percent};
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
@@ -57,15 +57,15 @@ impl ProductPanel for PlansPane {
     }
 
     fn destination(&self, product: &Product) -> &'static str {
-        tool_of(product.selected_row(self.id())).name()
+        row_tool(product.selected_row(self.id())).name()
     }
 
     fn open_effect(&self, product: &Product, _: &DisplayedCompany) -> Effect {
-        show_cell_effect(tool_of(product.selected_row(self.id())), Some(product.plan().to_string()))
+        show_cell_effect(row_tool(product.selected_row(self.id())), Some(product.plan().to_string()))
     }
 
     fn selected_figure(&self, product: &Product, _: &DisplayedCompany) -> Option<Figure> {
-        Some(figure_of(product.selected_row(self.id()), product.plan()))
+        Some(plan_figure(product.selected_row(self.id()), product.plan()))
     }
 
     fn move_sideways(&self, product: &mut Product, action: Action) -> bool {
@@ -119,14 +119,14 @@ fn format_optional(value: Option<f64>, write: impl Fn(f64) -> String) -> String 
 /// Figures of plans in display order, the most important first.
 static PLAN_FIGURES: [PlanFigure; 11] = [
     ("model tier", |plan| format!("T{}", plan.tier)),
-    ("price/month", |plan| cents(plan.price)),
+    ("price/month", |plan| dollars_and_cents(plan.price)),
     ("quota/day", |plan| compact_number(plan.quota)),
     ("unit cost, $/1k", |plan| format!("${}", grouped_number(plan.unit_cost * 1000.0, 3))),
     ("customers", |plan| grouped_number(plan.usage.customers, 0)),
     ("billed seats", |plan| grouped_number(plan.usage.seats, 0)),
     ("usage/seat, day", |plan| format_optional(plan.usage.units_per_seat(), |usage| grouped_number(usage, 1))),
-    ("paid/seat, mo.", |plan| format_optional(plan.usage.revenue_per_seat(), cents)),
-    ("compute/seat, mo.", |plan| format_optional(plan.compute_cost_per_seat(), cents)),
+    ("paid/seat, mo.", |plan| format_optional(plan.usage.revenue_per_seat(), dollars_and_cents)),
+    ("compute/seat, mo.", |plan| format_optional(plan.compute_cost_per_seat(), dollars_and_cents)),
     ("gross margin", |plan| {
         // A warning sign marks a plan with a negative margin. The sign is in the cell, because narrow windows cut off notes.
         format_optional(plan.margin(), |margin| {
@@ -137,7 +137,7 @@ static PLAN_FIGURES: [PlanFigure; 11] = [
 ];
 
 /// Returns the tool that sets the values in a row.
-fn tool_of(row: usize) -> ToolId {
+fn row_tool(row: usize) -> ToolId {
     match row {
         0 | 3 | 9 => ToolId::SetModelTiers,
         2 | 6 | 8 => ToolId::SetUsageQuotas,
@@ -146,7 +146,7 @@ fn tool_of(row: usize) -> ToolId {
 }
 
 /// Returns the figure in a row for a plan, with a query for its source rows.
-fn figure_of(row: usize, plan: Plan) -> Figure {
+fn plan_figure(row: usize, plan: Plan) -> Figure {
     let subscribers = || {
         Some(format!(
             "SELECT s.customer_id, c.group_id, s.effective_price, s.seat_count, s.start_day\n\

@@ -54,7 +54,7 @@ impl ProductPanel for QualityComponentsPane {
     fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
         let (area, selected) = (placement.area, product.selected_row(self.id()));
         let (base, shared) = company.quality_base;
-        let tier = |plan: &str| format!("{plan} T{}", format_number(company.setting(ToolId::SetModelTiers, plan)));
+        let tier = |plan: &str| format!("{plan} T{}", format_number(company.current_setting(ToolId::SetModelTiers, plan)));
         let wide = area.width >= 62;
         let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
         let head =

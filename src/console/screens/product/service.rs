@@ -53,13 +53,13 @@ impl ProductPanel for ServicePane {
 type ServiceMeasure = (&'static str, fn(&ServiceDay) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
 
 static SERVICE_MEASURES: [ServiceMeasure; 4] = [
-    ("utilization", ServiceDay::utilization, |share| percent(share, 0), max_of_days),
-    ("latency p95, ms", |day| day.latency_ms, |value| grouped_number(value, 0), max_of_days),
-    ("error rate", |day| day.error_rate, |share| percent(share, 2), max_of_days),
+    ("utilization", ServiceDay::utilization, |share| percent(share, 0), max_value),
+    ("latency p95, ms", |day| day.latency_ms, |value| grouped_number(value, 0), max_value),
+    ("error rate", |day| day.error_rate, |share| percent(share, 2), max_value),
     ("outage, minutes", |day| day.downtime_minutes, format_number, |days| days.iter().sum()),
 ];
 
-fn max_of_days(days: &[f64]) -> f64 {
+fn max_value(days: &[f64]) -> f64 {
     days.iter().copied().fold(0.0, f64::max)
 }
 

@@ -42,8 +42,8 @@ impl Pane<Social> for DraftPane {
         match key.code {
             _ if !social.editing => {}
             // A post has no indentation, so tab moves the focus.
-            KeyCode::Tab => return vec![Effect::Do(Action::FocusNext)],
-            KeyCode::BackTab => return vec![Effect::Do(Action::FocusPrevious)],
+            KeyCode::Tab => return vec![Effect::Execute(Action::FocusNext)],
+            KeyCode::BackTab => return vec![Effect::Execute(Action::FocusPrevious)],
             _ => social.draft.handle_key(key),
         }
         Vec::new()

@@ -32,7 +32,7 @@ impl Pane<Social> for FeedPane {
     }
 
     fn figure(&self, social: &Social, _: &ScreenContext<'_>) -> Option<Figure> {
-        social.selected_post().map(super::figure_of)
+        social.selected_post().map(super::post_figure)
     }
 
     fn handle_action(&self, social: &mut Social, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {

@@ -31,7 +31,7 @@ use novamind_worker::question::Pending;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::posts::Posts;
-use novamind_worker::page_questions::CallCheck;
+use novamind_worker::page_questions::PreviewCallQuestion;
 use novamind_worker::readings::Reading;
 
 /// Panes of the social screen in tab order.
@@ -66,7 +66,7 @@ pub struct Social {
     editing: bool,
     reply_to: Option<u32>,
     /// Check of the tool call before the user confirms the call.
-    pending_arguments: Pending<CallCheck>,
+    pending_arguments: Pending<PreviewCallQuestion>,
     /// Number of the newest post that was seen, or `None` until the screen is shown.
     newest_seen_post: Option<u32>,
     /// Day up to which posts were seen before the run was opened.
@@ -175,7 +175,7 @@ impl Social {
                 Vec::new()
             }
             None => {
-                vec![Effect::Complain("Select another author's post in the feed to answer it".to_owned())]
+                vec![Effect::ShowError("Select another author's post in the feed to answer it".to_owned())]
             }
         }
     }
@@ -189,10 +189,10 @@ impl Social {
         let (length, most) = (self.draft_length(), context.company.tool_limits.post_characters);
         if self.draft.is_blank() {
             let key = context.keys.label(Action::Compose).unwrap_or_default();
-            return vec![Effect::Complain(format!("Nothing to publish. Write a post with {key}."))];
+            return vec![Effect::ShowError(format!("Nothing to publish. Write a post with {key}."))];
         }
         if length > most {
-            return vec![Effect::Complain(format!(
+            return vec![Effect::ShowError(format!(
                 "The post has {length} characters; the maximum is {most}. Shorten it by {}.",
                 length - most
             ))];
@@ -201,7 +201,7 @@ impl Social {
         if let Some(number) = self.reply_to {
             arguments["reply_to_post_id"] = number.into();
         }
-        vec![Effect::Ask(self.pending_arguments.ask(CallCheck { tool: POST_TOOL, arguments }))]
+        vec![Effect::Ask(self.pending_arguments.ask(PreviewCallQuestion { tool: POST_TOOL, arguments }))]
     }
 
     fn confirm_effect(&self, arguments: Value, effect_day: Option<u32>) -> Effect {
@@ -280,7 +280,7 @@ impl ScreenState for Social {
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         match self.pending_arguments.try_take() {
             Some((call, Ok(preview))) => vec![self.confirm_effect(call.arguments, preview.effect_day)],
-            Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
+            Some((_, Err(refusal))) => vec![Effect::ShowError(refusal.to_string())],
             None => Vec::new(),
         }
     }
@@ -393,7 +393,7 @@ impl Social {
     }
 }
 
-fn figure_of(post: &Post) -> Figure {
+fn post_figure(post: &Post) -> Figure {
     let number = post.number;
     let (title, term, sql) = match post.kind {
         PostKind::Own => (

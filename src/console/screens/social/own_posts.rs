@@ -34,7 +34,7 @@ impl Pane<Social> for OwnPostsPane {
     fn figure(&self, social: &Social, _: &ScreenContext<'_>) -> Option<Figure> {
         let post = social.selected_own_post()?;
         if social.table.selected_column() != 2 {
-            return Some(super::figure_of(post));
+            return Some(super::post_figure(post));
         }
         let number = post.number;
         let sql = format!(

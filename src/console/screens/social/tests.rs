@@ -6,7 +6,7 @@ use super::*;
 use crate::action::Scope;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, asked, screen_text, played_screen, played_session, loaded_screen, draw_at_all_sizes};
+use crate::test_kit::{handle_action, only_question, screen_text, played_screen, played_session, loaded_screen, draw_at_all_sizes};
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_tools::Rejection;
@@ -143,14 +143,14 @@ fn figures_equal_their_rows() {
 fn post_is_checked_confirmed_and_sent() {
     let (mut session, company, mut screen) = played_screen::<Social>(2);
     let effects = handle_action(&mut screen, Action::SendPost, &company);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("Nothing to publish")));
+    assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("Nothing to publish")));
     let answered = screen.selected_post().expect("a post").number;
     handle_action(&mut screen, Action::Reply, &company);
     assert_eq!(screen.scopes(), [Scope::Editor, Scope::Social]);
     type_draft(&mut screen, &company, &"x".repeat(281));
     let effects = handle_action(&mut screen, Action::SendPost, &company);
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.contains("Shorten it by 1")),
+        matches!(&effects[..], [Effect::ShowError(text)] if text.contains("Shorten it by 1")),
         "{effects:?}"
     );
     assert!(screen_text(&screen, &company, 120, 37).contains("! 281 of 280 characters: 1 too many"));
@@ -159,7 +159,7 @@ fn post_is_checked_confirmed_and_sent() {
     handle_action(&mut screen, Action::LeaveEditor, &company);
     assert!(screen.has_unsent_text(), "the draft is kept");
     let effects = handle_action(&mut screen, Action::SendPost, &company);
-    let CallCheck { tool, arguments } = asked(&effects);
+    let PreviewCallQuestion { tool, arguments } = only_question(&effects);
     assert_eq!(arguments["reply_to_post_id"], answered);
     screen.pending_arguments.set_answer(session.preview_call(*tool, arguments));
     let effects = with_context(&company, |screen_context| screen.take_answers(screen_context));
@@ -185,7 +185,7 @@ fn rejected_post_keeps_the_draft() {
     screen.pending_arguments.set_answer(refused());
     let effects = with_context(&company, |context| screen.take_answers(context));
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.contains("already posted")),
+        matches!(&effects[..], [Effect::ShowError(text)] if text.contains("already posted")),
         "{effects:?}"
     );
     assert_eq!(screen.draft.text(), "Again");

@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     /// Returns the suggestions at the position of `|` in a statement.
-    fn offered_words(marked: &str) -> Vec<String> {
+    fn suggested_words(marked: &str) -> Vec<String> {
         let place = marked.find('|').expect("a mark");
         let sql = marked.replace('|', "");
         let found = complete(&sql, place, 2);
@@ -183,39 +183,39 @@ mod tests {
 
     #[test]
     fn columns_of_the_named_tables_come_first() {
-        assert_eq!(offered_words("SELECT cust| FROM ledger JOIN customers")[..2], ["customer_id", "customer_type"]);
-        assert_eq!(offered_words("SELECT am| FROM ledger")[0], "amount");
-        assert_eq!(offered_words("SELECT sour| FROM customers")[0], "acquisition_source");
+        assert_eq!(suggested_words("SELECT cust| FROM ledger JOIN customers")[..2], ["customer_id", "customer_type"]);
+        assert_eq!(suggested_words("SELECT am| FROM ledger")[0], "amount");
+        assert_eq!(suggested_words("SELECT sour| FROM customers")[0], "acquisition_source");
     }
 
     #[test]
     fn an_alias_limits_the_columns_to_its_table() {
-        let all = offered_words("SELECT s.| FROM subscriptions s JOIN customers AS c");
+        let all = suggested_words("SELECT s.| FROM subscriptions s JOIN customers AS c");
         assert_eq!(all.len(), table("subscriptions").expect("a table").columns.len());
-        assert_eq!(offered_words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
-        assert_eq!(offered_words("SELECT customers.em|"), ["email"]);
-        assert!(offered_words("SELECT x.| FROM customers c").is_empty());
+        assert_eq!(suggested_words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
+        assert_eq!(suggested_words("SELECT customers.em|"), ["email"]);
+        assert!(suggested_words("SELECT x.| FROM customers c").is_empty());
     }
 
     #[test]
     fn multibyte_symbol_before_a_point_is_not_a_table() {
         for typed in ["€.|", "SELECT 😀.|", "x ,–.a|", "\u{202e}٣😀.|"] {
-            assert!(offered_words(typed).is_empty(), "{typed}");
+            assert!(suggested_words(typed).is_empty(), "{typed}");
         }
     }
 
     #[test]
     fn tables_follow_from_and_join() {
-        assert_eq!(offered_words("SELECT * FROM le|")[0], "ledger");
-        assert!(offered_words("SELECT * FROM customers JOIN su|").contains(&"subscriptions".to_owned()));
-        assert_eq!(offered_words("WITH weekly AS (SELECT 1) SELECT * FROM we|"), ["weekly"]);
+        assert_eq!(suggested_words("SELECT * FROM le|")[0], "ledger");
+        assert!(suggested_words("SELECT * FROM customers JOIN su|").contains(&"subscriptions".to_owned()));
+        assert_eq!(suggested_words("WITH weekly AS (SELECT 1) SELECT * FROM we|"), ["weekly"]);
     }
 
     #[test]
     fn keywords_follow_the_case_of_the_statement() {
-        assert_eq!(offered_words("sel|"), ["SELECT"]);
-        assert!(offered_words("select 1 ord|").contains(&"order".to_owned()));
-        assert!(offered_words("SELECT 1 ord|").contains(&"ORDER".to_owned()));
+        assert_eq!(suggested_words("sel|"), ["SELECT"]);
+        assert!(suggested_words("select 1 ord|").contains(&"order".to_owned()));
+        assert!(suggested_words("SELECT 1 ord|").contains(&"ORDER".to_owned()));
     }
 
     #[test]
@@ -223,7 +223,7 @@ mod tests {
         for marked in
             ["'sel|", "-- sel|", "/* sel|", "SELECT|", "SELECT 12|", "s|", "|", "SELECT * FROM ledger|"]
         {
-            assert!(offered_words(marked).is_empty(), "{marked}");
+            assert!(suggested_words(marked).is_empty(), "{marked}");
         }
         assert!(complete("s", 1, 1).is_some());
     }

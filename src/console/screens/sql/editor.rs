@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn tab_accepts_what_is_offered() {
+    fn tab_accepts_the_selected_suggestion() {
         let mut editor = editor_after_typing("sel");
         assert!(editor.completion.is_some());
         editor.accept_or_offer_completion();
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn statement_returns_the_one_at_the_cursor() {
+    fn statement_returns_the_statement_at_the_cursor() {
         let mut editor = QueryEditor::default();
         editor.replace("SELECT 1;\n\nSELECT 2;");
         assert_eq!(editor.statement(), Some(Statement { sql: "SELECT 2".to_owned(), offset: 11 }));

@@ -67,7 +67,7 @@ pub fn export_rows(way: Action, rows: &QueryResult) -> Vec<Effect> {
     match way {
         Action::ExportCsv => match values::to_csv(rows) {
             Ok(bytes) => vec![Effect::Write("query-0001.csv".to_owned(), bytes)],
-            Err(problem) => vec![Effect::Complain(problem)],
+            Err(problem) => vec![Effect::ShowError(problem)],
         },
         Action::ExportJson => vec![Effect::Write("query-0001.json".to_owned(), values::to_json(rows))],
         Action::ExportMarkdown => {
@@ -81,14 +81,14 @@ pub fn export_rows(way: Action, rows: &QueryResult) -> Vec<Effect> {
 fn copy_effects(text: String, rows: &QueryResult, how: &str) -> Vec<Effect> {
     let kilobytes = |bytes: usize| grouped_number(bytes as f64 / 1024.0, 1);
     if text.len() > MAX_CLIPBOARD_BYTES {
-        return vec![Effect::Complain(format!(
+        return vec![Effect::ShowError(format!(
             "{} KB exceed the limit of the terminal's clipboard ({} KB). Write a file or filter first.",
             kilobytes(text.len()),
             MAX_CLIPBOARD_BYTES >> 10
         ))];
     }
     let notice = format!("Copied {} {how}, {} KB", format_row_count(rows.rows.len()), kilobytes(text.len()));
-    vec![Effect::Copy(text), Effect::Say(notice)]
+    vec![Effect::Copy(text), Effect::ShowStatus(notice)]
 }
 
 /// Formats a number of rows, for example `1 row` or `3,000 rows`.
@@ -109,10 +109,10 @@ mod tests {
     #[test]
     fn oversized_clipboard_text_is_rejected_with_its_size() {
         let small = export_rows(Action::CopyTabs, &result(3, 2));
-        assert!(matches!(&small[..], [Effect::Copy(text), Effect::Say(notice)]
+        assert!(matches!(&small[..], [Effect::Copy(text), Effect::ShowStatus(notice)]
             if text == "a\nxxx\nxxx\n" && notice == "Copied 2 rows with tabs, 0.0 KB"));
         let large = export_rows(Action::CopyMarkdown, &result(1000, 90));
-        assert!(matches!(&large[..], [Effect::Complain(text)] if text.starts_with("88.")), "{large:?}");
+        assert!(matches!(&large[..], [Effect::ShowError(text)] if text.starts_with("88.")), "{large:?}");
     }
 
     #[test]

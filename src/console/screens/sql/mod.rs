@@ -55,7 +55,7 @@ pub enum SqlPane {
 }
 
 /// Minimum width for showing the tables even without the focus.
-const WIDE: u16 = 90;
+const MIN_WIDTH_FOR_TABLES: u16 = 90;
 
 /// A running statement, and the editor text when it was started.
 struct RunningStatement {
@@ -144,14 +144,14 @@ impl Sql {
 
     fn run_statement(&mut self) -> Vec<Effect> {
         if self.running.is_some() {
-            return vec![Effect::Complain("A query is running. Cancel it with esc.".to_owned())];
+            return vec![Effect::ShowError("A query is running. Cancel it with esc.".to_owned())];
         }
         self.editor.hide_completion();
         let Some(statement) = self.editor.statement() else {
-            return vec![Effect::Complain("No statement to run. Type one first.".to_owned())];
+            return vec![Effect::ShowError("No statement to run. Type one first.".to_owned())];
         };
         self.history.add(&statement.sql);
-        let of = self.tables_of(&statement.sql);
+        let of = self.query_source(&statement.sql);
         let (answer, ask) = Pending::with_question(Query { sql: statement.sql.clone(), tables: of });
         self.running = Some(RunningStatement { text: self.editor.text(), statement, started_at: Instant::now(), answer });
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
@@ -162,7 +162,7 @@ impl Sql {
         self.can_inspect && reads_hidden_tables(sql)
     }
 
-    fn tables_of(&self, sql: &str) -> QueriedTables {
+    fn query_source(&self, sql: &str) -> QueriedTables {
         let is = |other: &str| sql.trim() == other.trim();
         QueriedTables::Visible(match self.library.queries().iter().any(|query| is(&query.sql)) {
             _ if self.reads_hidden_state(sql) => return QueriedTables::Hidden,
@@ -258,7 +258,7 @@ impl PaneScreen for Sql {
         match action {
             Action::RunQuery => return Some(self.run_statement()),
             Action::Complete if self.focus != SqlPane::Editor => {
-                return Some(vec![Effect::Do(Action::FocusNext)]);
+                return Some(vec![Effect::Execute(Action::FocusNext)]);
             }
             Action::EditQuery => self.focus = SqlPane::Editor,
             Action::ClearQuery => self.set_statement(""),
@@ -275,7 +275,7 @@ impl PaneScreen for Sql {
     fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let width = match area.width {
             wide if wide >= 150 => 38,
-            wide if wide >= WIDE => 29,
+            wide if wide >= MIN_WIDTH_FOR_TABLES => 29,
             narrow if self.focus == SqlPane::Tables => narrow.min(34),
             _ => 0,
         };

@@ -215,7 +215,7 @@ impl Sql {
                 self.overlay = Some(SqlOverlay::History(picker));
                 Vec::new()
             }
-            None => vec![Effect::Say("No queries in this run yet. Run a statement with f5.".to_owned())],
+            None => vec![Effect::ShowStatus("No queries in this run yet. Run a statement with f5.".to_owned())],
         }
     }
 
@@ -235,7 +235,7 @@ impl Sql {
     pub(super) fn open_save_query(&mut self) -> Vec<Effect> {
         self.editor.hide_completion();
         let Some(statement) = self.editor.statement() else {
-            return vec![Effect::Complain("No statement to save. Type one first.".to_owned())];
+            return vec![Effect::ShowError("No statement to save. Type one first.".to_owned())];
         };
         self.overlay = Some(SqlOverlay::SaveQuery(SaveQueryForm::new(statement.sql)));
         Vec::new()
@@ -243,7 +243,7 @@ impl Sql {
 
     pub(super) fn open_export(&mut self) -> Vec<Effect> {
         if !self.results.current().has_rows() {
-            return vec![Effect::Complain("No result to export. Run a statement first.".to_owned())];
+            return vec![Effect::ShowError("No result to export. Run a statement first.".to_owned())];
         }
         self.overlay = Some(SqlOverlay::Export(ExportMenu::default()));
         Vec::new()

@@ -46,7 +46,7 @@ impl Pane<Sql> for EditorPane {
 
     fn handle_key(&self, sql: &mut Sql, key: &KeyEvent, _: &ScreenContext<'_>) -> Vec<Effect> {
         if key.code == KeyCode::BackTab {
-            return vec![Effect::Do(Action::FocusPrevious)];
+            return vec![Effect::Execute(Action::FocusPrevious)];
         }
         sql.has_inserted_column = false;
         sql.editor.handle_key(key);
@@ -194,19 +194,19 @@ impl Sql {
             Action::PreviousResult => self.results.select_adjacent(false),
             Action::NextResult => self.results.select_adjacent(true),
             Action::CloseResult if !self.results.close() => {
-                return Some(vec![Effect::Complain("No result to close".to_owned())]);
+                return Some(vec![Effect::ShowError("No result to close".to_owned())]);
             }
             Action::CloseResult => {}
             Action::PinResult => {
                 return Some(vec![match self.results.toggle_pin() {
-                    Ok(true) => Effect::Say("Pinned: this result stays until you close it".to_owned()),
-                    Ok(false) => Effect::Say("Unpinned".to_owned()),
-                    Err(why) => Effect::Complain(why),
+                    Ok(true) => Effect::ShowStatus("Pinned: this result stays until you close it".to_owned()),
+                    Ok(false) => Effect::ShowStatus("Unpinned".to_owned()),
+                    Err(why) => Effect::ShowError(why),
                 }]);
             }
             Action::RecallQuery => match self.results.statement().map(str::to_owned) {
                 Some(sql) => self.set_statement(&sql),
-                None => return Some(vec![Effect::Complain(NO_RESULT_ERROR.to_owned())]),
+                None => return Some(vec![Effect::ShowError(NO_RESULT_ERROR.to_owned())]),
             },
             Action::CountColumn | Action::Pivot => return Some(self.handle_aggregate_action(action)),
             _ => return None,
@@ -216,13 +216,13 @@ impl Sql {
 
     /// Runs a statement that counts the values of the focused column, or opens the pivot form.
     fn handle_aggregate_action(&mut self, action: Action) -> Vec<Effect> {
-        let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
+        let complain = |text: &str| vec![Effect::ShowError(text.to_owned())];
         let result_view = self.results.current();
         let (Some(sql), Some((rows, at))) = (self.results.statement(), result_view.focused_column()) else {
             return complain(if result_view.is_rejected() { REJECTED_ERROR } else { NO_RESULT_ERROR });
         };
         let meant = result_view.row_filter();
-        let warning = meant.warning().map(Effect::Say);
+        let warning = meant.warning().map(Effect::ShowStatus);
         if self.is_running() {
             return complain("A query is running. Cancel it with esc.");
         }

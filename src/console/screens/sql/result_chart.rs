@@ -317,7 +317,7 @@ mod tests {
         result(&["channel", "leads", "spend"], vec![row("a", 5, 1.5), row("b", -3, 2.0), row("c", 8, 0.25)])
     }
 
-    fn table_of(rows: &QueryResult) -> Table {
+    fn table_with_rows(rows: &QueryResult) -> Table {
         let mut table = Table::new(Vec::new());
         table.set_columns_and_rows(super::super::values::columns(rows), super::super::values::cells(rows));
         table
@@ -373,7 +373,7 @@ mod tests {
     #[test]
     fn summary_has_minimum_maximum_and_change() {
         let rows = leads_result();
-        let table = table_of(&rows);
+        let table = table_with_rows(&rows);
         let mut plot = ResultChart::for_rows(&rows, None).expect("a chart");
         assert_eq!(plot.summary(&rows, &table, 1), "leads: min -3 (b) · max 8 (c) · total 10 · average 3.33");
         plot.toggle_kind();
@@ -382,7 +382,7 @@ mod tests {
             "spend: min 0.25 at c · max 2.00 at b · last 0.25 · change ▼ 1.25"
         );
         let empty = result(&["t", "n"], vec![vec![Cell::Text("x".to_owned()), Cell::Null]]);
-        assert_eq!(plot.summary(&empty, &table_of(&empty), 1), "n: no numbers");
+        assert_eq!(plot.summary(&empty, &table_with_rows(&empty), 1), "n: no numbers");
     }
 
     #[test]
@@ -399,7 +399,7 @@ mod tests {
             pairs.into_iter().map(|(day, cash)| vec![Cell::Integer(day), Cell::Real(cash)]).collect(),
         );
         let plot = ResultChart::for_rows(&rows, None).expect("a chart");
-        assert_eq!(plot.row_order(&rows, &table_of(&rows)), [1, 2, 0]);
-        assert!(plot.summary(&rows, &table_of(&rows), 1).ends_with("last 30 · change ▲ 20"));
+        assert_eq!(plot.row_order(&rows, &table_with_rows(&rows)), [1, 2, 0]);
+        assert!(plot.summary(&rows, &table_with_rows(&rows), 1).ends_with("last 30 · change ▲ 20"));
     }
 }

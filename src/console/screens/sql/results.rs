@@ -158,13 +158,13 @@ impl ResultView {
         match (&self.chart, self.rows()) {
             (Some(_), _) => Vec::new(),
             (None, Some(_)) => {
-                vec![Effect::Complain("No numeric column to chart".to_owned())]
+                vec![Effect::ShowError("No numeric column to chart".to_owned())]
             }
             (None, None) if self.is_rejected() => {
-                vec![Effect::Complain("No result to chart. The last statement failed.".to_owned())]
+                vec![Effect::ShowError("No result to chart. The last statement failed.".to_owned())]
             }
             (None, None) => {
-                vec![Effect::Complain("No result to chart. Run a statement first.".to_owned())]
+                vec![Effect::ShowError("No result to chart. Run a statement first.".to_owned())]
             }
         }
     }
@@ -176,7 +176,7 @@ impl ResultView {
             Action::ChartX => plot.next_x(rows),
             Action::ChartY => plot.next_y(rows),
             Action::MoreSeries if !plot.add_series(rows) => {
-                return vec![Effect::Complain("No other numeric column, or too many series".to_owned())];
+                return vec![Effect::ShowError("No other numeric column, or too many series".to_owned())];
             }
             Action::MoreSeries | Action::Left | Action::Right => {}
             Action::FewerSeries => plot.remove_series(),
@@ -224,7 +224,7 @@ impl ResultView {
     }
 
     fn handle_rows_action(&mut self, action: Action, page: u16) -> Vec<Effect> {
-        let nothing = || vec![Effect::Complain("No result to copy from".to_owned())];
+        let nothing = || vec![Effect::ShowError("No result to copy from".to_owned())];
         match action {
             Action::ShowCell => {
                 let read = |(name, cell): (&str, &Cell)| Effect::ShowText(name.to_owned(), format_cell(cell));

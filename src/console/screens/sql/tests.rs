@@ -8,7 +8,7 @@ use super::*;
 use crate::action::Scope;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{asked, new_company, screen_rows, new_session, draw_at_all_sizes};
+use crate::test_kit::{only_question, new_company, screen_rows, new_session, draw_at_all_sizes};
 use novamind_database::{Cell, QueryResult};
 use novamind_tools::Rejection;
 use novamind_worker::company::DisplayedCompany;
@@ -39,8 +39,8 @@ fn receive_answer(screen: &mut Sql, company: &DisplayedCompany, answer: Result<Q
 }
 
 /// Returns the statement of the only effect.
-fn sql(effects: &[Effect]) -> &str {
-    &asked::<Query>(effects).sql
+fn only_statement(effects: &[Effect]) -> &str {
+    &only_question::<Query>(effects).sql
 }
 
 fn three_rows() -> QueryResult {
@@ -66,11 +66,11 @@ fn statement_runs_once_and_rows_are_shown() {
     let mut screen = Sql::default();
     assert_eq!(screen.scopes()[0], Scope::Editor);
     let empty = handle_action(&mut screen, &company, Action::RunQuery);
-    assert!(matches!(&empty[..], [Effect::Complain(_)]));
+    assert!(matches!(&empty[..], [Effect::ShowError(_)]));
     type_statement(&mut screen, &company, "SELECT 1; \nSELECT 2");
     let effects = handle_action(&mut screen, &company, Action::RunQuery);
-    assert_eq!(sql(&effects), "SELECT 2");
-    assert!(matches!(&handle_action(&mut screen, &company, Action::RunQuery)[..], [Effect::Complain(_)]));
+    assert_eq!(only_statement(&effects), "SELECT 2");
+    assert!(matches!(&handle_action(&mut screen, &company, Action::RunQuery)[..], [Effect::ShowError(_)]));
     assert!(contains(&screen_rows(&screen, &company, 120, 37), "running … esc cancels"));
     assert!(matches!(&handle_action(&mut screen, &company, Action::LeaveEditor)[..], [Effect::CancelQuery]));
     receive_answer(&mut screen, &company, Ok(three_rows()));
@@ -123,7 +123,7 @@ fn results_are_copied_and_exported_in_full() {
     handle_action(&mut screen, &company, Action::Export);
     assert!(contains(&screen_rows(&screen, &company, 80, 21), "1 of 3 rows, as filtered"));
     let copied = handle_action(&mut screen, &company, Action::CopyMarkdown);
-    assert!(matches!(&copied[..], [Effect::Copy(text), Effect::Say(notice)]
+    assert!(matches!(&copied[..], [Effect::Copy(text), Effect::ShowStatus(notice)]
         if text.ends_with("| network | 28114 | 12.0 |\n") && notice.starts_with("Copied 1 row as Markdown")));
     assert_eq!(screen.scopes()[0], Scope::Result, "the list is closed");
 }
@@ -192,7 +192,7 @@ fn named_query_is_inserted_and_run() {
     assert!(contains(&lines, "› revplan") && contains(&lines, "Monthly revenue and seats of each plan"), "{lines:#?}");
     assert!(contains(&lines, "FROM subscriptions"), "the statement is shown: {lines:#?}");
     let effects = handle_action(&mut screen, &company, Action::Commit);
-    assert!(sql(&effects).starts_with("-- title: Revenue by plan"), "{effects:?}");
+    assert!(only_statement(&effects).starts_with("-- title: Revenue by plan"), "{effects:?}");
     assert!(contains(&screen_rows(&screen, &company, 120, 37), "Query · Revenue by plan"));
 }
 
@@ -201,7 +201,7 @@ fn a_statement_is_saved_under_a_name() {
     let company = new_company();
     let mut screen = Sql::default();
     let nothing = handle_action(&mut screen, &company, Action::SaveQuery);
-    assert!(matches!(&nothing[..], [Effect::Complain(_)]));
+    assert!(matches!(&nothing[..], [Effect::ShowError(_)]));
     type_statement(&mut screen, &company, "SELECT 1;\nSELECT 2");
     handle_action(&mut screen, &company, Action::SaveQuery);
     type_statement(&mut screen, &company, "My two");
@@ -222,7 +222,7 @@ fn screen_with_result(company: &DisplayedCompany, sql: &str, rows: QueryResult) 
 }
 
 #[test]
-fn a_result_is_drawn_as_bars_with_words_and_zero() {
+fn result_is_drawn_as_bars_with_labels_and_zero() {
     let company = new_company();
     let mut screen = screen_with_result(&company, "SELECT 1", three_rows());
     assert!(handle_action(&mut screen, &company, Action::Chart).is_empty());
@@ -237,7 +237,7 @@ fn a_result_is_drawn_as_bars_with_words_and_zero() {
     assert!(contains(&lines, "█ subs · ▒ price by acquisition_source"), "{lines:#?}");
     assert!(contains(&lines, "12.25 │▒"), "{lines:#?}");
     let more = handle_action(&mut screen, &company, Action::MoreSeries);
-    assert!(matches!(&more[..], [Effect::Complain(_)]));
+    assert!(matches!(&more[..], [Effect::ShowError(_)]));
     handle_action(&mut screen, &company, Action::CloseChart);
     assert_eq!(screen.scopes()[0], Scope::Result);
     handle_action(&mut screen, &company, Action::Chart);
@@ -246,7 +246,7 @@ fn a_result_is_drawn_as_bars_with_words_and_zero() {
 }
 
 #[test]
-fn a_statement_says_how_its_result_is_drawn() {
+fn chart_header_of_a_statement_defines_the_chart() {
     let company = new_company();
     let rows = QueryResult {
         columns: ["cash", "week", "cost"].map(str::to_owned).to_vec(),
@@ -280,11 +280,11 @@ fn results_without_numbers_have_no_chart() {
         ..QueryResult::default()
     };
     let mut screen = screen_with_result(&company, "SELECT 1", rows);
-    assert!(matches!(&handle_action(&mut screen, &company, Action::Chart)[..], [Effect::Complain(_)]));
+    assert!(matches!(&handle_action(&mut screen, &company, Action::Chart)[..], [Effect::ShowError(_)]));
     let mut empty = Sql::default();
     empty.set_focused_pane(SqlPane::Results);
     for action in [Action::Chart, Action::Export] {
-        assert!(matches!(&handle_action(&mut empty, &company, action)[..], [Effect::Complain(_)]));
+        assert!(matches!(&handle_action(&mut empty, &company, action)[..], [Effect::ShowError(_)]));
     }
 }
 
@@ -377,9 +377,9 @@ fn column_count_uses_an_editable_statement() {
     let mut screen = screen_with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());
     handle_action(&mut screen, &company, Action::Right);
     let effects = handle_action(&mut screen, &company, Action::CountColumn);
-    assert!(sql(&effects).contains("SELECT subs, count(*)"), "{effects:?}");
+    assert!(only_statement(&effects).contains("SELECT subs, count(*)"), "{effects:?}");
     assert!(screen.editor.text().starts_with("-- title: subs counted"));
-    assert!(matches!(&handle_action(&mut screen, &company, Action::Pivot)[..], [Effect::Complain(_)]), "one at a time");
+    assert!(matches!(&handle_action(&mut screen, &company, Action::Pivot)[..], [Effect::ShowError(_)]), "one at a time");
     receive_answer(&mut screen, &company, Ok(three_rows()));
     let lines = screen_rows(&screen, &company, 120, 37);
     assert!(
@@ -398,11 +398,11 @@ fn column_count_uses_an_editable_statement() {
     for action in
         [Action::CountColumn, Action::Pivot, Action::RecallQuery, Action::CloseResult, Action::PinResult]
     {
-        assert!(matches!(&handle_action(&mut empty, &company, action)[..], [Effect::Complain(_)]), "{action:?}");
+        assert!(matches!(&handle_action(&mut empty, &company, action)[..], [Effect::ShowError(_)]), "{action:?}");
     }
     for action in [Action::CountColumn, Action::Pivot] {
         let mut plan = screen_with_result(&company, "EXPLAIN QUERY PLAN SELECT 1", three_rows());
-        assert!(matches!(&handle_action(&mut plan, &company, action)[..], [Effect::Complain(_)]));
+        assert!(matches!(&handle_action(&mut plan, &company, action)[..], [Effect::ShowError(_)]));
         assert!(plan.overlay.is_none());
     }
 }
@@ -426,12 +426,12 @@ fn count_and_pivot_use_the_filtered_rows() {
     let mut screen = filtered(&word);
     let asked = handle_action(&mut screen, &company, Action::CountColumn);
     let clause = format!("'{word}') > 0");
-    assert!(sql(&asked).contains(&clause), "{asked:?}");
+    assert!(only_statement(&asked).contains(&clause), "{asked:?}");
     let mut screen = filtered(&word);
     handle_action(&mut screen, &company, Action::Pivot);
     assert!(contains(&screen_rows(&screen, &company, 60, 12), &format!("rows with \"{word}\"")));
     let asked = handle_action(&mut screen, &company, Action::Open);
-    assert!(sql(&asked).contains(&clause), "{asked:?}");
+    assert!(only_statement(&asked).contains(&clause), "{asked:?}");
     // In SQL, a NULL does not match the text "null".
     let mut rows = three_rows();
     rows.rows[1][0] = Cell::Null;
@@ -440,8 +440,8 @@ fn count_and_pivot_use_the_filtered_rows() {
     screen.results.current_mut().table_mut().edit_filter(|field| field.insert("null"));
     screen.results.current_mut().table_mut().handle_action(Action::Commit, 5);
     let asked = handle_action(&mut screen, &company, Action::CountColumn);
-    let Some(Effect::Say(words)) = asked.last() else { panic!("{asked:?}") };
-    let sql = sql(&asked);
+    let Some(Effect::ShowStatus(words)) = asked.last() else { panic!("{asked:?}") };
+    let sql = only_statement(&asked);
     assert!(
         sql.contains("counted, all rows") && !sql.contains("WHERE") && words.contains("without the filter"),
         "{asked:?}"
@@ -462,7 +462,7 @@ fn pivot_takes_two_keys_at_every_size() {
     screen.set_focused_pane(SqlPane::Results);
     handle_action(&mut screen, &company, Action::Pivot);
     let effects = handle_action(&mut screen, &company, Action::Open);
-    assert!(sql(&effects).contains("sum(subs)"), "{effects:?}");
+    assert!(only_statement(&effects).contains("sum(subs)"), "{effects:?}");
     receive_answer(&mut screen, &company, Ok(three_rows()));
     draw_at_all_sizes(&mut screen, &company);
     screen.set_focused_pane(SqlPane::Results);

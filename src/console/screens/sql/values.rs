@@ -54,7 +54,7 @@ impl NumberFormat {
             })
         };
         let largest = reals().fold(0.0, |most: f64, number| most.max(number.abs()));
-        let needed = reals().map(decimals_of).max().unwrap_or(0);
+        let needed = reals().map(decimal_count).max().unwrap_or(0);
         let sensible = match largest {
             _ if largest >= 1000.0 => 2,
             _ if largest >= 1.0 => 4,
@@ -92,7 +92,7 @@ impl NumberFormat {
 }
 
 /// Returns the number of decimals in the shortest exact notation of a number.
-fn decimals_of(number: f64) -> usize {
+fn decimal_count(number: f64) -> usize {
     number.to_string().split_once('.').map_or(0, |(_, decimals)| decimals.len())
 }
 

@@ -13,7 +13,7 @@ static ARGUMENT_TERMS: LazyLock<Vec<String>> = LazyLock::new(|| {
     CATALOGUE.iter().flat_map(|tool| of(tool.spec())).collect()
 });
 
-fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
+fn argument_term(tool: ToolId, argument: &str) -> Option<&'static str> {
     ARGUMENT_TERMS
         .iter()
         .map(String::as_str)
@@ -30,7 +30,7 @@ pub(super) fn cell_figure(form: &ToolForm) -> Option<Figure> {
     let tool = form.spec.id;
     Some(Figure {
         title: format!("{tool} {}", block.path(form.focus.row, form.focus.column).replace('.', " ")),
-        term: term_of(tool, block.argument.name)?,
+        term: argument_term(tool, block.argument.name)?,
         sql: value_history(form),
         week_quantity: None,
     })

@@ -20,7 +20,7 @@ use novamind_tui::widgets::field::NUMBER_HINT;
 use novamind_tui::widgets::{TextEditor, TextField};
 use novamind_worker::question::Pending;
 use novamind_worker::company::DisplayedCompany;
-use novamind_worker::page_questions::CallCheck;
+use novamind_worker::page_questions::PreviewCallQuestion;
 
 pub struct ToolForm {
     pub spec: &'static ToolSpec,
@@ -40,7 +40,7 @@ pub struct ToolForm {
     discarded_drafts: BTreeMap<String, String>,
     /// The check of the call, if it has arrived.
     pub preview: Option<Result<Preview, Rejection>>,
-    checking: Pending<CallCheck>,
+    checking: Pending<PreviewCallQuestion>,
     /// The arguments that were sent last, for a tool whose form keeps its values.
     sent_arguments: Option<Value>,
     pub answer: Option<Result<Value, Rejection>>,
@@ -113,16 +113,16 @@ impl ToolForm {
             self.reset(company);
             self.discarded_drafts = typed;
             let dropped = pluralize(self.discarded_drafts.len() as u32, "value");
-            return vec![Effect::Say(format!("{dropped} discarded. Reset again to restore them."))];
+            return vec![Effect::ShowStatus(format!("{dropped} discarded. Reset again to restore them."))];
         }
         let dropped = std::mem::take(&mut self.discarded_drafts);
         if dropped.is_empty() {
-            return vec![Effect::Complain("Nothing to reset. The form shows the current values.".to_owned())];
+            return vec![Effect::ShowError("Nothing to reset. The form shows the current values.".to_owned())];
         }
         self.reset(company);
         self.sheet.restore_drafts(&dropped);
         let mut effects = self.check();
-        effects.push(Effect::Say(format!("{} restored", pluralize(dropped.len() as u32, "value"))));
+        effects.push(Effect::ShowStatus(format!("{} restored", pluralize(dropped.len() as u32, "value"))));
         effects
     }
 
@@ -164,7 +164,7 @@ impl ToolForm {
         };
         match self.sheet.arguments() {
             Ok(arguments) if !quiet => {
-                vec![Effect::Ask(self.checking.ask(CallCheck { tool: self.spec.id, arguments }))]
+                vec![Effect::Ask(self.checking.ask(PreviewCallQuestion { tool: self.spec.id, arguments }))]
             }
             _ => Vec::new(),
         }
@@ -185,14 +185,14 @@ impl ToolForm {
                 self.focus = place;
                 let block = &self.sheet.blocks[place.block];
                 let path = block.path(place.row, place.column);
-                return vec![Effect::Complain(format!("{path}: {}", block.expected()))];
+                return vec![Effect::ShowError(format!("{path}: {}", block.expected()))];
             }
         };
         let tool = self.spec.id;
         self.sent_arguments = tool.executes_code().then(|| arguments.clone());
         match self.spec.kind {
             ToolKind::Setting if !self.sheet.is_changed() => {
-                vec![Effect::Complain("Nothing has changed. Enter a value first.".to_owned())]
+                vec![Effect::ShowError("Nothing has changed. Enter a value first.".to_owned())]
             }
             ToolKind::Purchase => match &self.preview {
                 Some(Ok(preview)) => {
@@ -292,7 +292,7 @@ impl ToolForm {
                 return Vec::new();
             }
             if !self.sheet.add_customer(block, field.text()) {
-                return vec![Effect::Complain("Type a customer number, for example 17".to_owned())];
+                return vec![Effect::ShowError("Type a customer number, for example 17".to_owned())];
             }
             self.focus = CellPosition { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
             self.start_typing();
@@ -350,7 +350,7 @@ impl ToolForm {
     fn copy_down(&mut self, from: CellPosition) -> Vec<Effect> {
         let text = self.sheet.cell(from).map(super::sheet::EditableCell::text).unwrap_or_default();
         if text.trim().is_empty() {
-            return vec![Effect::Complain("This cell is empty. There is no value to copy down.".to_owned())];
+            return vec![Effect::ShowError("This cell is empty. There is no value to copy down.".to_owned())];
         }
         let below = self.sheet.blocks[from.block].rows.len();
         // A scalar block has only one row, so the value is copied to the scalar blocks below.
@@ -444,7 +444,7 @@ impl ToolForm {
             if text {
                 field.handle_key(key);
             } else if !field.handle_number_key(key) {
-                return vec![Effect::Complain(NUMBER_HINT.to_owned())];
+                return vec![Effect::ShowError(NUMBER_HINT.to_owned())];
             }
             return self.check();
         }

@@ -99,7 +99,7 @@ impl Pane<Tools> for ToolListPane {
     }
 
     fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
-        let lines = lines_of(tools);
+        let lines = tool_list_lines(tools);
         if lines.is_empty() {
             let text = format!("No matching tool: {}", context.hint(Action::Close));
             canvas.draw_text(placement.area, &text, Role::Dim);
@@ -137,7 +137,7 @@ enum ListLine {
     Tool(usize, &'static ToolSpec),
 }
 
-fn lines_of(tools: &Tools) -> Vec<ListLine> {
+fn tool_list_lines(tools: &Tools) -> Vec<ListLine> {
     let tool_specs = tools.visible_tools();
     let mut lines = Vec::new();
     for module in ToolModule::ALL {

@@ -11,9 +11,9 @@ use novamind_worker::company::DisplayedCompany;
 pub fn form_margin_lines(form: &ToolForm, sales: &PlanSales, company: &DisplayedCompany, brief: bool) -> Vec<String> {
     let Some(lever) = MarginSetting::from_tool(form.spec.id) else { return Vec::new() };
     let now = ByPlan::from_fn(|plan| DraftPlanTerms {
-        price: company.setting(ToolId::SetPrices, plan.id()),
-        tier: company.setting(ToolId::SetModelTiers, plan.id()) as u8,
-        quota: company.setting(ToolId::SetUsageQuotas, plan.id()),
+        price: company.current_setting(ToolId::SetPrices, plan.id()),
+        tier: company.current_setting(ToolId::SetModelTiers, plan.id()) as u8,
+        quota: company.current_setting(ToolId::SetUsageQuotas, plan.id()),
     });
     let terms = form.sheet.arguments().map_or(now, |arguments| lever.apply(now, &arguments));
     let mut models: Vec<(u8, f64)> =

@@ -164,7 +164,7 @@ impl Tools {
     /// Returns the effect that opens the separate screen or dialog of the selected tool, if it has one.
     fn dedicated_screen_effect(&self) -> Option<Effect> {
         match self.selected_tool()?.id {
-            ToolId::NextWeek => Some(Effect::Do(Action::NextWeek)),
+            ToolId::NextWeek => Some(Effect::Execute(Action::NextWeek)),
             ToolId::Query => Some(Effect::Show(ScreenId::Sql)),
             _ => None,
         }

@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use novamind_base::formatting::{cents, dollars, grouped_number};
+use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number};
 use novamind_report::research::{format_mean_days, format_mean_gain};
 use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
@@ -39,7 +39,7 @@ fn models(company: &DisplayedCompany) -> Vec<String> {
 }
 
 fn capacities(company: &DisplayedCompany) -> Vec<String> {
-    let now = company.setting(ToolId::SetCapacityTier, "tier") as u8;
+    let now = company.current_setting(ToolId::SetCapacityTier, "tier") as u8;
     let mut lines = vec!["tier     units a day     $ a day".to_owned()];
     lines.extend(tiers(&company.price_list.capacity_tiers).into_iter().map(|(tier, facts)| {
         let mark = if tier == now { "  now" } else { "" };
@@ -89,7 +89,7 @@ fn threads(company: &DisplayedCompany) -> Vec<String> {
     let mut lines =
         vec!["customer  group   seats  thread            asks         days left  enterprise".to_owned()];
     lines.extend(company.observation.waiting.iter().map(|thread| {
-        let asks = thread.asked.map_or("–".to_owned(), cents);
+        let asks = thread.asked.map_or("–".to_owned(), dollars_and_cents);
         format!(
             "{:>8}  {:<6} {:>6}  {:<16} {asks:>8}   {:>14}  {}",
             thread.customer,
@@ -107,7 +107,7 @@ fn prices(company: &DisplayedCompany) -> Vec<String> {
     let mut lines = vec!["plan  tier  quota a day  full quota/month".to_owned()];
     lines.extend(["A", "B", "C"].into_iter().map(|plan| {
         let (tier, quota) =
-            (company.setting(ToolId::SetModelTiers, plan), company.setting(ToolId::SetUsageQuotas, plan));
+            (company.current_setting(ToolId::SetModelTiers, plan), company.current_setting(ToolId::SetUsageQuotas, plan));
         let unit =
             company.price_list.model_tiers.get(&(tier as u8)).map_or(0.0, |facts| facts.cost_per_usage_unit);
         format!(

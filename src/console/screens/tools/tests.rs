@@ -56,18 +56,18 @@ fn second_reset_restores_the_draft() {
     let keys = ["enter", "1", "2", "down", "2", "5", "enter", "r"];
     let (tools, effects) = form_after_keys(ToolId::SetPrices, &keys);
     assert!(!tools.has_unsent_text());
-    assert!(matches!(&effects[..], [Effect::Say(text)] if text.starts_with("2 values discarded")), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowStatus(text)] if text.starts_with("2 values discarded")), "{effects:?}");
     let (tools, effects) = form_after_keys(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
     assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12, "B": 25})));
-    assert!(matches!(effects.last(), Some(Effect::Say(text)) if text == "2 values restored"), "{effects:?}");
+    assert!(matches!(effects.last(), Some(Effect::ShowStatus(text)) if text == "2 values restored"), "{effects:?}");
     let (_, effects) = form_after_keys(ToolId::SetPrices, &["r"]);
-    assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowError(_)]), "{effects:?}");
 }
 
 #[test]
 fn copying_an_empty_cell_shows_an_error() {
     let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["="]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("empty")), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("empty")), "{effects:?}");
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn deals_are_typed_as_json_and_confirmed() {
     assert!(tools.has_unsent_text());
     let (_, effects) = form_after_keys(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
-        matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: enter a list")),
+        matches!(&effects[..], [Effect::ShowError(text)] if text.starts_with("deals: enter a list")),
         "{effects:?}"
     );
     let (_, effects) = form_after_keys(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
@@ -188,15 +188,15 @@ fn copy_down_fills_the_column() {
         assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
     }
     let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("empty")), "{effects:?}");
+    assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("empty")), "{effects:?}");
 }
 
 #[test]
-fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
+fn unchanged_form_is_not_sent_and_invalid_cell_is_named() {
     let (_, effects) = form_after_keys(ToolId::SetPrices, &["ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("Nothing has changed")));
+    assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("Nothing has changed")));
     let (_, effects) = form_after_keys(ToolId::SetPrices, &["enter", "1", "-", "ctrl-s"]);
-    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: enter a number")));
+    assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.starts_with("A: enter a number")));
 }
 
 #[test]
@@ -212,7 +212,7 @@ fn drafts_are_kept_when_another_tool_is_shown() {
 }
 
 #[test]
-fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
+fn draft_shows_old_and_new_values_and_is_kept_after_esc() {
     let (_, company, mut tools) = played_screen::<Tools>(2);
     tools.show_tool(ToolId::SetPrices, &company);
     let keys = KeyBindings::bundled();
@@ -295,7 +295,7 @@ fn calls_and_drafts_are_written_to_a_file() {
 }
 
 #[test]
-fn a_field_names_its_term_and_its_history() {
+fn focused_cell_has_a_term_and_a_history_query() {
     let (mut session, company, mut tools) = played_screen::<Tools>(3);
     let keys = KeyBindings::bundled();
     let context = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
@@ -344,7 +344,7 @@ fn forms_show_values_instead_of_parameter_names() {
 }
 
 #[test]
-fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
+fn matrix_shows_totals_and_marks_hidden_columns() {
     let company = new_company();
     let look_at = |column: usize| {
         let mut keys = vec!["right"; column];
@@ -359,7 +359,7 @@ fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
 }
 
 #[test]
-fn the_keys_of_a_form_say_that_enter_edits() {
+fn form_keys_name_enter_for_editing() {
     let (tools, _) = form_after_keys(ToolId::SetPrices, &[]);
     let text = screen_text(&tools, &new_company(), 120, 37);
     assert!(text.contains("enter edit the value") && !text.contains("type a number"), "{text}");
@@ -380,7 +380,7 @@ fn project_columns_are_separated() {
 }
 
 #[test]
-fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
+fn small_window_shows_all_values_and_plan_margins() {
     let (_, company, mut screen) = played_screen::<Tools>(6);
     let sold: Vec<&str> = Plan::ALL
         .into_iter()
@@ -398,7 +398,7 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
                     |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
                 let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
                 for plan in ["A", "B", "C"] {
-                    let now = novamind_tui::text::format_number(company.setting(tool, plan));
+                    let now = novamind_tui::text::format_number(company.current_setting(tool, plan));
                     assert!(holds(&[&format!(" {plan}  "), &now]), "value of {plan}: {at}");
                 }
                 for plan in &sold {

@@ -67,7 +67,7 @@ impl InputKind {
             (XrayView::Commands, _) => Some(InputKind::Command),
             (_, ViewChoices::Nothing) if view.has_day() => Some(InputKind::Day),
             (_, ViewChoices::Groups) => Some(InputKind::Group),
-            (_, ViewChoices::Parts) => Some(InputKind::Part),
+            (_, ViewChoices::Components) => Some(InputKind::Part),
             (_, ViewChoices::Breakpoints) => Some(InputKind::Condition),
             (_, ViewChoices::Nothing) => None,
         }

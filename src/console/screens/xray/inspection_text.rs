@@ -95,7 +95,7 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a>
         return Content::Sentence(capitalize(INSPECTION_REJECTED) + ".", Role::Dim);
     }
     let is_of_words = xray.view() == XrayView::Commands;
-    let wanted = xray.wanted_question();
+    let wanted = xray.current_question();
     let seen = match is_of_words {
         true => xray.command_output.as_ref().filter(|_| xray.pending_command().is_none()),
         false => xray.inspection.as_ref().filter(|seen| Some(&seen.question) == wanted.as_ref()),

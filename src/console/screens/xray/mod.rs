@@ -81,7 +81,7 @@ pub struct Xray {
     selected_factor: usize,
     input: Option<InputLine>,
     problem: Option<String>,
-    asked: Pending<InspectionQuestion>,
+    pending_question: Pending<InspectionQuestion>,
     /// Questions that wait for the worker, in the order of input.
     queued: VecDeque<InspectionQuestion>,
     inspection: Option<InspectionResult>,
@@ -110,7 +110,7 @@ impl Xray {
     fn choice_table(&self) -> Option<&Table> {
         match self.view().choices() {
             ViewChoices::Groups => Some(&self.groups),
-            ViewChoices::Parts => Some(&self.parts),
+            ViewChoices::Components => Some(&self.parts),
             ViewChoices::Breakpoints => Some(&self.breakpoint_table),
             ViewChoices::Nothing => None,
         }
@@ -119,14 +119,14 @@ impl Xray {
     fn choice_table_mut(&mut self) -> Option<&mut Table> {
         match self.view().choices() {
             ViewChoices::Groups => Some(&mut self.groups),
-            ViewChoices::Parts => Some(&mut self.parts),
+            ViewChoices::Components => Some(&mut self.parts),
             ViewChoices::Breakpoints => Some(&mut self.breakpoint_table),
             ViewChoices::Nothing => None,
         }
     }
 
     /// Returns the question for the current view, or `None` if a selection is missing or no day has been simulated.
-    fn wanted_question(&self) -> Option<InspectionQuestion> {
+    fn current_question(&self) -> Option<InspectionQuestion> {
         let day = self.day();
         let needs_day = !matches!(self.view(), XrayView::Breakpoints | XrayView::Commands);
         if !self.can_inspect || (day == 0 && needs_day) {
@@ -150,15 +150,15 @@ impl Xray {
 
     /// Returns the day of the displayed result. For a former customer, the day is at most the last day as a subscriber.
     fn shown_day(&self) -> u32 {
-        let seen = self.inspection.as_ref().filter(|seen| self.wanted_question().as_ref() == Some(&seen.question));
+        let seen = self.inspection.as_ref().filter(|seen| self.current_question().as_ref() == Some(&seen.question));
         seen.and_then(|seen| seen.found.as_ref().ok()?.day).unwrap_or_else(|| self.day())
     }
 
     /// Sends the question for the current view if its answer is missing and the worker is not busy with another question.
     fn request_inspection(&mut self) -> Vec<Effect> {
-        let wanted = self.wanted_question();
+        let wanted = self.current_question();
         let is_known = wanted.as_ref() == self.inspection.as_ref().map(|seen| &seen.question);
-        match wanted.filter(|_| !is_known && !self.asked.is_waiting()) {
+        match wanted.filter(|_| !is_known && !self.pending_question.is_waiting()) {
             Some(question) => self.send_question(question),
             None => Vec::new(),
         }
@@ -231,13 +231,13 @@ impl Xray {
     fn start_day_input(&mut self) -> Vec<Effect> {
         match self.view().has_day() {
             true => self.start_input(Some(InputKind::Day)),
-            false => vec![Effect::Complain("This view does not depend on the day".to_owned())],
+            false => vec![Effect::ShowError("This view does not depend on the day".to_owned())],
         }
     }
 
     fn toggle_held_factor(&mut self) -> Vec<Effect> {
         if self.view() != XrayView::Leads {
-            return vec![Effect::Complain("Only factors of the leads can be fixed".to_owned())];
+            return vec![Effect::ShowError("Only factors of the leads can be fixed".to_owned())];
         }
         let factor = LeadFactor::ALL[self.selected_factor.min(LeadFactor::ALL.len() - 1)];
         match self.held_factors.iter().position(|(lead_factor, _)| *lead_factor == factor) {
@@ -249,7 +249,7 @@ impl Xray {
 
     fn start_input(&mut self, expected: Option<InputKind>) -> Vec<Effect> {
         let Some(expected) = expected else {
-            return vec![Effect::Complain("This view has nothing to choose".to_owned())];
+            return vec![Effect::ShowError("This view has nothing to choose".to_owned())];
         };
         (self.focus, self.problem) = (XrayPane::Inspection, None);
         self.input = Some(InputLine { kind: expected, field: TextField::default() });
@@ -293,7 +293,7 @@ impl Xray {
     /// Sends a command to the worker. A command that changes the run requires confirmation.
     fn submit_command(&mut self, words: String, inspection_command: InspectionCommand) -> Vec<Effect> {
         match inspection_command.changes_run() {
-            true => vec![Effect::ConfirmWords(words)],
+            true => vec![Effect::ConfirmCommand(words)],
             false => self.enqueue_command(words, inspection_command),
         }
     }
@@ -318,12 +318,12 @@ impl Xray {
         match action {
             Action::RunDays => self.start_input(Some(InputKind::Days)),
             Action::BreakpointHistory if self.breakpoints.is_empty() => {
-                vec![Effect::Complain("No breakpoint is set".to_owned())]
+                vec![Effect::ShowError("No breakpoint is set".to_owned())]
             }
             Action::BreakpointHistory => self.send_breakpoint_work(BreakpointCommand::History),
             _ => match self.breakpoint_table.selected().and_then(|row| self.breakpoints.get(row)) {
                 Some(breakpoint) => self.send_breakpoint_work(BreakpointCommand::Remove(breakpoint.number)),
-                None => vec![Effect::Complain("No breakpoint is set".to_owned())],
+                None => vec![Effect::ShowError("No breakpoint is set".to_owned())],
             },
         }
     }
@@ -351,7 +351,7 @@ impl ScreenState for Xray {
     }
 
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
-        self.asked.try_take().map_or_else(Vec::new, |(question, found)| self.handle_answer(question, found))
+        self.pending_question.try_take().map_or_else(Vec::new, |(question, found)| self.handle_answer(question, found))
     }
 
     fn own_escape_depth(&self) -> usize {

@@ -57,7 +57,7 @@ fn view_actions(view: XrayView) -> &'static [Action] {
     }
 }
 
-fn figure_of(xray: &Xray) -> Option<Figure> {
+fn view_figure(xray: &Xray) -> Option<Figure> {
     let view = xray.view();
     xray.can_inspect.then(|| Figure { title: view.title().to_owned(), term: view.term(), sql: None, week_quantity: None })
 }
@@ -76,7 +76,7 @@ impl Pane<Xray> for ViewsPane {
     }
 
     fn figure(&self, xray: &Xray, _: &ScreenContext<'_>) -> Option<Figure> {
-        figure_of(xray)
+        view_figure(xray)
     }
 
     fn handle_action(&self, xray: &mut Xray, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -138,7 +138,7 @@ impl Pane<Xray> for ChoicesPane {
     }
 
     fn figure(&self, xray: &Xray, _: &ScreenContext<'_>) -> Option<Figure> {
-        figure_of(xray)
+        view_figure(xray)
     }
 
     fn handle_action(&self, xray: &mut Xray, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -192,7 +192,7 @@ impl Pane<Xray> for InspectionPane {
     }
 
     fn figure(&self, xray: &Xray, _: &ScreenContext<'_>) -> Option<Figure> {
-        figure_of(xray)
+        view_figure(xray)
     }
 
     fn handle_action(&self, xray: &mut Xray, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -241,10 +241,10 @@ impl Pane<Xray> for InspectionPane {
                 _ => String::new(),
             },
             (_, ViewChoices::Groups) => xray.group().map_or(String::new(), |group| format!(" of {group}")),
-            (_, ViewChoices::Parts) => xray.selected_part().map_or(String::new(), |part| format!(" of {}", part.id())),
+            (_, ViewChoices::Components) => xray.selected_part().map_or(String::new(), |part| format!(" of {}", part.id())),
             _ => String::new(),
         };
-        let note = match (xray.asked.is_waiting(), view.has_day()) {
+        let note = match (xray.pending_question.is_waiting(), view.has_day()) {
             (true, _) => "re-simulating …".to_owned(),
             (false, true) => format!("day {} of {}", xray.shown_day(), xray.last_day),
             (false, false) => format!("after day {}", xray.last_day),

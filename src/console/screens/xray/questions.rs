@@ -7,13 +7,13 @@ use novamind_worker::inspection::{BreakpointCommand, InspectionAnswer, Inspectio
 
 impl Xray {
     pub(super) fn send_question(&mut self, question: InspectionQuestion) -> Vec<Effect> {
-        vec![Effect::Ask(self.asked.ask(question))]
+        vec![Effect::Ask(self.pending_question.ask(question))]
     }
 
     /// Sends a question immediately, or queues it after the current question. The new question replaces all waiting
     /// read-only questions.
     pub(super) fn enqueue_question(&mut self, question: InspectionQuestion) -> Vec<Effect> {
-        if !self.asked.is_waiting() {
+        if !self.pending_question.is_waiting() {
             return self.send_question(question);
         }
         self.queued.retain(|inspection_question| !is_read_only(inspection_question));
@@ -27,7 +27,7 @@ impl Xray {
     }
 
     pub(super) fn pending_command(&self) -> Option<&str> {
-        self.queued.iter().rev().chain(self.asked.question()).find_map(|question| match question {
+        self.queued.iter().rev().chain(self.pending_question.question()).find_map(|question| match question {
             InspectionQuestion::Command(words, _) => Some(words.as_str()),
             _ => None,
         })
@@ -60,7 +60,7 @@ impl Xray {
                 self.fill_breakpoints();
             }
         }
-        let is_wanted = self.wanted_question().as_ref() == Some(&question);
+        let is_wanted = self.current_question().as_ref() == Some(&question);
         if is_wanted {
             self.inspection = Some(InspectionResult { question, found });
         }

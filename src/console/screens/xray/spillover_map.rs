@@ -31,7 +31,7 @@ pub fn rows(map: &SpilloverMap, width: usize) -> Vec<StyledRow> {
             let mut head = format!("{:<NAME_WIDTH$}{OWN_CHANGE_LABEL:<number$}", "from");
             map.targets[block.clone()].iter().for_each(|group| head += &format!("{:<cell$}", group.id()));
             rows.push(vec![(head, Role::Header)]);
-            rows.extend(map.rows.iter().map(|row| row_of(row, block.clone(), number, is_wide)));
+            rows.extend(map.rows.iter().map(|row| map_row(row, block.clone(), number, is_wide)));
         }
         rows.extend(plain(LEGEND, Role::Dim));
         if !is_wide {
@@ -47,7 +47,7 @@ const OWN_CHANGE_LABEL: &str = "own change";
 const LEGEND: &str =
     "░ ▒ ▓ █ share of the largest spillover · + raises, - lowers · x dropped · dot: no weight";
 
-fn row_of(row: &SpilloverRow, block: Range<usize>, number: usize, is_wide: bool) -> StyledRow {
+fn map_row(row: &SpilloverRow, block: Range<usize>, number: usize, is_wide: bool) -> StyledRow {
     let mut pieces =
         vec![(format!("{:<NAME_WIDTH$}", row.from.id()), Role::Header), (format!("{:<number$}", row.own_change), Role::Text)];
     pieces.extend(row.cells[block].iter().map(|cell| {
@@ -55,10 +55,10 @@ fn row_of(row: &SpilloverRow, block: Range<usize>, number: usize, is_wide: bool)
             SpilloverCell::NoWeight => ("·".to_owned(), Role::Dim),
             SpilloverCell::Dropped if is_wide => (cell.describe(), Role::Dim),
             SpilloverCell::Dropped => ("x".to_owned(), Role::Dim),
-            SpilloverCell::Applied(change, _) if is_wide => (cell.describe(), role_of(change)),
+            SpilloverCell::Applied(change, _) if is_wide => (cell.describe(), change_role(change)),
             SpilloverCell::Applied(change, mark) => {
                 let sign = if change < 0.0 { "-" } else { "+" };
-                (format!("{}{sign}", HEAT_MARKS[mark].repeat(2)), role_of(change))
+                (format!("{}{sign}", HEAT_MARKS[mark].repeat(2)), change_role(change))
             }
         };
         let wide = if is_wide { WIDE_CELL_WIDTH } else { NARROW_CELL_WIDTH };
@@ -67,7 +67,7 @@ fn row_of(row: &SpilloverRow, block: Range<usize>, number: usize, is_wide: bool)
     pieces
 }
 
-fn role_of(change: f64) -> Role {
+fn change_role(change: f64) -> Role {
     if change < 0.0 { Role::Bad } else { Role::Good }
 }
 

@@ -2,7 +2,7 @@ use super::*;
 use crate::headless::Headless;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, asked, new_company, screen_text, played_screen, played_session, settings, loaded_screen, draw_at_all_sizes};
+use crate::test_kit::{handle_action, only_question, new_company, screen_text, played_screen, played_session, settings, loaded_screen, draw_at_all_sizes};
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -17,7 +17,7 @@ fn inspectable(company: DisplayedCompany) -> DisplayedCompany {
 fn receive_inspection(screen: &mut Xray, company: &DisplayedCompany, found: Result<InspectionAnswer, Rejection>) -> Vec<Effect> {
     let keys = KeyBindings::bundled();
     let context = ScreenContext { company, keys: &keys, page_rows: 5 };
-    screen.asked.set_answer(found);
+    screen.pending_question.set_answer(found);
     screen.take_answers(&context)
 }
 
@@ -28,7 +28,7 @@ fn inspection_with_line(line: &str) -> Result<InspectionAnswer, Rejection> {
 fn asked_day(effects: &[Effect]) -> Option<u32> {
     match effects {
         [] => None,
-        effects => match asked(effects) {
+        effects => match only_question(effects) {
             InspectionQuestion::Leads(_, day, _) => Some(*day),
             _ => None,
         },
@@ -81,7 +81,7 @@ fn queued_commands_run_next_and_confirmed_ones_are_kept() {
     let company = inspectable(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     assert_eq!(asked_day(&screen.request_inspection()), Some(14));
-    let asked = |effects: &[Effect]| match asked(effects) {
+    let asked = |effects: &[Effect]| match only_question(effects) {
         InspectionQuestion::Command(words, _) => words.clone(),
         other => panic!("{other:?}"),
     };
@@ -108,7 +108,7 @@ fn input_accepts_existing_days_with_or_without_a_target() {
     let company = inspectable(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     let mut typed = |view: XrayView, action: Action, text: &str| {
-        screen.asked.cancel();
+        screen.pending_question.cancel();
         screen.show_view(view);
         handle_action(&mut screen, action, &company);
         if let Some(typing) = &mut screen.input {
@@ -116,7 +116,7 @@ fn input_accepts_existing_days_with_or_without_a_target() {
         }
         let effects = screen.submit_input();
         let problem = screen.problem.take();
-        (effects.first().map(|_| asked::<InspectionQuestion>(&effects).clone()), problem, screen.day())
+        (effects.first().map(|_| only_question::<InspectionQuestion>(&effects).clone()), problem, screen.day())
     };
     let (inspection_question, _, day) = typed(XrayView::Leads, Action::TypeTarget, "s2 9");
     assert!(matches!(inspection_question, Some(InspectionQuestion::Leads(group, 9, _)) if group.id() == "S2"));
@@ -232,7 +232,7 @@ fn requests_that_bypass_the_screen_are_rejected() {
             words("who cash"),
             words("diff 6 7"),
             words("set group.S1.c_max_mean 300"),
-            Effect::SendWords("set group.S1.c_max_mean 300".to_owned()),
+            Effect::SendCommand("set group.S1.c_max_mean 300".to_owned()),
             Effect::Ask(Pending::default().ask(query)),
         ] {
             console.app.start(effect);

@@ -30,7 +30,7 @@ pub enum XrayView {
 pub enum ViewChoices {
     Groups,
     /// Components with random draws.
-    Parts,
+    Components,
     Breakpoints,
     /// No list: the view shows the complete market, a customer, or the result of a command.
     Nothing,
@@ -56,7 +56,7 @@ impl XrayView {
     pub fn choices(self) -> ViewChoices {
         match self {
             XrayView::Leads | XrayView::Quality | XrayView::Satisfaction | XrayView::Reputation => ViewChoices::Groups,
-            XrayView::Draws => ViewChoices::Parts,
+            XrayView::Draws => ViewChoices::Components,
             XrayView::Breakpoints => ViewChoices::Breakpoints,
             XrayView::Spillover | XrayView::Competitors | XrayView::Drift | XrayView::Customer | XrayView::Commands => ViewChoices::Nothing,
         }
@@ -79,7 +79,7 @@ impl ViewChoices {
     pub fn title(self) -> &'static str {
         match self {
             ViewChoices::Groups => "Group",
-            ViewChoices::Parts => "Component",
+            ViewChoices::Components => "Component",
             ViewChoices::Breakpoints => "Set",
             ViewChoices::Nothing => "",
         }

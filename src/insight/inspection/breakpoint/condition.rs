@@ -7,7 +7,7 @@ use super::measured_days::MeasuredDay;
 
 /// An operator that compares a figure with a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Relation {
+pub enum ComparisonOperator {
     /// Greater than, `>`.
     Above,
     /// Greater than or equal to, `>=`.
@@ -18,24 +18,24 @@ pub enum Relation {
     AtMost,
 }
 
-impl Relation {
+impl ComparisonOperator {
     /// Returns the operator as written in conditions.
     pub fn symbol(self) -> &'static str {
         match self {
-            Relation::Above => ">",
-            Relation::AtLeast => ">=",
-            Relation::Below => "<",
-            Relation::AtMost => "<=",
+            ComparisonOperator::Above => ">",
+            ComparisonOperator::AtLeast => ">=",
+            ComparisonOperator::Below => "<",
+            ComparisonOperator::AtMost => "<=",
         }
     }
 
     /// Returns whether the comparison of `value` with `threshold` is true.
     pub fn is_satisfied(self, value: f64, threshold: f64) -> bool {
         match self {
-            Relation::Above => value > threshold,
-            Relation::AtLeast => value >= threshold,
-            Relation::Below => value < threshold,
-            Relation::AtMost => value <= threshold,
+            ComparisonOperator::Above => value > threshold,
+            ComparisonOperator::AtLeast => value >= threshold,
+            ComparisonOperator::Below => value < threshold,
+            ComparisonOperator::AtMost => value <= threshold,
         }
     }
 }
@@ -96,7 +96,7 @@ impl WorldEvent {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
     /// A comparison of a figure with a threshold.
-    Compared(Quantity, Relation, f64),
+    Compared(Quantity, ComparisonOperator, f64),
     /// A change of a figure compared with the day before.
     Changed(Quantity, Direction),
     /// True on days on which the event occurs.

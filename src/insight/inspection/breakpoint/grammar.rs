@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::condition::{Condition, Direction, Relation, WorldEvent};
+use super::condition::{ComparisonOperator, Condition, Direction, WorldEvent};
 use super::measure::{Measure, MeasureKind, Quantity, QuantityError};
 use novamind_base::similar_names;
 use novamind_world::identifiers::Group;
@@ -133,7 +133,7 @@ impl<'a> TokenReader<'a> {
     }
 
     /// Reads the optional number of days, for example ` over 7`.
-    fn parse_days(&mut self) -> Result<Option<(u32, usize)>, ConditionParseError> {
+    fn parse_day_count(&mut self) -> Result<Option<(u32, usize)>, ConditionParseError> {
         let column = self.tokens.get(self.at).map_or(self.end, |token| token.column);
         if !self.next_if("over") {
             return Ok(None);
@@ -189,7 +189,7 @@ impl FromStr for Condition {
 }
 
 enum FigurePredicate {
-    Compared(Relation, f64),
+    Compared(ComparisonOperator, f64),
     Changed(Direction),
 }
 
@@ -197,12 +197,12 @@ enum FigurePredicate {
 fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, ConditionParseError> {
     let (measure, column) = words.parse_name(Measure::ALL, Measure::id, "a figure")?;
     let group = words.parse_group()?;
-    let early = words.parse_days()?;
+    let early = words.parse_day_count()?;
     let judgement = parse_predicate(words)?;
     check_share_threshold(measure, &judgement, column)?;
     let days = match early {
         Some(days) => Some(days),
-        None => words.parse_days()?,
+        None => words.parse_day_count()?,
     };
     let quantity = Quantity::new(measure, group, days.map(|(days, _)| days)).map_err(|no| {
         let column = match no {
@@ -211,7 +211,7 @@ fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, Cond
                 days.map_or(column, |(_, column)| column)
             }
         };
-        ConditionParseError { message: quantity_error(measure.id(), no), column }
+        ConditionParseError { message: describe_quantity_error(measure.id(), no), column }
     })?;
     Ok(match judgement {
         FigurePredicate::Compared(relation, threshold) => Condition::Compared(quantity, relation, threshold),
@@ -220,7 +220,7 @@ fn parse_figure_condition(words: &mut TokenReader<'_>) -> Result<Condition, Cond
 }
 
 /// Describes why a figure is invalid, and how to write a valid figure.
-pub(crate) fn quantity_error(id: &str, no: QuantityError) -> String {
+pub(crate) fn describe_quantity_error(id: &str, no: QuantityError) -> String {
     match no {
         QuantityError::CompanyOnly => {
             format!("{id} is a figure of the whole company; write {id} without a group")
@@ -236,10 +236,10 @@ pub(crate) fn quantity_error(id: &str, no: QuantityError) -> String {
 fn parse_predicate(words: &mut TokenReader<'_>) -> Result<FigurePredicate, ConditionParseError> {
     let token = words.next();
     let relation = match token.map(|token| token.text) {
-        Some(">") => Relation::Above,
-        Some(">=") => Relation::AtLeast,
-        Some("<") => Relation::Below,
-        Some("<=") => Relation::AtMost,
+        Some(">") => ComparisonOperator::Above,
+        Some(">=") => ComparisonOperator::AtLeast,
+        Some("<") => ComparisonOperator::Below,
+        Some("<=") => ComparisonOperator::AtMost,
         Some(word) if word.eq_ignore_ascii_case("rises") => {
             return Ok(FigurePredicate::Changed(Direction::Rises));
         }

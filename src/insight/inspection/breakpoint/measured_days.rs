@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use novamind_record::figures::GroupFigures;
 use novamind_session::GroupWeek;
-use novamind_session::engine::{count_day, measure_group};
+use novamind_session::engine::{add_day_to_week, measure_group};
 use novamind_world::customers::drift::is_drift_day;
 use novamind_world::day::observer::DayObserver;
 use novamind_world::events::{DayFigures, Facts};
@@ -27,7 +27,7 @@ pub(crate) struct MeasuredDay {
 impl MeasuredDay {
     fn new(world: &World, params: &Params, facts: &Facts, figures: &DayFigures) -> MeasuredDay {
         let mut counted = ByGroup::<GroupWeek>::default();
-        count_day(&mut counted, figures, facts, world);
+        add_day_to_week(&mut counted, figures, facts, world);
         let surge = surge_factor(world.day, &world.market.surges, params.fidelity.surge_start);
         MeasuredDay {
             figures: *figures,

@@ -7,7 +7,7 @@ use super::condition::{Condition, ConditionState};
 use super::list::Breakpoint;
 use super::measured_days::MeasuredDays;
 use crate::inspection::inspector::Inspector;
-use novamind_session::{DayReport, InspectionPermit, WatchedDays, WeekResult};
+use novamind_session::{DayReport, InspectionPermit, ObservedDays, WeekResult};
 use novamind_tools::Rejection;
 
 /// A breakpoint whose condition became true.
@@ -101,18 +101,18 @@ impl Inspector<'_> {
         let known = &self.cache.breakpoints.measured_days;
         let shows_past = known.last_day() < from;
         let series = if shows_past { Arc::default() } else { known.clone() };
-        let goes_on = |day: u32| breakpoints_hit(day, &set, &series).is_empty();
+        let goes_on = |day: u32| find_hit_breakpoints(day, &set, &series).is_empty();
         let looks = ("breakpoint", set.iter().map(|breakpoint| breakpoint.condition.to_string()).collect());
-        let watched = WatchedDays {
+        let watched = ObservedDays {
             days,
             watch: series.clone(),
-            shows_past,
+            replays_past_days: shows_past,
             should_continue: &goes_on,
             inspections: looks,
         };
         let week = watched.simulate(self.run, progress)?;
-        let (hits, day) = (breakpoints_hit(self.run.day(), &set, &series), self.run.day());
-        let true_before = breakpoints_still_true(from + 1..=day, &set, &series);
+        let (hits, day) = (find_hit_breakpoints(self.run.day(), &set, &series), self.run.day());
+        let true_before = find_still_true_breakpoints(from + 1..=day, &set, &series);
         if !set.is_empty() {
             self.cache.breakpoints.measured_days = series;
         }
@@ -137,7 +137,7 @@ impl Inspector<'_> {
 }
 
 /// Returns the breakpoints that became true on a day.
-fn breakpoints_hit(day: u32, set: &[Breakpoint], series: &MeasuredDays) -> Vec<BreakpointHit> {
+fn find_hit_breakpoints(day: u32, set: &[Breakpoint], series: &MeasuredDays) -> Vec<BreakpointHit> {
     series.with_days(|days| {
         let judged = set.iter().map(|breakpoint| BreakpointHit {
             breakpoint: *breakpoint,
@@ -148,7 +148,7 @@ fn breakpoints_hit(day: u32, set: &[Breakpoint], series: &MeasuredDays) -> Vec<B
 }
 
 /// Returns the breakpoints that were true on some of the simulated days and became true on none of them.
-fn breakpoints_still_true(
+fn find_still_true_breakpoints(
     days: RangeInclusive<u32>,
     set: &[Breakpoint],
     series: &MeasuredDays,

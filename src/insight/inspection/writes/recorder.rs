@@ -160,8 +160,9 @@ fn add_subscriber_writes(pages: &mut RecordedWrites, group: Group, world: &World
         let count = arrivals.filter(|arrival| signed(arrival.customer)).count();
         (0..count).for_each(|_| pages.add_amount(WriteSource::Signups(source), 1.0));
     }
-    let of_group =
-        |customer: u32| world.enterprise.company(customer).is_some_and(|company| company.group == group);
+    let of_group = |customer: u32| {
+        world.enterprise.enterprise_customer(customer).is_some_and(|company| company.group == group)
+    };
     let deals = facts.deals.iter().filter(|deal| deal.activated && of_group(deal.customer));
     deals.for_each(|_| pages.add_amount(WriteSource::FirstDeals, 1.0));
 }

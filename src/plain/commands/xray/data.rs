@@ -36,7 +36,7 @@ pub(super) fn leads_to_json(lead_equation: &LeadEquation, held: &[(LeadFactor, f
         "expected": lead_equation.expected_leads(),
         "came": lead_equation.actual_leads,
         "p": lead_equation.p_value(),
-        "held": (!held.is_empty()).then(|| lead_equation.expected_with(held)),
+        "held": (!held.is_empty()).then(|| lead_equation.expected_leads_with(held)),
     })
 }
 
@@ -60,7 +60,7 @@ pub(super) fn customer_to_json(view: &IndividualView, headline: &str) -> Value {
         "headline": headline,
         "came": view.signup.day,
         "signed_up": view.signup.signed_up,
-        "shown": view.day_shown().map(day),
+        "shown": view.shown_state().map(day),
         "last_bill": view.last_bill().map(day),
     })
 }
@@ -82,6 +82,6 @@ pub(super) fn enterprise_to_json(view: &EnterpriseView) -> Value {
         "customer_id": view.customer,
         "group": view.group.id(),
         "day": view.day,
-        "threads": view.threads_of_day().map(thread).collect::<Vec<Value>>(),
+        "threads": view.threads_on_shown_day().map(thread).collect::<Vec<Value>>(),
     })
 }

@@ -47,7 +47,7 @@ pub(super) fn satisfaction_to_json(satisfaction_equation: &SatisfactionEquation)
         "before": satisfaction_equation.before(),
         "terms": terms(&|term| satisfaction_equation.term(term)),
         "terms_yesterday": terms(&|term| satisfaction_equation.term_yesterday(term)),
-        "felt": satisfaction_equation.instant(),
+        "felt": satisfaction_equation.instant_satisfaction(),
         "after": satisfaction_equation.after(),
         "left": satisfaction_equation.departed,
         "came": satisfaction_equation.joined,

@@ -79,7 +79,7 @@ impl Interpreter {
     }
 
     /// Executes `xray streams PART [N]`.
-    pub(super) fn streams(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_streams(&mut self, arguments: &[Argument]) -> ViewResult {
         let (part, count) = parse_part_and_count(arguments)?;
         Ok(view_response(
             self.session.inspect().next_draws(part, count),

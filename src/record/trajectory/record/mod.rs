@@ -28,13 +28,15 @@ pub use call::{Call, Outcome, RejectionRecord, Reversal, Via};
 pub use called_tool::CalledTool;
 pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
-pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
+pub use presence::{Clock, ClockEvent, DetachCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
 pub use questions::{QuestionAnswer, QuestionShown};
 pub use request_id::RequestId;
 pub(crate) use start::first_mechanics;
 pub use start::{Parent, Start};
 pub use voice::{FailedAnswer, JudgedPost, ModelTask, VoiceAnswer, WordedPost, WordedPosts};
-pub use week::{Advance, Branch, CalculationOutput, Closing, End, FiledForecast, Override, RunEndReason};
+pub use week::{
+    Advance, Branch, CalculationOutput, ClosedDays, End, Override, RunEndReason, SubmittedForecast,
+};
 
 /// An event of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,9 +58,9 @@ pub enum Record {
     /// A language model responded or failed.
     Voice(VoiceAnswer),
     /// A week was simulated.
-    Week(Closing),
+    Week(ClosedDays),
     /// Single days of a debug run were simulated.
-    Step(Closing),
+    Step(ClosedDays),
     /// A parameter was changed in a debug run or a lesson.
     Override(Override),
     /// The copied lines of a branch end before this line.
@@ -137,7 +139,7 @@ impl Record {
     }
 
     /// Returns the simulated days that the event closes, if any.
-    pub fn closing(&self) -> Option<&Closing> {
+    pub fn closed_days(&self) -> Option<&ClosedDays> {
         match self {
             Record::Week(closing) | Record::Step(closing) => Some(closing),
             _ => None,

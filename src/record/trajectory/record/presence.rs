@@ -10,7 +10,7 @@ pub struct Presence {
     pub event: PresenceEvent,
     /// Why the program detached from the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cause: Option<LeavingCause>,
+    pub cause: Option<DetachCause>,
     /// Interface that attached to the run: `console`, `plain`, `http` or `policy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<String>,
@@ -61,7 +61,7 @@ pub enum PresenceEvent {
 /// Why the program detached from a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LeavingCause {
+pub enum DetachCause {
     /// The user quit.
     Quit,
     /// The standard input of plain mode ended.

@@ -10,7 +10,7 @@ use crate::rules::SessionRules;
 use crate::stamp::HandoutStamp;
 use crate::stamp::LessonStamp;
 use crate::stamp::{EarlierRun, StudyStamp};
-use novamind_voice::model::settings::ModelStamp;
+use novamind_voice::model::settings::RecordedModelSettings;
 use novamind_world::fault::Fault;
 
 /// The event in the first line: manifest and rules of a run.
@@ -60,7 +60,7 @@ pub struct Start {
     pub handout: Option<HandoutStamp>,
     /// Language model that words posts and messages, if one is used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub voice: Option<ModelStamp>,
+    pub voice: Option<RecordedModelSettings>,
     /// Session rules; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rules: Option<SessionRules>,

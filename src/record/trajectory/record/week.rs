@@ -17,7 +17,7 @@ pub struct Advance {
     /// Rationale of the week.
     pub rationale: String,
     /// Forecasts of cash, one forecast for each horizon.
-    pub forecasts: Vec<FiledForecast>,
+    pub forecasts: Vec<SubmittedForecast>,
     /// Source of the submission.
     pub via: Via,
     /// Outputs of the registered calculations before the week.
@@ -38,7 +38,7 @@ impl Advance {
 
 /// A submitted forecast as recorded in a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct FiledForecast {
+pub struct SubmittedForecast {
     /// Days from the submission to the target of the forecast.
     pub horizon_days: u32,
     /// Most likely value, dollars.
@@ -55,17 +55,17 @@ pub struct FiledForecast {
     pub filled_naively: bool,
 }
 
-impl FiledForecast {
+impl SubmittedForecast {
     /// Returns the forecast without the information on how it was entered.
     pub fn to_forecast(self) -> Forecast {
-        let FiledForecast { horizon_days, point, lower, upper, .. } = self;
+        let SubmittedForecast { horizon_days, point, lower, upper, .. } = self;
         Forecast { horizon_days, point, lower, upper }
     }
 }
 
 /// Figures of simulated days, and the state after these days.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Closing {
+pub struct ClosedDays {
     /// Number of simulated days.
     pub days_run: u32,
     /// Figures of the simulated days, by name.

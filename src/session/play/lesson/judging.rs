@@ -54,7 +54,7 @@ impl Session {
             return false;
         };
         let (part, weeks) = (standing.current_part(), weeks_passed(self));
-        let step = weeks.checked_sub(1).and_then(|before| part.step_after(before));
+        let step = weeks.checked_sub(1).and_then(|before| part.step_at_week(before));
         step.is_some_and(|step| {
             standing.has_started(step) && !standing.has_started(step + 1) && weeks == part.step_weeks(step).1
         })
@@ -70,7 +70,7 @@ impl Session {
 
     /// Records the pitfalls that were first triggered in the last week.
     pub(super) fn record_pitfalls(&mut self, standing: &LessonProgress, step: usize, weeks: u32) {
-        let texts = standing.met_pitfalls();
+        let texts = standing.triggered_pitfall_names();
         let is_open =
             |pitfall: &&Pitfall| pitfall.part == standing.part && !texts.contains(&pitfall.name.as_str());
         let from = weeks.saturating_sub(1) * self.params().run.days_per_week;

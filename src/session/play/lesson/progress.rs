@@ -17,7 +17,7 @@ pub fn weeks_passed(session: &Session) -> u32 {
 /// Returns the index of the step to which the next week belongs. Returns `None` outside lessons and after the part has ended.
 pub fn lesson_step(session: &Session) -> Option<usize> {
     let standing = session.lesson().filter(|_| session.ended().is_none())?;
-    standing.current_part().step_after(weeks_passed(session))
+    standing.current_part().step_at_week(weeks_passed(session))
 }
 
 impl Session {
@@ -72,7 +72,7 @@ impl Session {
         // A week that ends early by bankruptcy counts as a week.
         let weeks = self.day().div_ceil(self.params().run.days_per_week);
         let part = standing.current_part();
-        let step = part.step_after(weeks.saturating_sub(1));
+        let step = part.step_at_week(weeks.saturating_sub(1));
         let Some(step) = step.filter(|step| standing.has_started(*step) && !standing.has_started(step + 1))
         else {
             return;

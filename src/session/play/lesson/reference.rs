@@ -4,7 +4,7 @@ use super::progress::lesson_step;
 use std::sync::Arc;
 
 use crate::create::NewRun;
-use crate::create::lesson_entry::LessonEntry;
+use crate::create::lesson_entry::LessonOptions;
 use crate::play::{RuleEvaluator, Session};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
@@ -57,7 +57,7 @@ pub fn play_part_with_hooks(
     after_week: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
 ) -> Result<Session, RunError> {
     let part = &play.lesson.plan.parts[play.part];
-    let entry = LessonEntry { lesson: play.lesson.clone(), part: play.part, is_judged: play.is_judged };
+    let entry = LessonOptions { lesson: play.lesson.clone(), part: play.part, is_judged: play.is_judged };
     let new = NewRun {
         mode: Mode::Lesson,
         seed: play.seed,

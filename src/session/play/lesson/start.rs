@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::company::reports::DayReport;
-use crate::create::lesson_entry::LessonEntry;
+use crate::create::lesson_entry::LessonOptions;
 use crate::play::Session;
 use novamind_record::error::RunError;
 use novamind_record::lesson::{Lesson, LessonCall, LessonProgress};
@@ -20,10 +20,10 @@ impl Session {
     /// One of the initial calls is rejected.
     pub(crate) fn start_lesson(
         &mut self,
-        entry: &LessonEntry,
+        entry: &LessonOptions,
         tell: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), RunError> {
-        let LessonEntry { lesson, part, is_judged } = entry;
+        let LessonOptions { lesson, part, is_judged } = entry;
         self.lesson = Some(Box::new(LessonProgress {
             lesson: lesson.clone(),
             part: *part,
@@ -47,7 +47,7 @@ impl Session {
                 .filter(|scheduled_calls| scheduled_calls.week == week)
                 .flat_map(|calls| &calls.calls);
             for call in due.skip(if week == first { made } else { 0 }) {
-                self.make_start_call(call).map_err(|refusal| {
+                self.execute_start_call(call).map_err(|refusal| {
                     RunError::InvalidRequest(format!("lesson {} cannot start: {refusal}", lesson.name))
                 })?;
             }
@@ -60,7 +60,7 @@ impl Session {
         self.start_step(0, 1).map_err(|refusal| RunError::InvalidRequest(refusal.to_string()))
     }
 
-    fn make_start_call(&mut self, call: &LessonCall) -> Result<(), Rejection> {
+    fn execute_start_call(&mut self, call: &LessonCall) -> Result<(), Rejection> {
         match call {
             LessonCall::Tool(tool, args) => self.call(tool, args, Via::Lesson).map(|_| ()),
             LessonCall::Rules(_) => Err(Rejection::new(

@@ -5,7 +5,7 @@ use super::chronicle::Chronicle;
 use super::weights::PostWeightInputs;
 use crate::context::DayContext;
 use crate::customers::columns::Block;
-use crate::events::{Opinion, PostCause, Theme, Troubles};
+use crate::events::{CustomerProblems, Opinion, PostCause, Theme};
 use crate::identifiers::Group;
 use crate::params::SocialParams;
 use crate::quality::{quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty};
@@ -29,8 +29,8 @@ impl OpinionContext<'_> {
 
     /// Returns today's problems of the subscriber in a row.
     #[inline]
-    pub fn troubles(&self, block: &Block, at: usize) -> Troubles {
-        Troubles {
+    pub fn customer_problems(&self, block: &Block, at: usize) -> CustomerProblems {
+        CustomerProblems {
             overload: self.day.service.overload > 0.0,
             outage: self.day.service.outage,
             issue: block.open_issue_days[at] > 0,
@@ -47,7 +47,7 @@ impl OpinionContext<'_> {
             change: satisfaction - before,
             influencer: self.day.params.group(group).influencer,
             days_subscribed: self.day.day() - block.start_day[at],
-            events: self.troubles(block, at).count(),
+            events: self.customer_problems(block, at).count(),
             // Contracts last only a month, so no customer is locked in.
             contract_locked: false,
             seats: if group.is_enterprise() { block.seats[at].trunc() } else { 1.0 },
@@ -56,7 +56,7 @@ impl OpinionContext<'_> {
 
     /// Returns the opinion of the subscriber in a row. `u` is a uniform draw.
     pub fn opinion(&self, group: Group, block: &Block, at: usize, before: f64, u: f64) -> Opinion {
-        let troubles = self.troubles(block, at);
+        let troubles = self.customer_problems(block, at);
         let change = block.satisfaction[at] - before;
         let worths = if block.satisfaction[at] < 0.0 {
             self.complaint_weights(group, block, at)
@@ -139,12 +139,12 @@ impl OpinionContext<'_> {
 }
 
 /// Returns the cause of a post: the first problem, otherwise a change in satisfaction, otherwise `General`.
-pub fn post_cause(troubles: Troubles, change: f64, params: &SocialParams) -> PostCause {
+pub fn post_cause(troubles: CustomerProblems, change: f64, params: &SocialParams) -> PostCause {
     match troubles {
-        Troubles { overload: true, .. } => PostCause::Overload,
-        Troubles { outage: true, .. } => PostCause::Outage,
-        Troubles { issue: true, .. } => PostCause::Issue,
-        Troubles { quota: true, .. } => PostCause::Quota,
+        CustomerProblems { overload: true, .. } => PostCause::Overload,
+        CustomerProblems { outage: true, .. } => PostCause::Outage,
+        CustomerProblems { issue: true, .. } => PostCause::Issue,
+        CustomerProblems { quota: true, .. } => PostCause::Quota,
         _ if change.abs() < params.satisfaction_change_threshold => PostCause::General,
         _ if change > 0.0 => PostCause::Improved,
         _ => PostCause::Declined,
@@ -170,15 +170,15 @@ mod tests {
     use crate::params::Params;
 
     #[test]
-    fn troubles_precede_satisfaction_changes() {
+    fn problems_precede_satisfaction_changes() {
         let params = Params::bundled().social;
-        let none = Troubles::default();
-        let all = Troubles { overload: true, outage: true, issue: true, quota: true };
+        let none = CustomerProblems::default();
+        let all = CustomerProblems { overload: true, outage: true, issue: true, quota: true };
         for (troubles, change, expected) in [
             (all, 0.5, PostCause::Overload),
-            (Troubles { overload: false, ..all }, 0.5, PostCause::Outage),
-            (Troubles { issue: true, quota: true, ..none }, 0.0, PostCause::Issue),
-            (Troubles { quota: true, ..none }, -0.5, PostCause::Quota),
+            (CustomerProblems { overload: false, ..all }, 0.5, PostCause::Outage),
+            (CustomerProblems { issue: true, quota: true, ..none }, 0.0, PostCause::Issue),
+            (CustomerProblems { quota: true, ..none }, -0.5, PostCause::Quota),
             (none, 0.02, PostCause::Improved),
             (none, -0.02, PostCause::Declined),
             (none, 0.019, PostCause::General),

@@ -13,7 +13,7 @@ use crate::customers::Customers;
 use crate::customers::columns::Block;
 use crate::customers::traits::draw_traits;
 use crate::enterprise::churn::{LostEnterprise, ThreadFailure};
-use crate::events::{Facts, Opinion, PostAuthor, PostCause, PostSubject, Sentiment, Theme, Troubles};
+use crate::events::{CustomerProblems, Facts, Opinion, PostAuthor, PostCause, PostSubject, Sentiment, Theme};
 use crate::identifiers::Group;
 use crate::params::{CustomerPosts, Params};
 use crate::random::{Part, Stream, Streams};
@@ -155,7 +155,7 @@ impl PostLottery {
             let theme = if cancelled_individual.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
             let opinion = Opinion {
                 cause: PostCause::Cancelled,
-                troubles: Troubles::default(),
+                troubles: CustomerProblems::default(),
                 theme,
                 days_subscribed: cancelled_individual.days_subscribed,
                 plan: Some(cancelled_individual.plan),
@@ -179,7 +179,7 @@ impl PostLottery {
                     thread: lost_enterprise.kind,
                     unanswered: lost_enterprise.failure == ThreadFailure::Timeout,
                 },
-                troubles: Troubles::default(),
+                troubles: CustomerProblems::default(),
                 theme: Theme::Support,
                 days_subscribed: lost_enterprise
                     .days_subscribed
@@ -288,7 +288,7 @@ mod tests {
         facts.posts
     }
 
-    fn content(n: u32, satisfaction: f64) -> Subscriber {
+    fn subscriber_with_satisfaction(n: u32, satisfaction: f64) -> Subscriber {
         Subscriber { satisfaction, usage_rate: 0.0, ..subscriber(n) }
     }
 
@@ -318,7 +318,7 @@ mod tests {
 
     #[test]
     fn at_most_five_different_subscribers_post() {
-        let rows: Vec<Subscriber> = (1..=40).map(|n| content(n, 0.1)).collect();
+        let rows: Vec<Subscriber> = (1..=40).map(|n| subscriber_with_satisfaction(n, 0.1)).collect();
         let mut authors: Vec<u32> = posts(&rows, &[], &[], 1)
             .iter()
             .filter_map(|post| post.author)
@@ -336,7 +336,11 @@ mod tests {
     #[test]
     fn first_author_is_drawn_by_weight() {
         // The weights are 1 + 10 |S|, that is 1, 2 and 3, and 15 for an individual who cancelled at satisfaction -0.2.
-        let rows = [content(1, 0.0), content(2, 0.1), content(3, 0.2)];
+        let rows = [
+            subscriber_with_satisfaction(1, 0.0),
+            subscriber_with_satisfaction(2, 0.1),
+            subscriber_with_satisfaction(3, 0.2),
+        ];
         let runs = 4000;
         let mut first = [0.0; 4];
         for seed in 0..runs {

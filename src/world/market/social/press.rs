@@ -2,13 +2,17 @@
 
 use super::Social;
 use crate::events::{Engagement, Facts, PostSubject, Reading, Sentiment, Severity, Trend};
-use crate::market::competitors::{Event, severity};
+use crate::market::competitors::{CompetitorEvent, severity};
 use crate::market::economy::Economy;
 use crate::params::{Competitor, MacroEconomy, Params};
 use crate::random::{Part, Stream, Streams};
 
 /// Returns the event that the press covers: the oldest event within its coverage period.
-pub fn current_event<'a>(day: u32, events: &'a [Event], competitor: &Competitor) -> Option<&'a Event> {
+pub fn current_event<'a>(
+    day: u32,
+    events: &'a [CompetitorEvent],
+    competitor: &Competitor,
+) -> Option<&'a CompetitorEvent> {
     events.iter().find(|event| event.day + competitor.competitor_event_post_days >= day)
 }
 
@@ -42,7 +46,7 @@ pub fn competitor_engagement(
 /// Writes today's posts about competitors.
 pub fn write_competitor_posts(
     day: u32,
-    events: &[Event],
+    events: &[CompetitorEvent],
     social: &mut Social,
     params: &Params,
     streams: &Streams,
@@ -133,12 +137,12 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
 
-    fn event(day: u32, boost: f64) -> Event {
-        Event { day, boost, sampled: boost, u: 0.0, by_feedback: false }
+    fn event(day: u32, boost: f64) -> CompetitorEvent {
+        CompetitorEvent { day, boost, sampled: boost, u: 0.0, by_feedback: false }
     }
 
     /// Returns the estimate, and likes and shares of two posts, for given draws.
-    fn posts(events: &[Event], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
+    fn posts(events: &[CompetitorEvent], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
         let competitor = Params::bundled().competitor;
         let event = current_event(day, events, &competitor).expect("a topic");
         let estimate = estimated_boost(event.boost, u);

@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use super::{ClassPage, LowerPane};
 use novamind_base::formatting::{compact_number, short_dollars};
 use novamind_report::class::{
-    ClassQuestion, ClassView, RankedStudent, StudentPoints, class_questions, describe_state, format_score,
-    pitfall_counts, rank_students, scatter, student_curves,
+    ClassQuestion, ClassView, RankedStudent, StudentPoints, class_questions, describe_submission_count,
+    format_score, pitfall_counts, rank_students, scatter, student_curves,
 };
 use novamind_report::pluralize;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
@@ -30,7 +30,11 @@ impl ClassPage {
         let ranking = rank_students(&view);
         let title =
             Rect { x: area.x + 1, width: area.width.saturating_sub(2), height: 1.min(area.height), ..area };
-        canvas.draw_text(title, &format!("{} · {}", view.title(), describe_state(&view)), Role::Title);
+        canvas.draw_text(
+            title,
+            &format!("{} · {}", view.title(), describe_submission_count(&view)),
+            Role::Title,
+        );
         let body = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
         let width = if area.width >= MIN_WIDE_RANKING_WIDTH { RANKING_WIDTH.1 } else { RANKING_WIDTH.0 }
             .min(body.width);
@@ -94,7 +98,7 @@ impl ClassPage {
                     None => short_dollars(student.score),
                 },
                 student.format_goals(),
-                student.max_attempt().to_string(),
+                student.max_try().to_string(),
                 student.hint_count().to_string(),
             ];
             let cells: [&str; 6] = std::array::from_fn(|at| cells[at].as_str());

@@ -7,7 +7,7 @@
 //! documentation. `docs/architecture.md` lists the contents and the allowed imports of each crate.
 //!
 //! * [`world::day::step_day`] lists the steps of a day in order, one line per mechanism.
-//! * Mechanisms emit events ([`world::recorded_events`]). `database` converts the events to rows, and `voice` words messages and posts.
+//! * Mechanisms emit events ([`world::events`]). `database` converts the events to rows, and `voice` words messages and posts.
 //! * A tool is a specification ([`tools::ToolSpec`]) and a pure plan. A call is first planned, then written to disk as a line of
 //!   the trajectory, then applied, and finally confirmed. Applying a call cannot fail.
 //! * `database` and the results of tools determine which information a player may see. Hidden state leaves a session only

@@ -123,10 +123,10 @@ impl Session {
         Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
-    /// Creates a run like [`Session::create_run`], and calls `tell` for each day that is simulated at the start of a lesson.
+    /// Creates a run like [`Session::create`], and calls `tell` for each day that is simulated at the start of a lesson.
     ///
     /// # Errors
-    /// The same errors as [`Session::create_run`].
+    /// The same errors as [`Session::create`].
     pub fn create_with_progress(
         new: NewRun,
         configuration: &Configuration,

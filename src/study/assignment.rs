@@ -50,7 +50,7 @@ impl Assignment {
     /// Parses the contents of `assignment.csv`. `source` is the name of the file in error messages.
     ///
     /// # Errors
-    /// Returns the errors of [`Assignment::read_screen`] except I/O errors.
+    /// Returns the errors of [`Assignment::read`] except I/O errors.
     pub fn parse(source: &str, bytes: &[u8]) -> Result<Assignment, ParameterError> {
         let wrong = |line: usize, key: &str, problem: String| ParameterError {
             source: source.to_owned(),

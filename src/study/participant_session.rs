@@ -207,7 +207,7 @@ impl ParticipantSession {
     /// Creates a new run for the practice or the session.
     ///
     /// # Errors
-    /// Returns the errors of [`Session::create_run`].
+    /// Returns the errors of [`Session::create`].
     pub fn create_run(
         &self,
         practice: bool,
@@ -220,7 +220,7 @@ impl ParticipantSession {
     /// Opens an unfinished run of the participant.
     ///
     /// # Errors
-    /// Returns the errors of [`Session::open_run`].
+    /// Returns the errors of [`Session::open`].
     pub fn open_run(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
         session.connect_model(self.study.protocol.voice.as_ref());

@@ -2,7 +2,7 @@
 //! is applied. Applying a command cannot fail.
 //!
 //! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
-//! its result ([`World::resolve_names`] changes nothing), and only then applied ([`World::apply`]).
+//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::messages::{OfferDraft, OfferMessage};
 use super::events::{Attempt, Project, Study};

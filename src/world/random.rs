@@ -150,7 +150,7 @@ impl Streams {
     }
 
     /// Returns the stream keys of a part for many entities. [`Stream::from_key`] opens a key's stream, which equals
-    /// the stream of [`Streams::open_run`].
+    /// the stream of [`Streams::open`].
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
         map_in_lanes(
             entities,

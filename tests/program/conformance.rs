@@ -74,7 +74,7 @@ fn check_described_routes(server: &Server) {
     let paths = described["paths"].as_object().expect("paths");
     assert!(paths.len() >= 10, "{paths:?}");
     for (path, methods) in paths {
-        // `PUBLISH_A_POST /shutdown` is excluded, because it stops the server.
+        // `POST /shutdown` is excluded, because it stops the server.
         let may_be_tried = |method: &&String| path != "/shutdown" || *method != "post";
         for method in methods.as_object().expect("methods").keys().filter(may_be_tried) {
             let (status, value) =

@@ -29,7 +29,7 @@ pub struct PaneBorder {
 /// Area, focus and index with which a pane is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct PanePlacement {
-    /// Area of the pane. In [`Pane::draw_leads`], the area inside the border.
+    /// Area of the pane. In [`Pane::draw`], the area inside the border.
     pub area: Rect,
     /// Whether the pane has the focus.
     pub focused: bool,

@@ -15,7 +15,7 @@ pub trait RecordAnalysis: Sized {
     /// Reads events that were recorded since the last call.
     ///
     /// # Errors
-    /// Same errors as [`RecordAnalysis::open_run`].
+    /// Same errors as [`RecordAnalysis::open`].
     fn refresh(&mut self) -> Result<(), Rejection>;
 }
 
@@ -32,7 +32,7 @@ impl<T: RecordAnalysis> AnalysisCache<T> {
     /// Returns the analysis of the run in a folder with all recorded events.
     ///
     /// # Errors
-    /// Same errors as [`RecordAnalysis::open_run`]; the cache is then empty.
+    /// Same errors as [`RecordAnalysis::open`]; the cache is then empty.
     pub fn get_or_open(&mut self, folder: PathBuf) -> Result<&mut T, Rejection> {
         let kept = match self.0.take().filter(|(known, _)| *known == folder) {
             Some((folder, mut made)) => {

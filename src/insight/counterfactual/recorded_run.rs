@@ -53,7 +53,7 @@ impl RecordedRun {
     /// Reads new events. Keeps the cached states that are still valid.
     ///
     /// # Errors
-    /// Same errors as [`RecordedRun::open_run`].
+    /// Same errors as [`RecordedRun::open`].
     pub(crate) fn refresh(&mut self) -> Result<(), RunError> {
         let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
         if length == self.length_bytes {

@@ -15,7 +15,7 @@ use novamind_world::day::observer::NoObserver;
 /// Opens a debug run or a finished run for inspection. The only events added to its trajectory are inspections.
 ///
 /// # Errors
-/// `InvalidRequest` for other runs, which are not opened; same errors as [`Session::open_run`].
+/// `InvalidRequest` for other runs, which are not opened; same errors as [`Session::open`].
 pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunError> {
     let mode = read_manifest(folder)?.mode;
     if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end_line().is_none() {

@@ -67,7 +67,7 @@ pub enum DecisionEdit {
 /// Converts decision edits to edits of recorded steps.
 ///
 /// # Errors
-/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed_rejection`, and
+/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`, and
 /// `not_in_this_mode` if a parameter is set outside a debug run.
 pub(super) fn build_edits(
     decided: &[DecisionEdit],

@@ -185,11 +185,11 @@ impl WhatIf {
             .collect())
     }
 
-    /// Returns the result of [`WhatIf::compare_or_write`], and the result of [`WhatIf::futures`] if a number of futures is
+    /// Returns the result of [`WhatIf::compare`], and the result of [`WhatIf::futures`] if a number of futures is
     /// given. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// Same errors as [`WhatIf::compare_or_write`].
+    /// Same errors as [`WhatIf::compare`].
     pub fn compare_with_futures(
         &mut self,
         (week, until_week): (u32, Option<u32>),
@@ -263,7 +263,7 @@ impl WhatIf {
     /// continue beyond it, otherwise at the start of the branches. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// Same errors as [`WhatIf::compare_or_write`].
+    /// Same errors as [`WhatIf::compare`].
     pub fn futures(
         &mut self,
         week: u32,

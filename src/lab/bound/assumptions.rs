@@ -62,7 +62,7 @@ impl BoundAssumptions {
         f64::from(self.days) / 2.0
     }
 
-    /// Returns the name and description of each assumption. Competitors are described if `has_competitors` is set.
+    /// Returns the name and description of each assumption. Competitors are described if `has_rivals` is set.
     pub fn descriptions(&self, has_rivals: bool) -> Vec<(&'static str, String)> {
         let rivals = match has_rivals {
             true => format!(

@@ -206,7 +206,7 @@ impl PreparedExperiment<'_> {
     /// Plays the runs among `numbers` that have no result. Returns the results of all `numbers` in the given order.
     ///
     /// # Errors
-    /// Same errors as [`PreparedExperiment::finished_run`].
+    /// Same errors as [`PreparedExperiment::run`].
     pub fn run_numbered(
         mut self,
         numbers: &[usize],

@@ -55,7 +55,7 @@ impl InspectionCommand {
     /// First words of the commands.
     pub const COMMAND_NAMES: [&str; 4] = ["find", "who", "diff", "set"];
 
-    /// Parses a command line, which starts with one of [`COMMAND_NAMES`].
+    /// Parses a command line, which starts with one of [`InspectionCommand::COMMAND_NAMES`].
     ///
     /// # Errors
     /// Returns the problem and its column.

@@ -28,7 +28,7 @@ impl InspectionPermit {
     /// Starts an inspection of a day, by default the last day. The inspection is recorded before hidden state is shown.
     ///
     /// # Errors
-    /// One of the rejections `not_in_this_mode`, `day_unknown`, `new_read_only`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `day_unknown`, `read_only`, `not_saved`.
     pub fn start(
         run: &mut Session,
         what: &str,
@@ -43,7 +43,7 @@ impl InspectionPermit {
     /// Starts an inspection of the current state of the run. `shown_day` is recorded as the inspected day.
     ///
     /// # Errors
-    /// One of the rejections `not_in_this_mode`, `new_read_only`, `not_saved`.
+    /// One of the rejections `not_in_this_mode`, `read_only`, `not_saved`.
     pub fn start_at_current_state(
         run: &mut Session,
         what: &str,
@@ -58,7 +58,7 @@ impl InspectionPermit {
     /// in the group and arrival day.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown` (also if the customer arrived later), `customer_not_found`, `new_read_only`,
+    /// `not_in_this_mode`, `day_unknown` (also if the customer arrived later), `customer_not_found`, `read_only`,
     /// `not_saved`.
     pub fn start_for_customer(
         run: &mut Session,
@@ -112,7 +112,7 @@ impl InspectionPermit {
     /// Records an inspection before hidden state is shown.
     ///
     /// # Errors
-    /// `new_read_only` if the run is open read-only, `not_saved`.
+    /// `read_only` if the run is open read-only, `not_saved`.
     fn record(
         run: &mut Session,
         what: &str,

@@ -50,10 +50,10 @@ impl Session {
         self.advance_with_json(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
     }
 
-    /// Simulates a week like [`Session::advance_line`], with rationale and predictions as JSON.
+    /// Simulates a week like [`Session::advance`], with rationale and predictions as JSON.
     ///
     /// # Errors
-    /// The same errors as [`Session::advance_line`].
+    /// The same errors as [`Session::advance`].
     pub fn advance_with_json(
         &mut self,
         rationale: &Value,

@@ -44,7 +44,7 @@ fn parse_request_id(id: &Value) -> Result<Option<&str>, Rejection> {
 }
 
 impl Session {
-    /// Calls a tool like [`Session::call_line`], but only once per request id: a retry returns the first response. Tools
+    /// Calls a tool like [`Session::call`], but only once per request id: a retry returns the first response. Tools
     /// that only read or execute code ignore the id.
     ///
     /// # Errors

@@ -37,7 +37,7 @@ impl Session {
     /// Saves the notes and records the change.
     ///
     /// # Errors
-    /// One of the rejections `not_saved`, `new_read_only`.
+    /// One of the rejections `not_saved`, `read_only`.
     pub fn set_notes(&mut self, text: &str) -> Result<(), Rejection> {
         if !self.log.is_written() {
             return Err(Rejection::new("read_only", "this run is open read-only"));

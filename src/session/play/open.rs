@@ -47,10 +47,10 @@ impl Session {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// Opens a run like [`Session::open_run`], with snapshots that are sealed with `key`.
+    /// Opens a run like [`Session::open`], with snapshots that are sealed with `key`.
     ///
     /// # Errors
-    /// The same errors as [`Session::open_run`].
+    /// The same errors as [`Session::open`].
     pub fn open_sealed(
         folder: &Path,
         access: Access,
@@ -64,7 +64,7 @@ impl Session {
     /// read-only commands.
     ///
     /// # Errors
-    /// The same errors as [`Session::open_run`].
+    /// The same errors as [`Session::open`].
     pub(crate) fn open_with_cache(
         folder: &Path,
         access: Access,

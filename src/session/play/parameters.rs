@@ -25,8 +25,8 @@ impl Session {
     /// before it takes effect.
     ///
     /// # Errors
-    /// `not_in_this_mode` if the run is not a debug run; `run_over`, `new_read_only`, `day_unknown`, `parameter_unknown`,
-    /// `parameter_not_allowed_rejection`, `not_saved`. After an error, nothing has changed.
+    /// `not_in_this_mode` if the run is not a debug run; `run_over`, `read_only`, `day_unknown`, `parameter_unknown`,
+    /// `parameter_not_allowed`, `not_saved`. After an error, nothing has changed.
     pub fn set_parameter(
         &mut self,
         key: &str,

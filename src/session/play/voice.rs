@@ -194,7 +194,7 @@ impl Session {
     /// Opens a run for play, and connects its language model if the configuration names that model.
     ///
     /// # Errors
-    /// The same errors as [`Session::open_run`].
+    /// The same errors as [`Session::open`].
     pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
         let mut session = Session::open(folder, Access::Write, true)?;
         session.connect_model(configuration.voice.as_ref());

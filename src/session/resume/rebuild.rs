@@ -85,7 +85,7 @@ impl Session {
     /// folder, so that the next command opens the run immediately.
     ///
     /// # Errors
-    /// The same errors as [`Session::open_run`].
+    /// The same errors as [`Session::open`].
     pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
         let keeping = StoreFunctions {
             may_store: may_store_end,

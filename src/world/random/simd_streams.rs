@@ -3,7 +3,7 @@
 //! Opening a stream takes one block of BLAKE3 and one block of ChaCha8. Both are chains of dependent steps that leave
 //! the processor mostly idle. Each simulated day opens thousands of streams for a single draw (bills, leads). Eight
 //! streams are therefore opened together, one per lane of a vector register, which takes a fifth of the time. The
-//! fallback is [`super::Streams::open_run`]. Tests check that both return the same bits.
+//! fallback is [`super::Streams::open`]. Tests check that both return the same bits.
 #![expect(unsafe_code, reason = "AVX2 intrinsics are unsafe; see the safety comments")]
 
 use std::arch::x86_64::{

@@ -302,7 +302,7 @@ mod tests {
         for term in ["cohort", "network-source"] {
             let term_picture = picture(term, 0);
             assert!(
-                term_picture.drawing.is_none() && term_picture.caption.contains("has run yet"),
+                term_picture.drawing.is_none() && term_picture.caption.contains("has run"),
                 "{term}: {term_picture:?}"
             );
             assert!(picture(term, 4).drawing.is_some(), "{term}");

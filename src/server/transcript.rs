@@ -262,7 +262,7 @@ mod tests {
             ("hello", "line 1 is not valid JSON"),
             ("{\"tool\": \"bash\"}", "there is no tool bash"),
             ("{\"args\": {}}", "has no tool"),
-            ("{\"tool\": \"set_prices\", \"args\": [1]}", "no object"),
+            ("{\"tool\": \"set_prices\", \"args\": [1]}", "not an object"),
         ] {
             let error = ForeignTranscript::read(text.as_bytes()).expect_err(text);
             assert!(error.contains(words), "{text}: {error}");

@@ -80,7 +80,7 @@ fn enter_opens_a_branch_and_confirms_unsaved_text() {
     let here = |console: &Console| console.app.run().map(|run| run.company.observation.run.clone());
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("0 e 'mine' esc shift-tab shift-tab down down enter");
-    console.assert_shows("It is saved with the run");
+    console.assert_shows("is saved with the run");
     console.press("esc");
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("enter y");

@@ -69,7 +69,7 @@ fn watch_view_fills_every_window() {
         let mut console = Console::start(runs.path(), size);
         console.open_projector(RecordSource::Run("latest".to_owned())).expect("it opens");
         let screen = console.screen();
-        for part in ["day", "cash, last week", "subscribers", "█", "Cash", "Decided before w"] {
+        for part in ["day", "cash, last week", "subscribers", "█", "Cash", "Decisions before"] {
             assert!(screen.contains(part), "{part} is missing at {size:?}:\n{screen}");
         }
     }

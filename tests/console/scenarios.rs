@@ -100,7 +100,7 @@ fn week_requires_a_rationale_and_four_forecasts() {
     console.press("'5' tab '4' tab '9' enter ctrl-s");
     console.assert_shows("the point is not between low and high");
     console.press("esc q");
-    console.assert_shows("unsent");
+    console.assert_shows("Unsent");
     console.press("esc n enter");
     console.assert_shows("why not");
     console.press("enter '6' enter f enter");
@@ -208,7 +208,7 @@ fn feed_publishes_a_post_after_one_confirmation() {
     console.press("p 'Again' ctrl-s");
     console.assert_shows("already posted");
     console.press("esc q");
-    console.assert_shows("It is saved with the run");
+    console.assert_shows("is saved with the run");
     console.press("esc 1 5");
     console.assert_shows("Again");
 }
@@ -220,7 +220,7 @@ fn drafts_survive_quitting() {
     console.press("8 enter enter '14' enter");
     console.assert_shows("draft, kept until sent or reset");
     console.press("esc 5 p 'Unsent' esc q");
-    console.assert_shows("It is saved with the run");
+    console.assert_shows("is saved with the run");
     console.press("y");
     assert!(matches!(console.exit, Some((0, _))), "the program ends: {:?}", console.exit);
     drop(console);

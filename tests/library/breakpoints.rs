@@ -544,7 +544,7 @@ fn condition_errors_name_column_and_similar_words() {
         ("churn(S1) > 0.05 over 1.5", 23, "a whole number is expected, not 1.5"),
         ("cash(S1) < 5", 1, "cash is a figure of the whole company"),
         ("reputation falls", 1, "reputation is a figure of a group"),
-        ("reputation(S1) falls over 7", 22, "reputation has a value for one day"),
+        ("reputation(S1) falls over 7", 22, "reputation is a value of one day"),
         ("event comet", 7, "comet is not an event; "),
         ("event rival tomorrow", 13, "unexpected tomorrow at the end"),
     ] {

@@ -501,7 +501,7 @@ fn served_run_with_non_baseline_options_is_reported_as_sandbox() {
     assert!(mode_of(&["--days", "28", "--mode", "baseline"]).1.contains("28 days needs a study"));
     let help = Home::new().run(&["serve", "--help"]).stdout;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("baseline runs have 500") && help.contains("for programs baseline"), "{help}");
+    assert!(help.contains("baseline runs have 500") && help.contains("for programs, baseline"), "{help}");
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn why_shows_causes_without_hidden_state() {
         if mode == "baseline" {
             let refused = answers
                 .iter()
-                .all(|answer| answer.contains("refused not_in_this_mode: why and what-if simulate"));
+                .all(|answer| answer.contains("refused not_in_this_mode: why and what-if re-simulate"));
             assert!(refused && looks.is_empty(), "{}", program_output.stdout);
             continue;
         }

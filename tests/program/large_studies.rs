@@ -278,8 +278,12 @@ fn output_never_replaces_input() {
     let file = write_study(&home, text);
     let place = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let twice = place("./rows");
-    for places in [&["--out", &file][..], &["--svg", &file], &["--out", &place("rows"), "--svg", &twice]] {
-        home.run(&[&["lab", "study", &file], places].concat()).assert_fails(2, &["overwrit"]);
+    for (places, part) in [
+        (&["--out", &file][..], "would be overwritten"),
+        (&["--svg", &file], "would be overwritten"),
+        (&["--out", &place("rows"), "--svg", &twice], "name the same file"),
+    ] {
+        home.run(&[&["lab", "study", &file], places].concat()).assert_fails(2, &[part]);
     }
     assert_eq!(fs::read_to_string(&file).expect("the study"), text);
     let folder = place("shards");

@@ -138,7 +138,7 @@ fn declined_and_withdrawn_participants_leave_no_run() {
         lab.play_session(&format!("P03\nyes\n1\n{WEEKS}1\n2\nwithdraw\nno\nstatus\nwithdraw\nwithdraw\n"));
     assert!(
         withdrew.stdout.contains("subscribers 0")
-            && withdrew.stdout.contains("Erased: your runs with everything"),
+            && withdrew.stdout.contains("Erased: your runs with all your actions"),
         "{}",
         withdrew.stdout
     );

@@ -195,14 +195,15 @@ mod tests {
         let ask = take_questions::<CurveQuestion>(&mut app);
         answer_question::<CurveQuestion>(&mut app, &ask[0], None);
         assert!(
-            screen_text(&app).contains("not answered") && !screen_text(&app).contains("asking 2000 leads")
+            screen_text(&app).contains("no answer because")
+                && !screen_text(&app).contains("asking 2000 leads")
         );
         press_key(&mut app, "esc");
         app.start(Effect::RunSql("SELECT 1".to_owned()));
         let ask = take_questions::<Query>(&mut app);
         assert!(app.is_waiting());
         answer_question::<Query>(&mut app, &ask[0], None);
-        assert!(!app.is_waiting() && screen_text(&app).contains("not answered"));
+        assert!(!app.is_waiting() && screen_text(&app).contains("no answer because"));
         app.start(Effect::RunSql("SELECT 2".to_owned()));
         let ask = take_questions::<Query>(&mut app);
         answer_question::<Query>(

@@ -334,7 +334,7 @@ mod tests {
         for part in [
             "cancellations of S1",
             "Churn · customers",
-            "The loss of subscribers.",
+            "The share of subscribers that cancel in a period.",
             "SELECT 1",
             "see also · 1 of",
         ] {

@@ -447,7 +447,8 @@ mod tests {
             "there is no tool set_price; did you mean set_prices or set_promotion?"
         );
         assert!(
-            message("set_capacity_tier * 2").starts_with("set_capacity_tier has no amounts; a factor works")
+            message("set_capacity_tier * 2")
+                .starts_with("set_capacity_tier has no amounts; a factor applies")
         );
         assert!(message("set_prices * much").starts_with("much is not a factor"));
         assert!(message("set_prices * -1").starts_with("-1 is not a factor"));

@@ -64,7 +64,11 @@ impl BranchFigure {
 
     /// Returns the identifier of the figure in data formats.
     pub fn id(self) -> String {
-        self.name().replace(' ', "_")
+        match self {
+            // Data formats keep the earlier name.
+            BranchFigure::Churn => "churn_of_30_days".to_owned(),
+            _ => self.name().replace(' ', "_"),
+        }
     }
 
     /// Returns the unit of the figure.

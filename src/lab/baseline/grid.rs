@@ -1,4 +1,4 @@
-//! Policy grids. Each combination of levels, one per axis, is a policy (docs/laboratory/baseline.md#own-grids).
+//! Policy grids. Each combination of levels, one per axis, is a policy (docs/laboratory/baseline.md#custom-grids).
 
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};

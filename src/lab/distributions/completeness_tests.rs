@@ -20,7 +20,7 @@ const DRAW_METHODS: [&str; 12] = [
     ".log_normal(",
     ".poisson(",
     ".fill(",
-    "word_below(",
+    "bernoulli_from_word(",
 ];
 
 /// Counts the draws in source code, excluding comments and tests. `.index()` without an argument is not a draw.

@@ -167,7 +167,10 @@ mod tests {
         let command_response = explain("what", "Delivered quality", &ParameterNumbers::bundled());
         let text = command_response.to_text();
         assert!(text.starts_with("Delivered quality (product)\n"), "{text}");
-        assert!(text.contains("\nmore: Base quality plus") && text.contains("\nsee: base-quality"), "{text}");
+        assert!(
+            text.contains("\nmore: The sum of base quality") && text.contains("\nsee: base-quality"),
+            "{text}"
+        );
         let object = command_response.to_json(3, 7);
         assert_eq!((&object["command"], &object["data"]["kind"]), (&json!("explain"), &json!("term")));
         assert!(explain("explain", "set_prices.A", &ParameterNumbers::bundled()).is_success());

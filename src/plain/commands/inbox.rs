@@ -244,7 +244,9 @@ mod tests {
         waiting[1] = thread(2, None, Some(Plan::A));
         let groups = group_lines(&waiting);
         assert!(groups[0].starts_with("E1: 341 threads, 17,050 seats, "), "{groups:?}");
-        assert!(groups[0].ends_with(", 1 asks a price, $20.00") && groups[1].ends_with("none asks a price"));
+        assert!(
+            groups[0].ends_with(", 1 names a price, $20.00") && groups[1].ends_with("none names a price")
+        );
         let lines = thread_lines(&waiting, &ThreadSelection::default(), &names);
         assert_eq!(lines.len(), 1 + MAX_LISTED_THREADS + 2);
         assert!(

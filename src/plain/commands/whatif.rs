@@ -439,7 +439,7 @@ mod tests {
         let wrong = parse_error("from 20 to 30: drop 1");
         assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
         assert!(parse_error("adopt 5").text.starts_with("adopt needs from and a week"));
-        assert!(parse_error("file").text.starts_with("file needs"));
+        assert!(parse_error("file").text.starts_with("whatif file needs the path"));
         assert_eq!(parse_question("from week 3", 1).map(|if_question| if_question.from), Ok(3));
         assert!(parse_error("from 20 futures 1: drop 1").text.starts_with("the number of futures"));
         let wrong = parse_error("from 20: set_price * 2");

@@ -166,7 +166,7 @@ mod tests {
             ("", Value::Integer(3), "no such parameter"),
             ("..", Value::Integer(3), "no such parameter"),
             ("competitor.competitor_feedback_u_min", Value::Float(0.9), "above the upper bound"),
-            ("group.S1.id", Value::String("S2".to_owned()), "the order asks for S1"),
+            ("group.S1.id", Value::String("S2".to_owned()), "must be S1 at this position"),
             ("initial.initial_cash", Value::Integer(5), "takes effect only at the start of a run"),
             (
                 "personas.email.last_names",

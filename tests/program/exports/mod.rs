@@ -326,7 +326,7 @@ fn export_rejects_damaged_runs_and_omits_incomplete_lines() {
     let text = String::from_utf8(good).expect("text");
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
     let (archive, output) = export_run(&home, &run, "bad.tar");
-    output.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
+    output.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "Lines 1 to 2 are valid"]);
     assert!(!archive.exists());
     let hidden = |entry: &PathBuf| {
         entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".novamind"))

@@ -106,7 +106,7 @@ fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitL
         )
     }));
     let smallest = if company { " (smallest)" } else { "" };
-    lines.push(line(format!("quota    usage {} a day{smallest}", fit.usage.format_units()), Role::Header));
+    lines.push(line(format!("quota    typically {} units a day{smallest}", fit.usage.format_units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact_number(fit.plans[plan].quota)));
     lines.push(line(format!(" {} a day", quotas.join(" · ")), shared_role(fit, FitCriterion::Quota)));
     let mut add_rows = |name: &str, text: &str, role: Role| {

@@ -324,7 +324,7 @@ fn answered_enterprise_stays_in_the_list() {
     assert_eq!(thread.last_offer(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
     let effects = handle_action(&mut screen, Action::SendOffer, &after);
-    assert!(matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses another turn")));
+    assert!(matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses up another turn")));
 }
 
 #[test]

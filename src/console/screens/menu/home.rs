@@ -174,9 +174,9 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
         "You run a company that sells an AI subscription. The company starts with a million dollars and no customers.",
         "Once a week you set prices, models, quotas, capacity, advertising and development, answer enterprises, and \
          forecast your cash. Then seven days are simulated.",
-        "Customers, competitors and the economy react. The screens and the tables show all available information.",
+        "Customers, competitors and the economy react. Screens and tables show all that you may know.",
         "Your score is the cash after the last day. If cash falls below zero, the run ends.",
-        "You can quit at any time: all confirmed actions are saved.",
+        "You can quit at any time. Confirmed actions are saved.",
     ];
     let text = parts.join("\n\n");
     for (row, line) in row_rects(inside).zip(wrap(&text, inside.width as usize)) {

@@ -239,7 +239,7 @@ fn form_shows_problems_while_typing() {
     type_text(&mut menu, "0");
     menu.form.selected_row = 0;
     menu.handle_action(Action::Left);
-    assert!(menu_text(&menu, 80, 23).contains("No branches, no rewinding"));
+    assert!(menu_text(&menu, 80, 23).contains("No branches, rewinding or tour"));
     menu.form.selected_row = FORM_ROWS.len() - 1;
     match &menu.handle_action(Action::Open)[..] {
         [Effect::Request(Request::Create(new))] => {

@@ -94,9 +94,9 @@ pub enum ActionTarget {
 pub struct ActionItem {
     /// Kind of problem.
     pub problem: Problem,
-    /// Description with amounts.
+    /// Sentences that describe the problem with amounts.
     pub text: String,
-    /// Proposed solution; `None` if nothing is proposed.
+    /// Sentences that propose a solution; `None` if nothing is proposed.
     pub proposal: Option<String>,
     /// Where it can be solved.
     pub target: ActionTarget,
@@ -227,7 +227,7 @@ impl ActionItem {
     /// Describes the problem and its proposed solution.
     pub fn describe(&self) -> String {
         match &self.proposal {
-            Some(proposal) => format!("{}; {proposal}", self.text),
+            Some(proposal) => format!("{} {proposal}", self.text),
             None => self.text.clone(),
         }
     }

@@ -70,6 +70,14 @@ impl Source {
             None => "organic",
         }
     }
+
+    /// Name on screens.
+    pub fn name(self) -> &'static str {
+        match self {
+            Source::Network => "word of mouth",
+            source => source.id(),
+        }
+    }
 }
 
 /// Leads of one paid pair of channel and group.

@@ -443,7 +443,7 @@ fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
 
 /// Reads the arguments of a call. The error includes an example call.
 fn parse_call_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, ParseError> {
-    arguments_to_object(arguments, positional_argument(tool)).map_err(|problem| {
+    arguments_to_object(arguments, tool.spec().positional_argument()).map_err(|problem| {
         let (spec, text) = (tool.spec(), problem.text);
         ParseError { text: format!("{text}; example: {} {}", spec.name(), spec.example), ..problem }
     })
@@ -454,17 +454,6 @@ fn describe_changes(what: &str, changes: &[SettingChange]) -> String {
     let lines: String =
         changes.iter().map(|change| format!("{}\n", overview::describe_setting_change(change))).collect();
     format!("{what}\n{lines}")
-}
-
-/// Returns the argument that may be given without its name: the only required one, the whole object, or the only one.
-fn positional_argument(tool: &'static dyn AnyTool) -> Option<&'static str> {
-    let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
-    let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
-    let sole = match tool.spec().arguments {
-        [argument] => Some(argument.name),
-        _ => None,
-    };
-    only.or(tool.spec().unnamed_argument).or(sole)
 }
 
 fn unknown_command(word: &str, column: usize) -> ParseError {

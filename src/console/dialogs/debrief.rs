@@ -1,4 +1,4 @@
-//! The debrief of a lesson: cash compared with the good and the bad play, differing decisions, and guesses.
+//! The debrief of a lesson: cash compared with the good and the pitfall play, differing decisions, and guesses.
 
 use std::sync::Arc;
 
@@ -123,7 +123,13 @@ impl Dialog for DebriefPage {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints_in_context(context)));
         let debrief = match self.debrief.as_ref().map(|found| found.as_ref().as_ref()) {
-            None => return canvas.draw_text(inside, "simulating the good and the bad play …", Role::Warning),
+            None => {
+                return canvas.draw_text(
+                    inside,
+                    "simulating the reference play and the pitfall play …",
+                    Role::Warning,
+                );
+            }
             Some(Err(refusal)) => return canvas.draw_text(inside, &refusal.message, Role::Bad),
             Some(Ok(debrief)) => debrief,
         };
@@ -181,7 +187,9 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
             .with_name(name)
     };
     let mut lines = Vec::new();
-    lines.extend(judged.bad_play.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(1), "bad play")));
+    lines.extend(
+        judged.bad_play.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(1), "pitfall play")),
+    );
     lines.extend(
         judged.reference.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(2), "reference")),
     );
@@ -215,7 +223,7 @@ fn draw_cash_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
         debrief
             .bad_play
             .as_ref()
-            .map(|reference_curve| curve(&reference_curve.cash_by_day, Role::Series(1), "bad play")),
+            .map(|reference_curve| curve(&reference_curve.cash_by_day, Role::Series(1), "pitfall play")),
     );
     lines.extend(
         debrief

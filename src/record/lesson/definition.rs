@@ -408,7 +408,7 @@ pub struct ReferencePlay {
     /// Description of each part, if the parts have little in common.
     #[serde(default)]
     pub texts: Vec<String>,
-    /// The pitfall that it triggers; the bad play names one.
+    /// The pitfall that it triggers; the pitfall play names one.
     pub pitfall: Option<String>,
     /// Calls.
     #[serde(rename = "play", default)]

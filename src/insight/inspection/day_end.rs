@@ -63,7 +63,7 @@ fn named_figures(world: &World, facts: &Facts) -> Vec<(String, f64)> {
         ("threads so far", f64::from(world.enterprise.next_thread)),
         ("shared quality", world.product.shared_bonus),
         ("index of the economy", market.economy.pmi),
-        ("moves of rivals so far", market.competitors.len() as f64),
+        ("moves of competitors so far", market.competitors.len() as f64),
         ("drift of quality", market.drift.global_quality),
     ]
     .map(|(name, value)| (name.to_owned(), value))

@@ -27,7 +27,7 @@ pub enum WeekFiling {
         rationale: Value,
         /// Forecasts.
         predictions: Value,
-        /// Horizons that the naive projection filled.
+        /// Horizons that a naive forecast filled.
         naive: [bool; 4],
     },
     /// The player must be asked.

@@ -323,9 +323,7 @@ impl<'a> ConsoleParticipant<'a> {
             self.diary.time.get(&(self.diary.week(), TimeCategory::Active)).copied().unwrap_or_default()
                 / 1000;
         self.stay_active(WEEK_SECONDS - WARNING_SECONDS - spent);
-        self.await_limit(
-            "1 of 10 min left for this week; then the week is submitted with the naive projection",
-        );
+        self.await_limit("1 of 10 min left for this week; then the week is submitted with naive forecasts");
         self.note("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
         self.press_unrecorded("n enter 'half'");
         self.assert_shows("half");
@@ -335,8 +333,8 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
         self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
         self.note("draft", "rationale", "left", Some(0));
-        self.assert_shows("The time for this week ran out: it was submitted with the projection.");
-        self.assert_shows("a week ago the projection submitted at the limit forecast");
+        self.assert_shows("The time for this week ran out: it was submitted with naive forecasts.");
+        self.assert_shows("a week ago the program, at the time limit, forecast");
         self.assert_shows("Your draft was not submitted; the record keeps it as a draft.");
         self.record_week("time limit", "form");
     }

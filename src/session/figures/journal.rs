@@ -48,7 +48,7 @@ pub enum JournalEntry {
         rationale: String,
         /// Forecasts of cash.
         forecasts: Vec<Forecast>,
-        /// Whether the naive projection filled in each forecast.
+        /// Whether the naive forecast filled in each forecast.
         filled_naively: [bool; 4],
     },
     /// A simulated week, or single days.

@@ -21,21 +21,21 @@ pub fn entries_of_weeks_sql(first: u32, last: u32) -> String {
     format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY_SQL} BETWEEN {first} AND {last}")
 }
 
-/// Four forecasts of cash, and whether the naive projection filled in each.
+/// Four forecasts of cash, and whether the naive forecast filled in each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forecasts {
     /// One per horizon: 7, 28, 84, 182 days.
     pub all: [Forecast; 4],
-    /// Whether the naive projection filled in the forecast, completely or in part.
+    /// Whether a naive forecast filled in the forecast, completely or in part.
     pub filled_naively: [bool; 4],
 }
 
-/// Describes how many forecasts the naive projection filled in: `by projection`, `3 of 4 by projection`, or `None`.
+/// Describes how many forecasts were filled in naively: `by naive forecast`, `3 of 4 by naive forecast`, or `None`.
 pub fn describe_naive_share(filled: &[bool]) -> Option<String> {
     match filled.iter().filter(|filled| **filled).count() {
         0 => None,
-        all if all == filled.len() => Some("by projection".to_owned()),
-        some => Some(format!("{some} of {} by projection", filled.len())),
+        all if all == filled.len() => Some("by naive forecast".to_owned()),
+        some => Some(format!("{some} of {} by naive forecast", filled.len())),
     }
 }
 
@@ -80,7 +80,10 @@ mod tests {
     fn naive_share_is_described() {
         let texts =
             [[false; 4], [false, true, true, true], [true; 4]].map(|filled| describe_naive_share(&filled));
-        assert_eq!(texts, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
+        assert_eq!(
+            texts,
+            [None, Some("3 of 4 by naive forecast".to_owned()), Some("by naive forecast".to_owned())]
+        );
     }
 
     #[test]

@@ -27,7 +27,7 @@ const NO_RATIONALE_TEXT: &str = "(not asked for in this lesson)";
 pub(crate) struct WeekSubmission<'a> {
     pub(crate) rationale: &'a Value,
     pub(crate) predictions: &'a Value,
-    /// Whether the naive projection filled in each forecast.
+    /// Whether the naive forecast filled in each forecast.
     pub(crate) filled_naively: [bool; 4],
     /// The day on which the run must be; null for any.
     pub(crate) expected_day: &'a Value,

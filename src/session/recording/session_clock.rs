@@ -94,7 +94,7 @@ impl TimeLeft {
         match at_limit {
             AtLimit::Remind => "then you are asked to finish",
             AtLimit::Naive if self.scope == LimitScope::Week => {
-                "then the week is submitted with the naive projection, without your text"
+                "then the week is submitted with naive forecasts, without your text"
             }
             AtLimit::Naive | AtLimit::Pause => "then the clock is stopped",
         }

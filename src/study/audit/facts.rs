@@ -34,7 +34,7 @@ pub struct RunFacts {
     pub unclosed_sittings: u32,
     /// Number of rejected calls and weeks.
     pub refusals: u32,
-    /// Number of weeks in which the naive projection filled at least one forecast.
+    /// Number of weeks in which a naive forecast filled at least one forecast.
     pub naive_weeks: u32,
     /// Number of weeks that were decided in less than ten active seconds.
     pub fast_weeks: u32,

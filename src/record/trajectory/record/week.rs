@@ -29,7 +29,7 @@ pub struct Advance {
 }
 
 impl Advance {
-    /// Returns whether at least one forecast was filled in by the naive projection, or `None` without forecasts.
+    /// Returns whether at least one forecast was filled in naively, or `None` without forecasts.
     pub fn has_naive_forecasts(&self) -> Option<bool> {
         let any = self.forecasts.iter().any(|forecast| forecast.filled_naively);
         (!self.forecasts.is_empty()).then_some(any)
@@ -50,7 +50,7 @@ pub struct FiledForecast {
     /// Upper end of the 95 % interval, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub upper: f64,
-    /// Whether the naive projection filled it in, completely or partly.
+    /// Whether a naive forecast filled it in, completely or partly.
     #[serde(default)]
     pub filled_naively: bool,
 }

@@ -58,7 +58,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("status", "status                   show run, day, cash, runway, subscribers and waiting threads"),
     (
         "inbox",
-        "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one company",
+        "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one enterprise",
     ),
     ("thread", "thread NUMBER            show one thread, turn by turn"),
     (

@@ -181,7 +181,7 @@ impl WeekReportDialog {
             lines.push(Line::from(canvas.span(text, Role::Dim)));
         }
         lines.truncate(height);
-        places.retain(|place| *place < height - usize::from(is_cut));
+        places.retain(|place| *place < height.saturating_sub(usize::from(is_cut)));
         (lines, places)
     }
 

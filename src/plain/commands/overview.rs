@@ -33,9 +33,8 @@ impl Interpreter {
 
     pub(super) fn status(&self) -> CommandResponse {
         let seen = self.session.company().observe();
-        let runway = seen
-            .whole_runway_weeks()
-            .map_or("to the last day".to_owned(), |weeks| pluralize(weeks as u32, "week"));
+        let runway =
+            seen.whole_runway_weeks().map_or("to the last day".to_owned(), |weeks| pluralize(weeks, "week"));
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
         let tier = self.session.settings().core.capacity_tier;
         let units = self

@@ -32,7 +32,7 @@ pub fn describe_source(write: &FigureWrite) -> String {
         WriteSource::Reputation(ReputationCause::Cancellations) => format!("churn ({count})"),
         WriteSource::Reputation(ReputationCause::LostEnterprise) => format!("lost enterprises ({count})"),
         WriteSource::Reputation(ReputationCause::Contributions(mood)) => {
-            format!("satisfaction of {}", pluralize(mood.count as u32, "subscriber"))
+            format!("satisfaction of {}", pluralize(mood.count, "subscriber"))
         }
         WriteSource::Reputation(ReputationCause::Spillover(spill)) => {
             format!("spillover from {}", spill.source)

@@ -1,6 +1,7 @@
 //! Command failures and their exit codes.
 
 use std::fmt;
+use std::io::ErrorKind;
 
 use crate::lab;
 use crate::record::error::RunError;
@@ -76,10 +77,26 @@ impl From<RunError> for Failure {
             RunError::InvalidRequest(_)
             | RunError::UnknownScenario { .. }
             | RunError::UnknownLesson { .. } => Failure::usage(error.to_string()),
+            RunError::Io { error: ref io_error, .. } if is_write_failure(io_error.kind()) => {
+                Failure::failed(error.to_string())
+            }
             RunError::InUse { .. } | RunError::AlreadyExists(_) => Failure::failed(error.to_string()),
             _ => Failure::unreadable(error.to_string()),
         }
     }
+}
+
+/// Returns whether only writing can fail in this way. Such a failure has exit code 1, not that of an unreadable file.
+fn is_write_failure(kind: ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::StorageFull
+            | ErrorKind::QuotaExceeded
+            | ErrorKind::FileTooLarge
+            | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::WriteZero
+            | ErrorKind::BrokenPipe
+    )
 }
 
 impl From<Rejection> for Failure {
@@ -122,5 +139,21 @@ impl From<lab::RunError> for Failure {
             lab::RunError::Start(error) => (*error).into(),
             refused @ lab::RunError::Refused { .. } => Failure::failed(refused.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_has_the_exit_code_of_a_failed_operation() {
+        let code = |kind: ErrorKind| {
+            Failure::from(RunError::Io { path: "run.toml".into(), error: kind.into() }).code
+        };
+        assert_eq!(code(ErrorKind::StorageFull), 1);
+        assert_eq!(code(ErrorKind::ReadOnlyFilesystem), 1);
+        assert_eq!(code(ErrorKind::NotFound), 3);
+        assert_eq!(code(ErrorKind::InvalidData), 3);
     }
 }

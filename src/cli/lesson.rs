@@ -177,7 +177,7 @@ fn describe_lesson(lesson: &Lesson) -> String {
             }
         }
     }
-    text += &format!("\nReference play: {}\nBad play: {}\n", plan.good.text, plan.bad.text);
+    text += &format!("\nReference play: {}\nPitfall play: {}\n", plan.good.text, plan.bad.text);
     for (heading, section) in [("Debrief", &lesson.debrief), ("For the instructor", &lesson.instructor_notes)]
     {
         text += &format!("\n{heading}\n\n{}\n", lesson.fill_figures(section));

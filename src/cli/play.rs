@@ -1,6 +1,6 @@
 //! `novamind play`: plays in the console or line by line.
 
-use std::io::IsTerminal;
+use std::io::{ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -192,7 +192,11 @@ fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
     let style = crate::plain::OutputStyle { json: options.json, echo: options.echo, strict: options.strict };
     let code =
         crate::plain::play(open_run(options, context)?, QueryLibrary::load(&context.configuration), style)
-            .map_err(|error| Failure::failed(error.to_string()))?;
+            .map_err(|error| match error.kind() {
+                // The reader of the output has gone away, as `head` does.
+                ErrorKind::BrokenPipe => Failure::code_only(1),
+                _ => Failure::failed(error.to_string()),
+            })?;
     if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
 }
 

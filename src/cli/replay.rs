@@ -6,6 +6,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use novamind_base::formatting::pluralize;
 
 use super::play::show_console;
 use super::{Context, Failure, play, print};
@@ -136,7 +137,11 @@ fn verify(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let found = verify_sealed(&place, &context.seal_key()?)?;
     print(&format!(
-        "run {}: {} lines, {} states verified, day {}, state {}\n",
-        found.run, found.lines, found.states, found.day, found.state_hash
+        "run {}: {}, {} verified, day {}, state {}\n",
+        found.run,
+        pluralize(found.lines as u32, "line"),
+        pluralize(found.states as u32, "state"),
+        found.day,
+        found.state_hash
     ))
 }

@@ -297,7 +297,7 @@ actions! {
         Sort "sort" "sort" "Sort by the selected column; press again to reverse, a third time to stop sorting."
     }
     Form {
-        Apply "apply" "apply" "Submit the form."
+        Apply "apply" "submit" "Submit the form."
         EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
         CopyDown "same-down" "copy down" "Copy the value to the cells below. Right after you accept a value, the accepted value is copied."
         ClearCell "clear-cell" "0" "Clear the cell."
@@ -361,7 +361,7 @@ actions! {
     NextWeek {
         NextStep "next-step" "next step" "Go to the next step; on the last one, run the week."
         PreviousStep "previous-step" "previous step" "Go back to the previous step."
-        FillNaiveForecasts "fill-naively" "fill with projection" "Fill empty forecasts with the projection; the record marks these forecasts. In the review, fill in everything (not in baseline runs)."
+        FillNaiveForecasts "fill-naively" "fill naively" "Fill empty forecasts with naive forecasts; the record marks these forecasts. In the review, fill in everything (not in baseline runs)."
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
@@ -452,8 +452,9 @@ actions! {
         NextHint "next-hint" "hint" "Show the next hint of the step; the record notes it."
         TryAgain "try-again" "try again" "Try the step again from its start, in a new run, after confirmation."
         NextPart "next-part" "next part" "Start the next part of the lesson after this part has ended."
-        Debrief "debrief" "debrief" "Compare a finished part with the reference play and the bad play."
+        Debrief "debrief" "debrief" "Compare a finished part with the reference play and the pitfall play."
         LessonWeek "lesson-week" "next week" "Close the page and run the next week."
+        HideLessonPage "hide-page" "hide task" "Close the page of the lesson."
         SkipAnswers "week-unanswered" "week only" "Run the week without answering the waiting messages."
     }
     Playback {

@@ -210,10 +210,13 @@ fn spawn_input_threads(sender: Sender<Message>) {
     });
     #[cfg(unix)]
     std::thread::spawn(move || {
-        use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP};
-        let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT];
+        use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
+        let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGQUIT];
         let Ok(mut signals) = signal_hook::iterator::Signals::new(all) else { return };
         for signal in signals.forever() {
+            if signal == SIGQUIT {
+                novamind_tui::terminal::quit_with_core_dump();
+            }
             if sender.send(Message::Signal(signal)).is_err() {
                 return;
             }

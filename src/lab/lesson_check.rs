@@ -1,4 +1,4 @@
-//! Checks a lesson on six seeds. The reference play must reach every goal. The bad play must miss a goal and trigger
+//! Checks a lesson on six seeds. The reference play must reach every goal. The pitfall play must miss a goal and trigger
 //! its pitfall. The figures in the texts must be correct.
 
 use std::sync::Arc;
@@ -58,11 +58,11 @@ impl FigureResult {
 pub struct LessonCheck {
     /// Results of the reference play by seed.
     pub reference_results: Vec<PlayResult>,
-    /// Results of the bad play by seed.
+    /// Results of the pitfall play by seed.
     pub pitfall_results: Vec<PlayResult>,
     /// Figures that the texts state, with measured values.
     pub figures: Vec<FigureResult>,
-    /// Name of the pitfall that the bad play must trigger.
+    /// Name of the pitfall that the pitfall play must trigger.
     pub pitfall: String,
 }
 
@@ -74,10 +74,10 @@ impl LessonCheck {
             missed.map(|goal| format!("seed {}: the reference play misses {}", play.seed, goal.text))
         });
         let reached = self.pitfall_results.iter().filter(|play| play.goals.iter().all(|goal| goal.is_met));
-        let reached = reached.map(|play| format!("seed {}: the bad play reaches every goal", play.seed));
+        let reached = reached.map(|play| format!("seed {}: the pitfall play reaches every goal", play.seed));
         let unmet = self.pitfall_results.iter().filter(|play| !play.pitfalls.contains(&self.pitfall));
         let unmet = unmet.map(|play| {
-            format!("seed {}: the bad play does not trigger pitfall {}", play.seed, self.pitfall)
+            format!("seed {}: the pitfall play does not trigger pitfall {}", play.seed, self.pitfall)
         });
         let wrong = self.figures.iter().filter(|figure| !figure.is_within_tolerance()).map(|figure| {
             let FigureResult { stated, mean } = figure;

@@ -58,7 +58,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("status", "status                   show run, day, cash, runway, subscribers and waiting threads"),
     (
         "inbox",
-        "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one company",
+        "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one enterprise",
     ),
     ("thread", "thread NUMBER            show one thread, turn by turn"),
     (
@@ -449,7 +449,7 @@ fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
 
 /// Converts the arguments of a tool call to a JSON object. Errors include an example call.
 fn parse_call_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, ParseError> {
-    arguments_to_object(arguments, positional_argument(tool)).map_err(|problem| {
+    arguments_to_object(arguments, tool.spec().positional_argument()).map_err(|problem| {
         let (spec, text) = (tool.spec(), problem.text);
         ParseError { text: format!("{text}; example: {} {}", spec.name(), spec.example), ..problem }
     })
@@ -460,18 +460,6 @@ fn describe_changes(what: &str, changes: &[SettingChange]) -> String {
     let lines: String =
         changes.iter().map(|change| format!("{}\n", overview::describe_setting_change(change))).collect();
     format!("{what}\n{lines}")
-}
-
-/// Returns the name of the argument that may be given without a name. This is the only required argument, the tool's
-/// unnamed argument, or the only argument.
-fn positional_argument(tool: &'static dyn AnyTool) -> Option<&'static str> {
-    let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
-    let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
-    let sole = match tool.spec().arguments {
-        [argument] => Some(argument.name),
-        _ => None,
-    };
-    only.or(tool.spec().unnamed_argument).or(sole)
 }
 
 fn unknown_command(word: &str, column: usize) -> ParseError {

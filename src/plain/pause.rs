@@ -78,7 +78,7 @@ impl Interpreter {
             LimitEvent::FiledNaively => {
                 let filing = NextWeekInput::for_time_limit(&self.session);
                 let filed = advance::advance_week(&mut self.session, filing);
-                vec![tell("; the week is submitted with the naive projection"), filed]
+                vec![tell("; the week is submitted with naive forecasts"), filed]
             }
             LimitEvent::Paused => {
                 let stopped = self.session.activity().stop_clock(Some(TIME_LIMIT_RATIONALE));

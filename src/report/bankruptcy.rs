@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::formatting::{format_money, format_whole};
+use super::formatting::{format_money, format_whole, pluralize};
 use novamind_record::figures::WeekFigures;
 
 /// One kind of cost and its share of all costs over the run.
@@ -50,8 +50,8 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     match high(people).filter(|week| people(week) > 0.0) {
         None => texts.push("No one subscribed: there were costs and no income.".to_owned()),
         Some(top) if top.day < last.day => texts.push(format!(
-            "Peak: {} subscribers on day {}; {} at the end.",
-            format_whole(people(top)),
+            "Peak: {} on day {}; {} at the end.",
+            pluralize(top.individual_subscribers, "subscriber"),
             top.day,
             format_whole(people(last))
         )),
@@ -68,8 +68,8 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     let mean = |figure: fn(&WeekFigures) -> f64| recent.iter().map(figure).sum::<f64>() / recent.len() as f64;
     let (income, costs) = (mean(|week| week.payments), mean(|week| week.costs));
     texts.push(format!(
-        "In the last {} weeks, income was {} a week and running costs {}.",
-        recent.len(),
+        "In the last {}, income was {} a week and running costs {}.",
+        pluralize(recent.len() as u32, "week"),
         format_money(income),
         format_money(costs)
     ));

@@ -35,9 +35,9 @@ pub fn headline(debrief: &Debrief) -> String {
     let cash_of = |curve: &Option<ReferenceCurve>| curve.as_ref().map(|curve| last(&curve.cash_by_day));
     let others: Vec<String> = match cash_of(&debrief.reference) {
         Some(cash) if cash_of(&debrief.bad_play).as_ref() == Some(&cash) => {
-            vec![format!("reference and bad play both {cash}")]
+            vec![format!("reference and pitfall play both {cash}")]
         }
-        _ => [other(&debrief.reference, "reference"), other(&debrief.bad_play, "bad")]
+        _ => [other(&debrief.reference, "reference"), other(&debrief.bad_play, "pitfall")]
             .into_iter()
             .flatten()
             .collect(),
@@ -58,7 +58,7 @@ fn describe_judged_figure(judged: &JudgedFigure) -> Option<String> {
     let (day, _) = judged.actual.last()?;
     let mut text =
         format!("{} on day {day}: yours {}", capitalize(judged.figure.name()), last(&judged.actual)?);
-    for (name, curve) in [("reference", &judged.reference), ("bad", &judged.bad_play)] {
+    for (name, curve) in [("reference", &judged.reference), ("pitfall", &judged.bad_play)] {
         if let Some(value) = curve.as_deref().and_then(last) {
             text += &format!(", the {name} play's {value}");
         }
@@ -118,7 +118,7 @@ pub fn describe_comparison(debrief: &Debrief) -> Vec<String> {
                 text.map(|text| format!("The {name} play: {text}"))
             };
             let mut lines: Vec<String> =
-                [describe_play("reference", &debrief.reference), describe_play("bad", &debrief.bad_play)]
+                [describe_play("reference", &debrief.reference), describe_play("pitfall", &debrief.bad_play)]
                     .into_iter()
                     .flatten()
                     .collect();
@@ -340,7 +340,7 @@ pub(super) fn debrief_page(debrief: &Debrief) -> Page {
         tags,
         blocks,
         footer: format!(
-            "Recorded by NovaMind console {}. The reference play and the bad play were simulated with the seed of the run.",
+            "Recorded by NovaMind console {}. The reference play and the pitfall play were simulated with the seed of the run.",
             env!("CARGO_PKG_VERSION")
         ),
     }
@@ -350,7 +350,7 @@ fn summary_facts(debrief: &Debrief) -> Vec<NamedValue> {
     let last = |cash: &[f64]| format_money(cash.last().copied().unwrap_or(0.0));
     let day = format!("day {}", debrief.cash_by_day.len().saturating_sub(1));
     let mut facts = vec![NamedValue::new("You", last(&debrief.cash_by_day), day)];
-    for (name, curve) in [("Reference play", &debrief.reference), ("Bad play", &debrief.bad_play)] {
+    for (name, curve) in [("Reference play", &debrief.reference), ("Pitfall play", &debrief.bad_play)] {
         let fact = |curve: &ReferenceCurve| {
             NamedValue::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
         };
@@ -364,7 +364,7 @@ fn cash_chart(debrief: &Debrief) -> Chart {
         name: name.to_owned(),
         points: cash.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect(),
     };
-    let references = [("reference play", &debrief.reference), ("bad play", &debrief.bad_play)];
+    let references = [("reference play", &debrief.reference), ("pitfall play", &debrief.bad_play)];
     let others = references
         .into_iter()
         .filter_map(|(name, reference_curve)| Some(curve(name, &reference_curve.as_ref()?.cash_by_day)));
@@ -386,7 +386,7 @@ fn judged_chart(judged: &JudgedFigure, summary: &str) -> Chart {
         name: name.to_owned(),
         points: values.iter().map(|(day, value)| (f64::from(*day), *value)).collect(),
     };
-    let references = [("reference play", &judged.reference), ("bad play", &judged.bad_play)];
+    let references = [("reference play", &judged.reference), ("pitfall play", &judged.bad_play)];
     let others = references.into_iter().filter_map(|(name, values)| Some(curve(name, values.as_ref()?)));
     Chart {
         title: format!("{} by week", capitalize(judged.figure.name())),

@@ -29,7 +29,7 @@ pub fn highlights(
     add_first_times(weeks, &mut add);
     add_extremes(weeks, cash_by_day, &mut add);
     for (day, minutes) in outages.iter().take(MAX_LISTED_OUTAGES) {
-        add(*day, format!("outage of {minutes} minutes"));
+        add(*day, format!("outage of {}", pluralize(*minutes, "minute")));
     }
     if let Some((day, _)) = outages.last().filter(|_| outages.len() > MAX_LISTED_OUTAGES) {
         let more = pluralize((outages.len() - MAX_LISTED_OUTAGES) as u32, "more outage");

@@ -292,7 +292,7 @@ fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
         NamedValue::new(
             "Planning words",
             format!("{:.1}", planning.planning_each),
-            format!("per rationale of {:.0} words", planning.words_each),
+            format!("per rationale of {}", pluralize(planning.words_each.round() as u32, "word")),
         ),
     ]));
     if let Some(skill) = &measures.channels {

@@ -140,7 +140,7 @@ mod tests {
             &[(price, 938.0), (Cause::Competitors, 3.5)],
         );
         let equation_told = equation(&change_explanation);
-        assert_eq!(equation_told, "cancellations +942 = price +938 · rivals +3.5 · residual +0.5");
+        assert_eq!(equation_told, "cancellations +942 = price +938 · competitors +3.5 · residual +0.5");
         assert_eq!(heading(&change_explanation), "cancellations, week 20: 195 → 1,137");
         let short = ChangeExplanation { days: [7, 3], ..change_explanation };
         assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");

@@ -70,6 +70,18 @@ impl ToolSpec {
         self.id.name()
     }
 
+    /// Returns the argument that may be given without its name: the only required one, the whole object, or the only
+    /// one.
+    pub fn positional_argument(&self) -> Option<&'static str> {
+        let mut required = self.arguments.iter().filter(|argument| argument.required);
+        let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
+        let sole = match self.arguments {
+            [argument] => Some(argument.name),
+            _ => None,
+        };
+        only.or(self.unnamed_argument).or(sole)
+    }
+
     /// Returns whether the tool rejects missing arguments with a tool-specific code.
     pub fn has_own_missing_code(&self) -> bool {
         self.rejection_codes.iter().any(|code| code.ends_with("_missing"))

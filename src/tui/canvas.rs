@@ -117,14 +117,25 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws a line of spans in one row, truncated to the width of the area.
+    /// Draws a line of spans in one row, truncated with an ellipsis.
     pub fn draw_line(&mut self, area: Rect, line: &Line<'_>) {
-        if !area.is_empty() && self.buffer.area.contains(area.as_position()) {
-            self.buffer.set_line(area.x, area.y, line, area.width);
+        let area = Rect { height: area.height.min(1), ..area }.intersection(self.buffer.area);
+        if area.is_empty() {
+            return;
+        }
+        self.buffer.set_line(area.x, area.y, line, area.width);
+        // Spaces at the end align columns and may be cut without a mark.
+        let text: String = line.spans.iter().map(|span| span.content.as_ref()).collect();
+        if text.trim_end().width() > area.width as usize {
+            let last = Position::new(area.right() - 1, area.y);
+            if area.width > 1 && self.buffer[(last.x - 1, last.y)].symbol().width() > 1 {
+                self.buffer[(last.x - 1, last.y)].set_symbol(" ");
+            }
+            self.buffer[last].set_symbol("…");
         }
     }
 
-    /// Draws lines below each other. Lines that do not fit are omitted.
+    /// Draws lines below each other, each truncated with an ellipsis. Lines that do not fit are omitted.
     pub fn draw_lines(&mut self, area: Rect, lines: &[Line<'_>]) {
         for (row, line) in row_rects(area).zip(lines) {
             self.draw_line(row, line);

@@ -133,6 +133,14 @@ fn enter_console_mode() -> io::Result<()> {
     execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, EnableMouseCapture)
 }
 
+/// Restores the terminal and ends the program as SIGQUIT does by default, with a core dump. Does not need the main
+/// thread, so that it also ends a program that hangs.
+#[cfg(unix)]
+pub fn quit_with_core_dump() {
+    restore_terminal();
+    let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGQUIT);
+}
+
 /// Restores the terminal. This function may be called repeatedly.
 fn restore_terminal() {
     let mut out = io::stdout();

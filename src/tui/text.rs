@@ -2,6 +2,7 @@
 
 use unicode_width::UnicodeWidthStr;
 
+use super::canvas::truncate_to_width;
 use novamind_base::formatting::grouped_number;
 
 /// Wraps text to a width. Lines are broken between words if possible.
@@ -39,6 +40,25 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
         lines.push(line);
     }
     lines
+}
+
+/// Wraps sentences to a width and a number of lines. Text that does not fit ends after a sentence, or in the middle of
+/// the first sentence if not even that fits, with a mark.
+pub fn wrap_sentences(text: &str, width: usize, lines: usize) -> Vec<String> {
+    let all = wrap(text, width);
+    if all.len() <= lines {
+        return all;
+    }
+    let mut shortened = text.rmatch_indices(". ").map(|(at, _)| wrap(&format!("{} …", &text[..=at]), width));
+    if let Some(fitting) = shortened.find(|rows| rows.len() <= lines) {
+        return fitting;
+    }
+    let mut rows: Vec<String> = all.iter().take(lines).cloned().collect();
+    if let Some(last) = rows.last_mut() {
+        // The next word does not fit, so that the text is cut and marked.
+        *last = truncate_to_width(&format!("{last} {}", all[lines]), width);
+    }
+    rows
 }
 
 /// Formats a change with a sign for its direction: `▲ 120`, `▼ 3`, `=`.
@@ -93,6 +113,16 @@ pub fn join_into_lines(pieces: &[String], width: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn wrap_sentences_ends_after_a_sentence_with_a_mark() {
+        let text = "Cash is low. It lasts 2.5 weeks. Reduce costs.";
+        assert_eq!(wrap_sentences(text, 80, 1), [text]);
+        assert_eq!(wrap_sentences(text, 34, 1), ["Cash is low. It lasts 2.5 weeks. …"]);
+        assert_eq!(wrap_sentences(text, 14, 2), ["Cash is low. …"]);
+        assert_eq!(wrap_sentences(text, 8, 1), ["Cash is…"]);
+        assert_eq!(wrap_sentences(text, 8, 0), [""; 0]);
+    }
 
     #[test]
     fn format_count_uses_the_singular_for_one() {

@@ -88,6 +88,7 @@ impl SessionThread {
                 let parent = open.session().manifest().id.clone();
                 let refused = match adopted.rejected.len() {
                     0 => String::new(),
+                    1 => "; 1 call was rejected, see the Journal".to_owned(),
                     some => format!("; {some} calls were rejected, see the Journal"),
                 };
                 let (id, day) = (adopted.session.manifest().id.clone(), adopted.session.day());

@@ -176,10 +176,10 @@ impl DisplayedCompany {
 
     /// Returns whether a tool is available; a lesson may restrict the tools.
     pub fn has_tool(&self, tool: ToolId) -> bool {
-        let tools = self.running_lesson().and_then(|lesson| lesson.tools.as_ref());
-        !tool.spec().kind.changes_company()
-            || tool == ToolId::NextWeek
-            || tools.is_none_or(|tools| tools.contains(&tool))
+        let Some(lesson) = self.running_lesson() else { return true };
+        let sets_capacity = tool == ToolId::SetCapacityTier && lesson.has_automatic_capacity;
+        let is_listed = lesson.tools.as_ref().is_none_or(|tools| tools.contains(&tool));
+        tool == ToolId::NextWeek || (is_listed && !sets_capacity)
     }
 
     /// Returns whether the run is unfinished.

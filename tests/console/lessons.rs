@@ -5,6 +5,7 @@ use std::path::Path;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::find_run;
 use novamind::session::{Access, Session};
+use novamind::tools::ToolId;
 
 use super::harness::Console;
 use super::picture_checks;
@@ -121,6 +122,11 @@ fn task_is_a_page_in_small_windows() {
     assert!(!console.screen().contains("Step 1 of 2"));
     console.press("; h");
     console.assert_shows("Step 1 of 2: Open the shop");
+    console.assert_shows("hints 0/2");
+    console.press("; h");
+    assert!(!console.screen().contains("Step 1 of 2"));
+    console.press("; h");
+    console.assert_shows("hints 0/2");
     console.press("enter '0.4' enter");
     console.assert_shows("You guessed 40%");
     console.press("n");
@@ -129,6 +135,21 @@ fn task_is_a_page_in_small_windows() {
     console.assert_shows("Debrief");
     console.press("esc n");
     console.assert_shows("Debrief");
+}
+
+#[test]
+fn console_locks_the_tools_that_the_lesson_rejects() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let console = console_in_lesson(folder.path(), WIDE);
+    let company = &console.app.run().expect("a run").company;
+    let shown: Vec<(ToolId, bool)> = ToolId::all().map(|tool| (tool, company.has_tool(tool))).collect();
+    let run = company.folder.clone().expect("a folder");
+    drop(console);
+    let session = Session::open(&run, Access::Read, false).expect("it opens");
+    let lesson = session.lesson().expect("a lesson");
+    for (tool, is_available) in shown {
+        assert_eq!(is_available, tool == ToolId::NextWeek || lesson.has_tool(tool), "{tool}");
+    }
 }
 
 #[test]
@@ -235,7 +256,7 @@ fn unsent_price_is_confirmed_before_the_week() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut console = console_in_lesson(folder.path(), WIDE);
     console.press("n '0.4' enter : 'set_prices' enter e '30' enter n");
-    console.assert_shows("The form of set_prices has unsent values");
+    console.assert_shows("The form of set_prices has unsubmitted values");
     console.press("esc");
     assert_eq!(console.app.run().expect("a run").company.observation.day, 0);
     console.press("n y");

@@ -480,7 +480,7 @@ fn naive_forecasts_are_labeled() {
         console.assert_shows("f fills empty cells: the last four weeks continue");
         console.press("f");
         let screen = console.screen();
-        assert!(screen.contains("marked as projection") && !screen.contains("back-tests"), "{screen}");
+        assert!(screen.contains("marked as naive forecasts") && !screen.contains("back-tests"), "{screen}");
         console.press("esc ; q");
     }
 }

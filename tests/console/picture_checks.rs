@@ -30,6 +30,10 @@ const MIN_FREE_SPACES: usize = 4;
 pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
     let wasteful = |line: &&str| {
         line.match_indices('…').any(|(at, sign)| {
+            // A mark after a complete sentence does not stand for a part of a word.
+            if line[..at].ends_with(". ") {
+                return false;
+            }
             let behind = &line[at + sign.len()..];
             let blanks = behind.chars().take_while(|letter| *letter == ' ').count();
             let next = behind.chars().nth(blanks);
@@ -72,6 +76,7 @@ fn is_non_empty_cell(cell: char) -> bool {
 #[test]
 fn truncation_is_reported_only_with_free_space() {
     assert_eq!(needlessly_truncated_lines("│ a long na…        │"), ["│ a long na…        │"]);
+    assert!(needlessly_truncated_lines("│ A sentence. …      │").is_empty());
     assert!(
         needlessly_truncated_lines("│ a long na…  12 │\n│ a long name…│\n at the end of the line…")
             .is_empty()

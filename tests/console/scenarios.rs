@@ -22,7 +22,7 @@ fn new_user_plays_two_weeks_and_resumes() {
     console.assert_shows("New run");
     console.press("n enter");
     console.assert_shows("day 0/500");
-    console.assert_shows("no plan has a price: no one");
+    console.assert_shows("No plan has a price. No one");
     open_shop(&mut console);
     console.assert_shows("Tools ●11");
     console.press("c");

@@ -333,8 +333,8 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
         self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
         self.note("draft", "rationale", "left", Some(0));
-        self.assert_shows("The time for this week ran out: the week was submitted with the projection.");
-        self.assert_shows("a week ago the projection submitted at the limit forecast");
+        self.assert_shows("The time for this week ran out: the week was submitted with naive forecasts.");
+        self.assert_shows("a week ago the program, at the time limit, forecast");
         self.assert_shows("Your draft was not submitted; the record keeps it as a draft.");
         self.record_week("time limit", "form");
     }

@@ -101,7 +101,7 @@ impl App {
         }
         let apply = self.keys.label(Action::Apply).unwrap_or_default();
         let text = format!(
-            "The form of {} has unsent values; {apply} in the form sends them. Run the week without them?",
+            "The form of {} has unsubmitted values; {apply} in the form submits them. Run the week without them?",
             unsent.join(", ")
         );
         self.open_dialog(ConfirmDialog::new("Next week", text, vec![week]));

@@ -75,7 +75,7 @@ impl App {
         self.end_next_week_drafts(TextEditOutcome::Left);
         let rationale = TIME_LIMIT_RATIONALE.to_owned();
         self.execute_effects(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
-        self.show_status("time for this week is up; the week was submitted with the projection");
+        self.show_status("time for this week is up; the week was submitted with naive forecasts");
     }
 
     /// Clears the notices of the week. Returns the notice about a draft that was not submitted.

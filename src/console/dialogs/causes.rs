@@ -254,7 +254,7 @@ mod tests {
         let mut dialog = dialog_with_answer(Ok(example_causes()));
         for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
             let picture = dialog_text(&dialog, &company, width, height);
-            for words in ["195 → 1,137", "price", "+938", "████████", "rivals", "+4", "residual"]
+            for words in ["195 → 1,137", "price", "+938", "████████", "competitors", "+4", "residual"]
             {
                 assert!(picture.contains(words), "{words} in {picture}");
             }

@@ -1,4 +1,4 @@
-//! The debrief of a lesson: cash compared with the reference play and the bad play, differing decisions, and guesses.
+//! The debrief of a lesson: cash compared with the reference play and the pitfall play, differing decisions, and guesses.
 
 use std::sync::Arc;
 
@@ -126,7 +126,7 @@ impl Dialog for DebriefPage {
             None => {
                 return canvas.draw_text(
                     inside,
-                    "simulating the reference and the bad play …",
+                    "simulating the reference play and the pitfall play …",
                     Role::Warning,
                 );
             }
@@ -187,7 +187,9 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
             .with_name(name)
     };
     let mut lines = Vec::new();
-    lines.extend(judged.bad_play.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(1), "bad play")));
+    lines.extend(
+        judged.bad_play.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(1), "pitfall play")),
+    );
     lines.extend(
         judged.reference.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(2), "reference")),
     );
@@ -221,7 +223,7 @@ fn draw_cash_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
         debrief
             .bad_play
             .as_ref()
-            .map(|reference_curve| curve(&reference_curve.cash_by_day, Role::Series(1), "bad play")),
+            .map(|reference_curve| curve(&reference_curve.cash_by_day, Role::Series(1), "pitfall play")),
     );
     lines.extend(
         debrief

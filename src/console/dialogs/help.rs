@@ -217,7 +217,9 @@ mod tests {
         assert_eq!(rows[1][..3], ["pane", "esc", "close"], "the most common action comes first");
         let place = |title: &str| rows.iter().position(|row| row[2] == title).expect(title);
         assert_eq!(rows[place("open")][..2], ["screen", "enter"], "enter opens in the list only");
-        assert!(place("apply") < place("open") && place("open") < place("up") && place("up") < place("quit"));
+        assert!(
+            place("submit") < place("open") && place("open") < place("up") && place("up") < place("quit")
+        );
         assert_eq!(rows[place("quit")][0], "always");
         let parts: Vec<&str> = rows.iter().map(|row| row[0].as_str()).collect();
         let mut order = parts.clone();

@@ -11,7 +11,7 @@ use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::figures::{self, METRICS};
 use crate::screens::overview::needs::item_screen;
-use novamind_base::formatting::{dollars, grouped_number, short_dollars, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
 use novamind_report::WeekReport;
 use novamind_report::action_items::ActionItem;
@@ -19,7 +19,7 @@ use novamind_report::week::MovedFigure;
 use novamind_session::{IntervalPosition, ScoredForecast};
 use novamind_tools::Forecast;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, truncate_to_width};
-use novamind_tui::text::{format_change, join_into_lines, wrap};
+use novamind_tui::text::{format_change, join_into_lines, wrap, wrap_sentences};
 use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
@@ -160,7 +160,10 @@ impl WeekReportDialog {
         let parts: [Section<'a>; 5] = [
             head,
             decided,
-            with_heading(canvas, &moves_heading(week_report), moves),
+            match moves.is_empty() {
+                true => Vec::new(),
+                false => with_heading(canvas, &moves_heading(week_report), moves),
+            },
             news.into_iter().chain(notices_section(canvas, context.company, width, left.min(8))).collect(),
             with_heading(canvas, "Action needed", coming),
         ];
@@ -175,8 +178,15 @@ impl WeekReportDialog {
             }
             lines.extend(part);
         }
+        let is_cut = lines.len() > height;
+        if is_cut && height > 0 {
+            let hidden = lines.len() - (height - 1);
+            lines.truncate(height - 1);
+            let text = format!("… {} more in a larger window", pluralize(hidden as u32, "line"));
+            lines.push(Line::from(canvas.span(text, Role::Dim)));
+        }
         lines.truncate(height);
-        places.retain(|place| *place < height);
+        places.retain(|place| *place < height.saturating_sub(usize::from(is_cut)));
         (lines, places)
     }
 
@@ -205,18 +215,20 @@ impl WeekReportDialog {
         let remark = self.remark.iter().flat_map(|remark| wrap(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         if week_report.was_filed_at_limit() {
-            let text = "The time for this week ran out: the week was submitted with the projection.";
+            let text = "The time for this week ran out: the week was submitted with naive forecasts.";
             let note_lines = wrap(text, width as usize).into_iter();
             lines.extend(note_lines.map(|line| Line::from(canvas.span(line, Role::Warning))));
         }
-        let due = week_report.due_forecasts.iter().take(forecasts);
-        lines.extend(
-            due.map(|due| forecast_line(canvas, due, week_report.was_forecast_filed_at_limit(due), width)),
-        );
         // A count replaces forecasts that do not fit. The journal lists all forecasts.
         let left_out = week_report.due_forecasts.len().saturating_sub(forecasts);
+        let more = if left_out > 0 { format!(" · {left_out} more") } else { String::new() };
+        let due_width = width.saturating_sub(more.width() as u16);
+        let due = week_report.due_forecasts.iter().take(forecasts);
+        lines.extend(due.flat_map(|due| {
+            forecast_lines(canvas, due, week_report.was_forecast_filed_at_limit(due), due_width)
+        }));
         if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
-            last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
+            last.spans.push(canvas.span(more, Role::Dim));
         }
         lines
     }
@@ -264,14 +276,15 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> S
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// Describes a due forecast and the actual value. With `of_limit`, the program submitted the forecast at the time limit.
-fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Line<'a> {
+/// Describes a due forecast and the actual value in one or two lines. With `of_limit`, the program submitted the forecast
+/// at the time limit.
+fn forecast_lines<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Section<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
     let who = match (of_limit, width) {
         (false, _) => "you",
-        (true, 90..) => "the projection submitted at the limit",
-        (true, _) => "the projection at the limit",
+        (true, 90..) => "the program, at the time limit,",
+        (true, _) => "the program",
     };
     let format_forecast = |write: fn(f64) -> String| {
         let Forecast { point, lower, upper, .. } = due.forecast;
@@ -289,7 +302,14 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
     let exact = format_forecast(dollars);
     let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
     let text = if fits { exact } else { format_forecast(short_dollars) };
-    Line::from(vec![canvas.span(text, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
+    let outcome = [canvas.span(verdict, role), canvas.span(miss, Role::Dim)];
+    let text_width = text.width();
+    let text = canvas.span(text, Role::Dim);
+    if text_width + outcome.iter().map(|span| span.content.width()).sum::<usize>() <= usize::from(width) {
+        return vec![Line::from_iter(std::iter::once(text).chain(outcome))];
+    }
+    let indent = canvas.span("  ", Role::Dim);
+    vec![Line::from(text), Line::from_iter(std::iter::once(indent).chain(outcome))]
 }
 
 /// Lists the decisions before the week in at most `most` lines.
@@ -459,18 +479,14 @@ fn next_steps_section<'a>(
             context.keys.label(item_screen(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
         let (sign, role) = if need.is_urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
-        let proposed = wrap(&need.describe(), room);
-        let rows = if roomy && proposed.len() <= 2 { proposed } else { wrap(&need.text, room) };
-        let first = rows.first().cloned().unwrap_or_default();
-        let rest = rows.get(1..).unwrap_or_default().join(" ");
+        let text = if roomy { need.describe() } else { need.text.clone() };
+        let rows = wrap_sentences(&text, room, 2);
         let mut lines = vec![Line::from(vec![
-            canvas.span(format!("  {sign} {first}"), role),
+            canvas.span(format!("  {sign} {}", rows.first().map_or("", String::as_str)), role),
             canvas.span(key, Role::Key),
         ])];
-        if !rest.is_empty() {
-            let rest = truncate_to_width(&rest, (width as usize).saturating_sub(4));
-            lines.push(Line::from(canvas.span(format!("    {rest}"), role)));
-        }
+        let rest = rows.iter().skip(1);
+        lines.extend(rest.map(|text| Line::from(canvas.span(format!("    {text}"), role))));
         lines
     };
     needs.iter().flat_map(lines).collect()

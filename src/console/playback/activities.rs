@@ -1,6 +1,7 @@
 //! Short descriptions of recorded user activity.
 
 use super::entry_text::format_millis;
+use novamind_base::formatting::pluralize;
 use novamind_record::trajectory::record::{
     Activity, ClockEvent, DetachCause, DialogOutcome, LimitEvent, LimitScope, Presence, PresenceEvent,
     TextEditOutcome,
@@ -34,7 +35,7 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
                 0 => String::new(),
                 pasted => format!(", {pasted} pasted"),
             };
-            format!("{}: {} characters {end}{pasted}", draft.place, draft.length)
+            format!("{}: {} {end}{pasted}", draft.place, pluralize(draft.length as u32, "character"))
         }
         Activity::Session(presence) => return (presence_summary(presence), Role::Header),
         Activity::Clock(clock) => {
@@ -56,10 +57,13 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
             let what = match limit.event {
                 LimitEvent::Warned => "warned of",
                 LimitEvent::Reminded => "reminded of",
-                LimitEvent::FiledNaively => "submitted with projection at",
+                LimitEvent::FiledNaively => "submitted with naive forecasts at",
                 LimitEvent::Paused => "stopped by",
             };
-            return (format!("{what} the limit of {} minutes per {scope}", limit.minutes), Role::Warning);
+            return (
+                format!("{what} the limit of {} per {scope}", pluralize(limit.minutes, "minute")),
+                Role::Warning,
+            );
         }
         Activity::Question(question_shown) => format!("asked: {}", question_shown.text),
         Activity::Answer(answer) if answer.value.is_null() => format!("{}: no answer", answer.id),

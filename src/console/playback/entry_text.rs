@@ -48,7 +48,7 @@ pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String
         }
         Record::Week(closing) | Record::Step(closing) => {
             let ClosedDays { days_run, cash, .. } = closing;
-            one(format!("{days_run} days simulated, cash {}", dollars(*cash)), Role::Header)
+            one(format!("{} simulated, cash {}", pluralize(*days_run, "day"), dollars(*cash)), Role::Header)
         }
         Record::Voice(voice_answer) => one(voice_summary(voice_answer), Role::Dim),
         Record::End(end) => one(format!("the run ended: {}", end.reason.id()), Role::Warning),
@@ -69,7 +69,9 @@ fn voice_summary(voice_answer: &VoiceAnswer) -> String {
                 .collect();
             format!("a language model judged post {}: {}", judged.post, scores.join(", "))
         }
-        VoiceAnswer::Words(worded) => format!("a language model worded {} posts", worded.posts.len()),
+        VoiceAnswer::Words(worded) => {
+            format!("a language model worded {}", pluralize(worded.posts.len() as u32, "post"))
+        }
         VoiceAnswer::Failed(failed) => format!("the language model failed: {}", failed.problem),
     }
 }

@@ -1,4 +1,4 @@
-//! The debrief of a part of a lesson: compares the student's play with the reference play and the bad play.
+//! The debrief of a part of a lesson: compares the student's play with the reference play and the pitfall play.
 //!
 //! All plays start from the same state and are simulated in memory. The student's play is re-simulated as well.
 //! Decisions are compared only if its re-simulation reproduces the recorded cash of every day.
@@ -35,7 +35,7 @@ pub struct FinishedPart {
     calls: Vec<ScheduledCalls>,
 }
 
-/// The results of a part, with the reference play and the bad play on the same seed.
+/// The results of a part, with the reference play and the pitfall play on the same seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Debrief {
     /// Title of the lesson.
@@ -79,7 +79,7 @@ impl Debrief {
     }
 }
 
-/// The cash curve of the reference play or the bad play.
+/// The cash curve of the reference play or the pitfall play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferenceCurve {
     /// Description of the play; `None` before the last part of the lesson, because the text would reveal the solution.

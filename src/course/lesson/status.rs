@@ -51,6 +51,8 @@ pub struct LessonStatus {
     pub screens: Option<Vec<String>>,
     /// Tools that the student can use; `None` for all tools.
     pub tools: Option<Vec<ToolId>>,
+    /// Whether the lesson sets the capacity, so that the student cannot.
+    pub has_automatic_capacity: bool,
     /// Whether the student can run a week without entering forecasts or a rationale.
     pub skips_forecasts: bool,
 }
@@ -133,6 +135,7 @@ impl LessonStatus {
             next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),
             tools: plan.access.tools.clone(),
+            has_automatic_capacity: part.has_automatic_capacity(),
             skips_forecasts: plan.access.uses_naive_forecasts() && plan.access.is_rationale_off(),
         })
     }

@@ -43,7 +43,7 @@ impl Cause {
             Cause::OtherCalls => "other decisions",
             Cause::EarlierPurchases => "last week's purchases",
             Cause::Market => "market",
-            Cause::Competitors => "rivals",
+            Cause::Competitors => "competitors",
             Cause::Drift => "drift",
             Cause::Yields => "channel yields",
             Cause::Economy => "economy",

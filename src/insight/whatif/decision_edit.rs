@@ -304,7 +304,10 @@ impl FromStr for DecisionEdit {
             "drop" => parse_line_number(rest).map(DecisionEdit::Drop),
             "change" => {
                 let (seq, args) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
-                Ok(DecisionEdit::Change { seq: parse_line_number(seq)?, args: parse_arguments(args, None)? })
+                Ok(DecisionEdit::Change {
+                    seq: parse_line_number(seq)?,
+                    args: parse_arguments(args, None, None)?,
+                })
             }
             "in" => {
                 let rest = rest.strip_prefix("week ").map_or(rest, str::trim_start);
@@ -361,7 +364,9 @@ fn parse_set_or_call(week: Option<u32>, text: &str) -> Result<DecisionEdit, Stri
 fn parse_added_call(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
     let (name, rest) = call.split_once(char::is_whitespace).unwrap_or((call, ""));
     let tool = parse_state_changing_tool(name)?;
-    Ok(DecisionEdit::Add { week, tool, args: parse_arguments(rest, tool.spec().unnamed_argument)? })
+    let spec = tool.spec();
+    let args = parse_arguments(rest, spec.unnamed_argument, spec.positional_argument())?;
+    Ok(DecisionEdit::Add { week, tool, args })
 }
 
 /// Parses a tool name. Rejects tools that cannot change the company.
@@ -386,8 +391,8 @@ fn parse_line_number(number: &str) -> Result<u64, String> {
     number.parse().map_err(|_| format!("{number} is not a line number; for example drop 57"))
 }
 
-/// Parses arguments as JSON, or as `NAME=VALUE` separated by spaces.
-fn parse_arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
+/// Parses arguments as JSON, as `NAME=VALUE` separated by spaces, or as one value of the argument `positional`.
+fn parse_arguments(text: &str, whole: Option<&str>, positional: Option<&str>) -> Result<Value, String> {
     let text = text.trim();
     if text.starts_with('{') {
         let given: Map<String, Value> =
@@ -397,11 +402,17 @@ fn parse_arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
             None => Value::Object(given),
         });
     }
+    let parse_value =
+        |value: &str| serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
+    let is_one_word =
+        !text.is_empty() && !text.contains(|letter: char| letter.is_whitespace() || letter == '=');
+    if let Some(name) = positional.filter(|_| is_one_word) {
+        return Ok(json!({ name: parse_value(text) }));
+    }
     let pair = |word: &str| {
         let (name, value) =
             word.split_once('=').ok_or_else(|| format!("{word} is not an argument; write NAME=VALUE"))?;
-        let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
-        Ok((name.to_owned(), value))
+        Ok((name.to_owned(), parse_value(value)))
     };
     text.split_whitespace().map(pair).collect::<Result<Map<_, _>, String>>().map(Value::Object)
 }
@@ -432,6 +443,8 @@ mod tests {
         assert_eq!(call("set_prices * 1e-300"), "set_prices * 1e-300");
         assert_eq!(call("in week 3 set_prices A=16"), "in 3 set_prices {\"A\":16}");
         assert_eq!(call("in 3 set_prices A=16 B=34.5"), "in 3 set_prices {\"A\":16,\"B\":34.5}");
+        assert_eq!(call("set_capacity_tier 1"), "set_capacity_tier {\"tier\":1}");
+        assert_eq!(call("in 3 set_capacity_tier 1"), "in 3 set_capacity_tier {\"tier\":1}");
         assert_eq!(
             call("set_targeted_ad_spend {\"linkedin\": {\"S1\": 5}}"),
             "set_targeted_ad_spend {\"targeted_spend\":{\"linkedin\":{\"S1\":5}}}"

@@ -11,10 +11,12 @@ use novamind_insight::{
     Breakpoint, Condition, ConditionHistory, ConditionParseError, ConditionState, FigureWrite, FigureWrites,
     Inspect, WriteSource,
 };
+use novamind_record::mode::Mode;
 use novamind_report::inspection::{
     InspectionCommand, describe_breakpoints, describe_condition_history, describe_source, describe_stop,
 };
 use novamind_session::ReputationCause;
+use novamind_tools::Rejection;
 
 impl Interpreter {
     /// Executes `break`, `break CONDITION` and `break clear N|all`. `column` is the column at which `rest` begins.
@@ -71,7 +73,8 @@ impl Interpreter {
 
     /// Executes `run DAYS` and `run DAYS until CONDITION`. The condition becomes a breakpoint, as with `break`.
     pub(super) fn run_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
-        if let Err(refusal) = self.session.check_inspection() {
+        if self.session.manifest().mode != Mode::Debug {
+            let refusal = Rejection::new("not_in_this_mode", "run simulates single days in debug runs only");
             return Ok(CommandResponse::rejected("run", refusal));
         }
         let (number, until) = strip_comment(rest).split_once("until").unwrap_or((strip_comment(rest), ""));

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::{Interpreter, argument_error};
-use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number};
+use novamind_base::formatting::{dollars, dollars_and_cents, pluralize};
 use novamind_base::similar_names;
 use novamind_report::fit::{Fit, FitCriterion, LeadFlow, PlanFit, fits};
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
@@ -82,10 +82,10 @@ fn select_groups<'a>(
     }
     let near = similar_names(id, all.iter().map(|fit| fit.group.id()));
     let known = match near.is_empty() {
-        true => all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", "),
-        false => near.join(" or "),
+        true => format!("known: {}", all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", ")),
+        false => format!("similar: {}", near.join(", ")),
     };
-    Err(argument_error(arguments, &format!("{id} is not a known group; known: {known}")))
+    Err(argument_error(arguments, &format!("{id} is not a known group; {known}")))
 }
 
 /// Returns the result of a tool with ranges and dates instead of single estimates, and with the true means of R&D
@@ -176,10 +176,10 @@ fn cost_line(pair: &LeadCost) -> String {
         format!("; cheapest in weeks {} to {}: {}", spell.weeks.0, spell.weeks.1, words(&spell))
     });
     format!(
-        "{} × {}: {} leads for {} in 4 weeks, {}{before}",
+        "{} × {}: {} for {} in 4 weeks, {}{before}",
         pair.channel.id(),
         pair.group,
-        grouped_number(f64::from(pair.recent.leads), 0),
+        pluralize(pair.recent.leads, "lead"),
         dollars(pair.recent.spend),
         words(&pair.recent)
     )

@@ -50,7 +50,7 @@ impl Interpreter {
             }
             _ => Err(argument_error(
                 arguments,
-                "inbox takes all, the number of a company, or where and a condition, for example inbox where seats >= \
+                "inbox takes all, the number of an enterprise, or where and a condition, for example inbox where seats >= \
                  500; help inbox explains more",
             )),
         }
@@ -173,7 +173,7 @@ fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &Ent
             ),
         });
     }
-    lines.push("inbox NUMBER shows the thread of one company".to_owned());
+    lines.push("inbox NUMBER shows the thread of one enterprise".to_owned());
     lines
 }
 

@@ -9,7 +9,7 @@ use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::help::not_found_message;
 use super::{Interpreter, argument_error, find_tool};
-use novamind_base::formatting::{dollars, grouped_number, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, pluralize, signed_dollars};
 use novamind_base::similar_names;
 use novamind_record::trajectory::record::Reversal;
 use novamind_report::action_items::{ActionItem, ActionTarget, action_items};
@@ -34,7 +34,7 @@ impl Interpreter {
     pub(super) fn status(&self) -> CommandResponse {
         let seen = self.session.company().observe();
         let runway =
-            seen.whole_runway_weeks().map_or("to the last day".to_owned(), |weeks| format!("{weeks} weeks"));
+            seen.whole_runway_weeks().map_or("to the last day".to_owned(), |weeks| pluralize(weeks, "week"));
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
         let tier = self.session.settings().core.capacity_tier;
         let units = self
@@ -153,7 +153,7 @@ impl Interpreter {
 fn need_lines(need: &ActionItem) -> Vec<String> {
     let mark = if need.is_urgent { '!' } else { '-' };
     let risk = grouped_number(need.at_risk, 0);
-    let mut lines = vec![format!("{mark} {} (${risk} of the next four weeks at risk)", need.describe())];
+    let mut lines = vec![format!("{mark} {} ${risk} of the next four weeks is at risk.", need.describe())];
     if let ActionTarget::Call(tool, arguments) = &need.target
         && !arguments.is_null()
     {

@@ -70,7 +70,7 @@ fn describe_week(report: &WeekReport) -> String {
     lines.extend(report.short_week_note.iter().map(|short| format!("this is a week {short}")));
     if report.was_filed_at_limit() {
         lines.push(
-            "the time limit for this week was reached: the week was submitted with the naive projection"
+            "the time limit for this week was reached: the week was submitted with naive forecasts"
                 .to_owned(),
         );
     }

@@ -93,7 +93,7 @@ fn preview_response(batch: &RuleBatch, names: &EnterpriseNames) -> CommandRespon
     let mut lines = batch.summary();
     let meant: Vec<&RuleOutcome> = batch.threads.iter().filter(|ruled| ruled.rule_index.is_some()).collect();
     if !meant.is_empty() {
-        let head = ["rule", "company", "group", "seats", "asked", "last offer", "left", "sends"];
+        let head = ["rule", "enterprise", "group", "seats", "asked", "last offer", "left", "sends"];
         let rows: Vec<Vec<String>> =
             meant.iter().take(MAX_LISTED_THREADS).map(|ruled| preview_row(ruled, names)).collect();
         lines.push(align_columns(&head.map(str::to_owned), &rows).trim_end().to_owned());

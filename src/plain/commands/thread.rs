@@ -32,7 +32,7 @@ impl Interpreter {
         let command_response =
             self.show_thread(&format!("{TURNS_SQL} WHERE thread_id = {thread} ORDER BY message_id"));
         Ok(command_response.unwrap_or_else(|| {
-            let text = format!("there is no thread {thread}; inbox NUMBER takes the number of a company");
+            let text = format!("there is no thread {thread}; inbox NUMBER takes the number of an enterprise");
             CommandResponse::rejected("thread", Rejection::new("thread_not_found", text))
         }))
     }
@@ -44,7 +44,7 @@ impl Interpreter {
              ORDER BY message_id"
         );
         self.show_thread(&newest).unwrap_or_else(|| {
-            let text = format!("company {customer} has no thread; inbox lists the waiting threads");
+            let text = format!("enterprise {customer} has no thread; inbox lists the waiting threads");
             CommandResponse::rejected("inbox", Rejection::new("thread_not_found", text))
         })
     }
@@ -144,9 +144,9 @@ fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32)
     };
     let mut parts =
         vec![format!("the thread waits for you: {} left", pluralize(thread.waiting.days_left, "day"))];
-    parts.extend(describe_request(thread).map(|ask| format!("the company {ask}")));
+    parts.extend(describe_request(thread).map(|ask| format!("the enterprise {ask}")));
     parts.extend(thread.required_quota.map(|units| {
-        format!("the company needs a quota of {} units a day", grouped_number(units.round(), 0))
+        format!("the enterprise needs a quota of {} units a day", grouped_number(units.round(), 0))
     }));
     let plan = thread.asked_plan.map_or("B", |plan| plan.id());
     vec![

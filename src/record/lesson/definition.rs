@@ -410,7 +410,7 @@ pub struct ReferencePlay {
     /// Separate description of each part, if the parts have little in common.
     #[serde(default)]
     pub texts: Vec<String>,
-    /// Name of the pitfall that the play triggers; required for the bad play.
+    /// Name of the pitfall that the play triggers; required for the pitfall play.
     pub pitfall: Option<String>,
     /// Calls of the play, by part and week.
     #[serde(rename = "play", default)]

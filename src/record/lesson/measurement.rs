@@ -83,6 +83,20 @@ impl Measurement {
         }
     }
 
+    /// Describes the figure: `cash`, `sum of payments`. Returns `None` for a statement.
+    pub fn describe(&self) -> Option<String> {
+        let name = match &self.source {
+            NumberSource::Cash => "cash",
+            NumberSource::Figure(figure) => figure.name(),
+            NumberSource::Sql(_) => return None,
+        };
+        Some(match self.aggregation {
+            WeekAggregation::Last => name.to_owned(),
+            WeekAggregation::Sum => format!("sum of {name}"),
+            WeekAggregation::Mean => format!("mean {name}"),
+        })
+    }
+
     /// Returns the SQL statement for the days from `from_day` to `to_day`, or `None` if the source is a figure.
     pub fn statement(&self, from_day: u32, to_day: u32) -> Option<String> {
         match &self.source {

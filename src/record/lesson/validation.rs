@@ -36,7 +36,7 @@ pub(super) fn find_defect(lesson: &Lesson) -> Option<LessonDefect> {
                 false => Some(wrong(
                     "[bad]",
                     "bad.pitfall",
-                    "the bad play must name the pitfall that it triggers".to_owned(),
+                    "the pitfall play must name the pitfall that it triggers".to_owned(),
                 )),
             }
         })

@@ -27,7 +27,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
         let offers = GroupOffers::new(situation, estimates)?;
         let ads = situation.ads_by_group[estimates.group];
         let text = format!(
-            "{}: {} arrived in {} and none requested an offer; ads for them cost {} a day",
+            "{}: {} arrived in {} and none requested an offer. Ads for them cost {} a day.",
             estimates.group,
             pluralize(lead_count, "enterprise"),
             pluralize(recent.len() as u32, "week"),
@@ -37,10 +37,10 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
         let (text, proposal, place) = match offers.main_deficit() {
             missing @ (OfferDeficit::Quota | OfferDeficit::Quality) => {
                 let (remedy, proposal, place) = offers.propose_remedy(missing, ads * RISK_DAYS)?;
-                (format!("{text}; {remedy}"), Some(proposal), place)
+                (format!("{text} {remedy}"), Some(proposal), place)
             }
             OfferDeficit::Price | OfferDeficit::Balance => {
-                let saved = format!("removing these ads saves {} a day", format_money(ads));
+                let saved = format!("Removing these ads saves {} a day.", format_money(ads));
                 (text, Some(saved), target_without_ads(situation, estimates.group, |_| true))
             }
         };
@@ -70,7 +70,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     }
     let (first, last) = before.weeks;
     let text = format!(
-        "{} × {group}: in the last {} {}, in weeks {first} to {last} {}",
+        "{} × {group}: in the last {} {}. In weeks {first} to {last} {}.",
         channel.id(),
         pluralize(pair.recent.weeks.1 + 1 - pair.recent.weeks.0, "week"),
         describe_lead_costs(&pair.recent),
@@ -79,7 +79,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
     Some(ActionItem {
         problem: Problem::LeadCost(channel, group),
         text,
-        proposal: Some(format!("removing these ads saves {} a day", format_money(ads))),
+        proposal: Some(format!("Removing these ads saves {} a day.", format_money(ads))),
         target: target_without_ads(situation, group, |other| other == channel),
         // Additional cost of the leads compared with the earlier cost per lead.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),

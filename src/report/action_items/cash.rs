@@ -26,7 +26,7 @@ pub(super) fn runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
             _ => "no longer shrinks".to_owned(),
         };
         format!(
-            "the largest budget is {name}, {} a day: at {} a day, cash {lasts}",
+            "The largest budget is {name}, {} a day. At {} a day, cash {lasts}.",
             format_money(dollars),
             format_money(kept)
         )
@@ -34,7 +34,7 @@ pub(super) fn runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     Some(ActionItem {
         problem: Problem::Runway,
         text: format!(
-            "cash lasts {} at the current rate: income {} a week, costs {}",
+            "Cash lasts {} at the current rate. Income is {} a week, costs are {}.",
             pluralize(weeks as u32, "week"),
             format_money(pace.income * 7.0),
             format_money(out)
@@ -136,7 +136,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
         Some(ActionItem {
             problem: Problem::Margin,
             text: format!(
-                "plan {plan} loses money: {} pay {} a month, and compute costs {} a month at the last day's usage",
+                "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage.",
                 pluralize(subscribers, "individual"),
                 format_money(revenue),
                 format_money(cost)
@@ -162,7 +162,7 @@ fn propose_cheaper_setting(
     let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
         let cost = format_money(units * model.unit_cost);
         let text =
-            format!("model tier {} costs {cost} at the same usage and delivers lower quality", model.tier);
+            format!("Model tier {} costs {cost} at the same usage and delivers lower quality.", model.tier);
         (text, ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })))
     });
     covered.into_iter().next().unwrap_or_else(|| {
@@ -175,7 +175,7 @@ fn propose_cheaper_setting(
                 (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
             })
             .collect();
-        let text = format!("a quota below today's {} units a day limits their usage", format_whole(held));
+        let text = format!("A quota below today's {} units a day limits their usage.", format_whole(held));
         (text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)))
     })
 }

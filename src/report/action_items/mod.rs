@@ -94,9 +94,9 @@ pub enum ActionTarget {
 pub struct ActionItem {
     /// Kind of this problem.
     pub problem: Problem,
-    /// Description of the problem with amounts.
+    /// Sentences that describe the problem of the problem with amounts.
     pub text: String,
-    /// Proposed solution; `None` if nothing is proposed.
+    /// Sentences that propose a solution; `None` if nothing is proposed.
     pub proposal: Option<String>,
     /// The object where the player can solve the problem.
     pub target: ActionTarget,
@@ -228,7 +228,7 @@ impl ActionItem {
     /// Describes the problem and the proposed solution.
     pub fn describe(&self) -> String {
         match &self.proposal {
-            Some(proposal) => format!("{}; {proposal}", self.text),
+            Some(proposal) => format!("{} {proposal}", self.text),
             None => self.text.clone(),
         }
     }

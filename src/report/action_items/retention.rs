@@ -56,7 +56,7 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     Some(ActionItem {
         problem: Problem::Threads,
         text: format!(
-            "{who} for an answer ({}, {} a month at the requested or lowest list price); without one {fate} {by}",
+            "{who} for an answer ({}, {} a month at the requested or lowest list price). Without one, {fate} {by}.",
             pluralize(seats, "seat"),
             format_money(a_month)
         ),
@@ -99,14 +99,14 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        format!("; on day {day} you changed {}{more}", words.join(", "))
+        format!(" On day {day} you changed {}{more}.", words.join(", "))
     });
     let place = last_judged_change(situation)
         .map_or(ActionTarget::Group(group), |(_, changes)| restore_target(situation, &changes, group));
     Some(ActionItem {
         problem: Problem::Churn(group),
         text: format!(
-            "{group}: {} of {} cancelled last week ({}); four-week average {}{change_text}",
+            "{group}: {} of {} cancelled last week ({}). The four-week average is {}.{change_text}",
             format_whole(gone),
             format_whole(had),
             percent(gone / had.max(1.0), 1),

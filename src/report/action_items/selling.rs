@@ -45,16 +45,16 @@ pub(super) fn missing_offers(situation: &DiagnosisContext<'_>) -> Option<ActionI
         })
         .collect();
     let (plans, verb) = match empty.as_slice() {
-        [one] => (format!("plan {one}"), "has"),
-        more => (format!("plans {}", more.join(", ")), "have"),
+        [one] => (format!("Plan {one}"), "has"),
+        more => (format!("Plans {}", more.join(", ")), "have"),
     };
     let consequence =
-        if all { "subscribers get nothing for their money" } else { "subscribers get nothing on it" };
+        if all { "Subscribers get nothing for their money" } else { "Subscribers get nothing on it" };
     Some(ActionItem {
         problem: Problem::NoQuota,
-        text: format!("{plans} {verb} a price and a quota of 0 units a day: {consequence}"),
+        text: format!("{plans} {verb} a price and a quota of 0 units a day. {consequence}."),
         proposal: Some(format!(
-            "{} units a day cover {group}, which uses about {} (at most {})",
+            "{} units a day cover {group}. It uses about {} (at most {}).",
             format_whole(quota),
             format_whole(situation.group_estimates(group)?.usage),
             format_whole(use_a_day)
@@ -86,9 +86,9 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         .collect();
     ActionItem {
         problem: Problem::NoPrice,
-        text: "no plan has a price: no one can subscribe".to_owned(),
+        text: "No plan has a price. No one can subscribe.".to_owned(),
         proposal: Some(format!(
-            "mean budgets a month: {}; the form proposes half of each estimate",
+            "Mean budgets a month: {}. The form proposes half of each estimate.",
             texts.join(", ")
         )),
         target: ActionTarget::Call(ToolId::SetPrices, Value::Object(prices)),
@@ -125,9 +125,10 @@ pub(super) fn missing_leads(situation: &DiagnosisContext<'_>) -> Option<ActionIt
     let total = TRIAL_AD_SPEND * Channel::ALL.len() as f64;
     Some(ActionItem {
         problem: Problem::NoLeads,
-        text: "no leads: no ads are running and there are no subscribers to spread the word".to_owned(),
+        text: "No leads arrive. No ads are running, and there are no subscribers to spread the word."
+            .to_owned(),
         proposal: Some(format!(
-            "{} a day per channel on {group} shows within a week which ones bring leads, for {} in ads",
+            "{} a day per channel on {group} shows within a week which channels bring leads, for {} in ads.",
             format_money(TRIAL_AD_SPEND),
             format_money(7.0 * total)
         )),
@@ -193,7 +194,7 @@ fn group_without_sales(
     Some(ActionItem {
         problem: Problem::NoSales(estimates.group),
         text: format!(
-            "{}: {} last week, {signed} signed ({share}); {remedy}",
+            "{}: {} last week, {signed} signed ({share}). {remedy}",
             estimates.group,
             pluralize(week.leads, "lead")
         ),
@@ -272,9 +273,9 @@ impl<'a> GroupOffers<'a> {
         };
         let more = self.affordable_plans().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
         match more.filter(|more| quality(*more) > delivered) {
-            None => format!("the best{scope} is {delivered:.4} on {plan}"),
+            None => format!("the best{scope} is {delivered:.4} on {plan}."),
             Some(more) => format!(
-                "{delivered:.4} on {plan}; {more} delivers {:.4}{scope}, but its quota is too small for them",
+                "{delivered:.4} on {plan}. {more} delivers {:.4}{scope}, but its quota is too small for them.",
                 quality(more)
             ),
         }
@@ -331,7 +332,7 @@ impl<'a> GroupOffers<'a> {
         let study =
             terms.study_level(estimates.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
         let text = format!(
-            "required quality rises as competitors improve, and the estimate is {} old: a level {} study updates it for {} in {}",
+            "Required quality rises as competitors improve, and the estimate is {} old. A level {} study updates it for {} in {}.",
             pluralize(day - estimates.as_of, "day"),
             study.level,
             format_money(study.cost),
@@ -358,12 +359,12 @@ impl<'a> GroupOffers<'a> {
                     self.plans().min_by(|left, right| self.price(*left).total_cmp(&self.price(*right)))?;
                 Some((
                     format!(
-                        "price: the lowest is {} for {plan}, the mean budget {} ({as_of})",
+                        "The lowest price is {} for {plan}. The mean budget is {} ({as_of}).",
                         format_money(self.price(plan)),
                         TrueValueRange::from_estimate(estimates.budget, estimates.max_relative_error)
                             .format_money()
                     ),
-                    format!("{} is below even the low end of that range", format_money(price)),
+                    format!("{} is below even the low end of that range.", format_money(price)),
                     ActionTarget::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
                 ))
             }
@@ -379,12 +380,12 @@ impl<'a> GroupOffers<'a> {
                     .collect();
                 Some((
                     format!(
-                        "quota: {} units a day on {plan}; mean usage{} is {}",
+                        "Quota: {} units a day on {plan}. Mean usage{} is {}.",
                         format_whole(self.situation.settings.quotas[plan].units()),
                         if group.is_enterprise() { " of the smallest enterprises" } else { "" },
                         TrueValueRange::from(estimates.account_usage_range()).format_units()
                     ),
-                    format!("{} units a day cover even the high end of that range", format_whole(quota)),
+                    format!("{} units a day cover even the high end of that range.", format_whole(quota)),
                     ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
                 ))
             }
@@ -392,7 +393,7 @@ impl<'a> GroupOffers<'a> {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let text = format!(
-                    "quality: {}; required on average: {floor} ({as_of})",
+                    "Quality: {} Required on average: {floor} ({as_of}).",
                     self.describe_best_plan(plan, delivered)
                 );
                 let (proposal, place) = propose_better_quality(
@@ -410,12 +411,12 @@ impl<'a> GroupOffers<'a> {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
-                    "{plan} delivers {delivered:.4} for {}; they expect more at higher prices (mean at low prices: {floor}, {as_of})",
+                    "{plan} delivers {delivered:.4} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
                     format_money(self.price(plan))
                 );
-                let remedy = "only a lower price or higher quality can win them";
+                let remedy = "Only a lower price or higher quality can win them.";
                 Some(match propose_better_model(self.situation, group, plan, delivered, delivered) {
-                    Some((model, place)) => (problem, format!("{remedy}: {model}"), place),
+                    Some((model, place)) => (problem, format!("{remedy} {model}"), place),
                     None => (problem, remedy.to_owned(), ActionTarget::Group(group)),
                 })
             }
@@ -443,7 +444,7 @@ fn propose_better_model(
     let enough = better.into_iter().find(|model| product * model.multiplier >= floor)?;
     Some((
         format!(
-            "model tier {} delivers {:.4} on {plan} at {} per 1,000 units rather than {}",
+            "Model tier {} delivers {:.4} on {plan} at {} per 1,000 units rather than {}.",
             enough.tier,
             product * enough.multiplier,
             dollars_and_cents(enough.unit_cost * 1_000.0),
@@ -478,7 +479,7 @@ fn propose_better_quality(
     // Settings stay in force for at least a week.
     let cost = PROPOSED_DEVELOPMENT_SPEND * days.max(7.0);
     let reached = format!(
-        "development for {group} at {} a day reaches that quality in {}, for {} in total",
+        "Development for {group} at {} a day reaches that quality in {}, for {} in total.",
         format_money(PROPOSED_DEVELOPMENT_SPEND),
         pluralize(days as u32, "day"),
         format_money(cost)
@@ -486,7 +487,7 @@ fn propose_better_quality(
     let text = match cost > at_risk {
         true => {
             format!(
-                "{reached}: more than the {} lost in four weeks, but the effect lasts",
+                "{reached} This is more than the {} lost in four weeks, but the effect lasts.",
                 format_money(at_risk)
             )
         }

@@ -45,8 +45,8 @@ pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     (weeks < CAPACITY_HORIZON_WEEKS).then(|| ActionItem {
         problem: Problem::Capacity,
         text: format!(
-            "the busiest day of the week used {} units, {} of the {} of capacity tier {} and {} more than the busiest day \
-             a week before: at that growth, the tier is full in {full}",
+            "The busiest day of the week used {} units, {} of the {} of capacity tier {} and {} more than the busiest day \
+             a week before. At that growth, the tier is full in {full}.",
             format_whole(busiest),
             percent(busiest / now.units, 0),
             format_whole(now.units),
@@ -67,7 +67,7 @@ fn overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &Capacity
     ActionItem {
         problem: Problem::Overload,
         text: format!(
-            "the busiest day used {} units, {} above the {} of capacity tier {}",
+            "The busiest day used {} units, {} above the {} of capacity tier {}.",
             format_whole(busiest),
             percent(busiest / now.units - 1.0, 1),
             format_whole(now.units),
@@ -82,7 +82,7 @@ fn overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &Capacity
 
 fn describe_tier_cost(tier: &CapacityTier, now: &CapacityTier) -> String {
     format!(
-        "tier {} serves {} units for {} a day, {} more",
+        "Tier {} serves {} units for {} a day, {} more.",
         tier.tier,
         format_whole(tier.units),
         format_money(tier.cost),
@@ -111,12 +111,12 @@ pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     Some(ActionItem {
         problem: Problem::Outages,
         text: format!(
-            "outages took {} last week; with operations at {} a day, {} of days have one",
+            "Outages took {} last week. With operations at {} a day, {} of days have one.",
             pluralize(week.downtime_minutes, "minute"),
             format_money(operations),
             percent(now, 1)
         ),
-        proposal: Some(format!("{} a day reduce this to {}", format_money(more), percent(share(more), 1))),
+        proposal: Some(format!("{} a day reduce this to {}.", format_money(more), percent(share(more), 1))),
         target: ActionTarget::Call(ToolId::SetDailySpend, json!({ "operations": json_number(more) })),
         at_risk,
         is_urgent: true,
@@ -153,14 +153,15 @@ pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     Some(ActionItem {
         problem: Problem::Backlog,
         text: format!(
-            "{} waiting for support; {} new issues a day, and operations of {} a day resolve about {}",
+            "{} {} for support. Each day brings {}, and operations of {} a day resolve about {}.",
             pluralize(week.open_issues, "subscriber"),
-            format_whole(opened),
+            if week.open_issues == 1 { "waits" } else { "wait" },
+            pluralize(opened.round() as u32, "new issue"),
             format_money(operations),
             format_whole(base + per_dollar * operations)
         ),
         proposal: Some(format!(
-            "{} a day resolve about {}: the {} new issues a day without a backlog, and the backlog in {}",
+            "{} a day resolve about {}: the {} new issues a day without a backlog, and the backlog in {}.",
             format_money(dollars),
             format_whole(solved),
             format_whole(inflow),

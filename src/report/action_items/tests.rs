@@ -84,7 +84,7 @@ fn missing_prices_are_found() {
     let need = assert_first_problem(
         &play_company(3, 1e6, &[], 0),
         Problem::NoPrice,
-        &["no plan has a price", "mean budgets a month: S1 $", "the form proposes half of each estimate"],
+        &["No plan has a price", "Mean budgets a month: S1 $", "The form proposes half of each estimate"],
     );
     let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
     let proposal = need.proposal.as_deref().unwrap_or_default();
@@ -106,7 +106,7 @@ fn zero_quotas_are_found() {
         assert_first_problem(
             &session,
             Problem::NoQuota,
-            &["plans A, B, C have a price and a quota of 0", "units a day cover"],
+            &["Plans A, B, C have a price and a quota of 0", "units a day cover"],
         );
     }
     let one = play_company(
@@ -115,7 +115,7 @@ fn zero_quotas_are_found() {
         &healthy_calls_with(&[("set_usage_quotas", json!({"A": 2_000, "B": 0, "C": 9_000}))]),
         0,
     );
-    let need = assert_first_problem(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
+    let need = assert_first_problem(&one, Problem::NoQuota, &["Plan B has a price and a quota of 0"]);
     let ActionTarget::Call(ToolId::SetUsageQuotas, arguments) = &need.target else { panic!("{need:?}") };
     assert_eq!(
         (&arguments["A"], &arguments["C"]),
@@ -131,7 +131,7 @@ fn missing_leads_are_found() {
         assert_first_problem(
             &play_company(3, 1e6, &calls, weeks),
             Problem::NoLeads,
-            &["no leads", "$50 a day per channel"],
+            &["No leads arrive", "$50 a day per channel"],
         );
     }
 }
@@ -147,7 +147,7 @@ fn prices_above_every_budget_are_found() {
     let need = assert_first_problem(
         &session,
         Problem::NoSales(group("S1")),
-        &["none signed", "price: the lowest is $900 for A"],
+        &["none signed", "The lowest price is $900 for A."],
     );
     let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
     let budget = session.params().group(group("S1")).c_max_mean;
@@ -166,7 +166,7 @@ fn quality_below_the_requirement_is_found() {
     let need = assert_first_problem(
         &session,
         Problem::NoSales(group("S2")),
-        &["quality: the best within their estimated budget of $"],
+        &["Quality: the best within their estimated budget of $"],
     );
     let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
     assert_eq!(arguments["targeted_spend"]["S2"], 5_000.0);
@@ -195,7 +195,7 @@ fn plan_with_higher_quality_but_too_small_quota_is_named() {
         "C has the better model"
     );
     let named = format!(
-        "quality: {:.4} on B; C delivers {:.4} within their estimated budget of $",
+        "Quality: {:.4} on B. C delivers {:.4} within their estimated budget of $",
         delivered_quality.by_plan[Plan::B],
         delivered_quality.by_plan[Plan::C]
     );
@@ -220,8 +220,8 @@ fn offers_changed_today_are_not_diagnosed() {
     };
     let need = about_s1(&session).expect("few sign");
     assert!(
-        need.text.contains("quality: the best within their estimated budget of $")
-            && need.text.contains(" on A;"),
+        need.text.contains("Quality: the best within their estimated budget of $")
+            && need.text.contains(" on A."),
         "{}",
         need.text
     );
@@ -234,7 +234,7 @@ fn offers_changed_today_are_not_diagnosed() {
 fn too_small_quota_is_named_if_quality_suffices() {
     let calls = healthy_calls_with(&[("set_usage_quotas", json!({"A": 4, "B": 4, "C": 4}))]);
     let session = play_company(7, 1e6, &calls, 3);
-    assert_first_problem(&session, Problem::NoSales(group("S1")), &["quota: 4 units a day on"]);
+    assert_first_problem(&session, Problem::NoSales(group("S1")), &["Quota: 4 units a day on"]);
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn unprofitable_plan_is_found() {
         ("set_model_tiers", json!({"A": 5, "B": 1, "C": 1})),
     ]);
     let session = play_company(3, 3e6, &calls, 8);
-    let need = assert_first_problem(&session, Problem::Margin, &["plan A loses money", "model tier"]);
+    let need = assert_first_problem(&session, Problem::Margin, &["Plan A loses money.", "odel tier"]);
     let ActionTarget::Call(ToolId::SetModelTiers, arguments) = &need.target else { panic!("{need:?}") };
     assert!(arguments["A"].as_u64().is_some_and(|tier| tier < 5));
 }
@@ -279,11 +279,11 @@ fn outages_are_reported_with_the_operations_spend_that_reduces_them() {
         }
         advance_weeks(&mut session, 1);
     }
-    let words = "with operations at $0 a day, 3.0% of days have one";
+    let words = "With operations at $0 a day, 3.0% of days have one";
     let need = assert_first_problem(
         &session,
         Problem::Outages,
-        &["outages took", words, "$350 a day reduce this to 1.5%"],
+        &["Outages took", words, "$350 a day reduce this to 1.5%"],
     );
     let ActionTarget::Call(ToolId::SetDailySpend, arguments) = &need.target else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
@@ -317,7 +317,7 @@ fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
     let need = assert_first_problem(
         &session,
         Problem::Backlog,
-        &["waiting for support", "without a backlog, and the backlog in "],
+        &[" wait for support.", "without a backlog, and the backlog in "],
     );
     // The proposed number of days must follow from the numbers in both sentences.
     let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
@@ -382,7 +382,7 @@ fn expiring_threads_item_links_to_the_most_valuable_thread() {
     let need = assert_first_problem(
         &session,
         Problem::Threads,
-        &["enterprises wait for an answer", "their threads end by day"],
+        &["enterprises wait for an answer", "Without one, their threads end by day"],
     );
     let most = waiting.iter().max_by_key(|thread| thread.seats).expect("threads");
     assert_eq!(need.target, ActionTarget::Thread(most.thread));
@@ -396,11 +396,11 @@ fn short_runway_is_the_first_action_item() {
     let need = assert_first_problem(
         &session,
         Problem::Runway,
-        &["cash lasts", "the largest budget is targeted development"],
+        &["Cash lasts", "The largest budget is targeted development"],
     );
     let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
-    let text = format!("at {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
+    let text = format!("At {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
@@ -432,7 +432,7 @@ fn enterprises_without_suitable_plan_are_found() {
     assert!(found.iter().all(|need| need.text.contains("none requested an offer")), "{found:#?}");
     // All seats of an enterprise share one quota.
     assert!(
-        found.iter().any(|need| need.text.contains("mean usage of the smallest enterprises")),
+        found.iter().any(|need| need.text.contains("Mean usage of the smallest enterprises")),
         "{found:#?}"
     );
 }
@@ -442,12 +442,12 @@ fn budgets_in_texts_match_the_form() {
     let each = json!({"S1": 99, "S2": 99, "S3": 99, "E1": 2_999, "E2": 2_999});
     let ads = json!({"targeted_spend": {"linkedin": each, "social_media": each}});
     let session = play_company(3, 400_000.0, &healthy_calls_with(&[("set_targeted_ad_spend", ads)]), 1);
-    let need = assert_first_problem(&session, Problem::Runway, &["the largest budget is advertising"]);
+    let need = assert_first_problem(&session, Problem::Runway, &["The largest budget is advertising"]);
     let ActionTarget::Call(ToolId::SetTargetedAdSpend, arguments) = &need.target else { panic!("{need:?}") };
     let mut mended = session;
     mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
     let kept = mended.settings().targeted_ads.total();
-    let text = format!("at {} a day", crate::formatting::format_money(kept));
+    let text = format!("At {} a day", crate::formatting::format_money(kept));
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
 }
 
@@ -482,7 +482,7 @@ fn advertising_to_enterprises_without_requests_is_found() {
         saved > 0.0
             && after.targeted_spend.values().all(|groups| groups.get(&group).is_none_or(|it| *it == 0.0))
     );
-    let text = format!("removing these ads saves {} a day", crate::formatting::format_money(saved));
+    let text = format!("Removing these ads saves {} a day", crate::formatting::format_money(saved));
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
 }
 
@@ -569,7 +569,7 @@ fn quality_item_names_the_best_plan_and_keeps_other_development() {
     let all = action_items(&session);
     let need = all.iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs");
     assert!(
-        need.text.contains("quality: the best within their estimated budget of $"),
+        need.text.contains("Quality: the best within their estimated budget of $"),
         "A also has too small a quota: {}",
         need.text
     );

@@ -4,7 +4,7 @@
 mod svg;
 mod text;
 
-use super::formatting::{format_money, format_whole};
+use super::formatting::{format_money, format_whole, pluralize};
 use super::highlights::{highest_cash, lowest_cash, peak_week};
 use super::run_report::RunReport;
 use novamind_base::formatting::escape_control_characters;
@@ -85,7 +85,7 @@ impl Card {
 fn headline(report: &RunReport) -> String {
     let (day, cash) = (report.observation.day, format_money(report.observation.cash));
     match report.observation.ended {
-        Some(RunEndReason::Horizon) => format!("{cash} after {day} days"),
+        Some(RunEndReason::Horizon) => format!("{cash} after {}", pluralize(day, "day")),
         Some(RunEndReason::Bankruptcy) => format!("Bankrupt on day {day}"),
         Some(RunEndReason::Abandoned) => format!("Abandoned on day {day} with {cash}, without a score"),
         Some(RunEndReason::Lesson) => format!("{cash} at the end of the lesson on day {day}"),

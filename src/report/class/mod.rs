@@ -155,9 +155,9 @@ impl ClassView<'_> {
         };
         let of_part = |part: &LessonPart| match ranked_goal(part) {
             Some((step, goal)) => {
-                // The goal's target after the colon does not belong to the name of the measure.
-                let text = lesson.fill_figures(&part.steps[step].goals[goal].text);
-                text.split_once(": ").map_or(text.clone(), |(measure, _)| measure.to_owned())
+                let goal = &part.steps[step].goals[goal];
+                // A statement has no name, so that the text of its goal stands for it.
+                goal.measurement.describe().unwrap_or_else(|| lesson.fill_figures(&goal.text))
             }
             None => "final cash".to_owned(),
         };

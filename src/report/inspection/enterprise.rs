@@ -1,6 +1,7 @@
 //! Text for the inspection of an enterprise.
 
 use super::{clean_up_numbers, indented_table};
+use crate::formatting::pluralize;
 use novamind_insight::{EnterpriseThreadDay, EnterpriseView};
 use novamind_session::OfferResponse;
 use novamind_session::identifiers::Plan;
@@ -23,11 +24,11 @@ pub fn describe_enterprise(view: &EnterpriseView) -> Vec<String> {
 
 fn describe_thread(thread_day: &EnterpriseThreadDay) -> Vec<String> {
     let mut lines = vec![format!(
-        "thread {} ({}): budget {:.2}, {} turns left, relationship {:.4}{}",
+        "thread {} ({}): budget {:.2}, {} left, relationship {:.4}{}",
         thread_day.thread,
         thread_day.kind.id(),
         thread_day.budget,
-        thread_day.remaining_turns,
+        pluralize(thread_day.remaining_turns, "turn"),
         thread_day.relationship,
         match thread_day.late_penalty {
             0.0 => String::new(),

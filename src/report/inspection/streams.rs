@@ -1,6 +1,7 @@
 //! Text for the next random draws of a part of the simulator.
 
 use super::{clean_up_numbers, indented_table};
+use crate::formatting::pluralize;
 use novamind_insight::{DrawEffect, KeyedDraws, NextDraws};
 
 const MAX_ROW_DRAWS: usize = 8;
@@ -64,7 +65,7 @@ fn all_draws(keyed_draws: &KeyedDraws) -> Vec<String> {
 fn describe_effect(follows: &DrawEffect) -> String {
     match follows {
         DrawEffect::Leads { expected, number } => {
-            format!("{number} leads if λ is {expected:.2} as on the last day")
+            format!("{} if λ is {expected:.2} as on the last day", pluralize(*number, "lead"))
         }
         DrawEffect::FailedPayments { rate, customers } => describe_failed_payments(*rate, customers),
         DrawEffect::OutageAbove(chance) => {
@@ -72,7 +73,7 @@ fn describe_effect(follows: &DrawEffect) -> String {
         }
         DrawEffect::Noise(noise) => format!("noise {noise:+.6} in shared quality"),
         DrawEffect::Project { tier, days, gain } => {
-            format!("a project of tier {tier} takes {days} days and adds {gain:.4}")
+            format!("a project of tier {tier} takes {} and adds {gain:.4}", pluralize(*days, "day"))
         }
         DrawEffect::Found(Some(group)) => format!("discovers {group}"),
         DrawEffect::Found(None) => "discovers no group".to_owned(),

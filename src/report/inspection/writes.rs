@@ -1,7 +1,7 @@
 //! Text for the writes to a figure on a day.
 
 use super::{clean_up_numbers, indented_table};
-use crate::formatting::{category_name, format_whole};
+use crate::formatting::{category_name, format_whole, pluralize};
 use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_insight::{FigureWrite, FigureWrites, WriteSource, WriteTarget};
 use novamind_session::{EndCause, ReputationCause};
@@ -32,7 +32,7 @@ pub fn describe_source(write: &FigureWrite) -> String {
         WriteSource::Reputation(ReputationCause::Cancellations) => format!("churn ({count})"),
         WriteSource::Reputation(ReputationCause::LostEnterprise) => format!("lost enterprises ({count})"),
         WriteSource::Reputation(ReputationCause::Contributions(mood)) => {
-            format!("satisfaction of {} subscribers", format_whole(mood.count as f64))
+            format!("satisfaction of {}", pluralize(mood.count, "subscriber"))
         }
         WriteSource::Reputation(ReputationCause::Spillover(spill)) => {
             format!("spillover from {}", spill.source)

@@ -55,7 +55,7 @@ pub fn session_page(book: &Logbook) -> Page {
 fn headline(book: &Logbook) -> String {
     let who = book.participant.as_deref().unwrap_or("An unnamed participant");
     let weeks = pluralize(book.weeks.iter().filter(|week| !week.inherited).count() as u32, "week");
-    let minutes = format_whole(book.total.time.active_seconds() / 60.0);
+    let minutes = pluralize((book.total.time.active_seconds() / 60.0).round() as u32, "minute");
     let how = match book.ended {
         Some(RunEndReason::Horizon) => "to the last day",
         Some(RunEndReason::Bankruptcy) => "into bankruptcy",
@@ -63,7 +63,7 @@ fn headline(book: &Logbook) -> String {
         Some(RunEndReason::Lesson) => "to the end of the lesson",
         None => "and has not finished",
     };
-    format!("{who} played {weeks} in {minutes} minutes, {how}; cash is {}.", format_money(book.cash))
+    format!("{who} played {weeks} in {minutes}, {how}; cash is {}.", format_money(book.cash))
 }
 
 fn summary_facts(book: &Logbook) -> Vec<NamedValue> {

@@ -14,6 +14,7 @@ use crate::archive::{
     DATABASE_FILE, ENTRY_LIMITS, MANIFEST_FILE, NOTES_FILE, SEAL_FILE, SIGNATURE_FILE, TRAJECTORY_FILE,
     archive_error, is_run_id,
 };
+use novamind_base::formatting::pluralize;
 use novamind_record::error::RunError;
 use novamind_record::files::sync_folder;
 use novamind_record::folder::manifest::Manifest;
@@ -326,7 +327,7 @@ fn describe_difference(draft: &Path, place: &Path) -> String {
         .count();
     let reach = |lines: &[Line]| {
         let day = lines.last().map_or(0, |line| line.day);
-        format!("{} lines up to day {day}", lines.len())
+        format!("{} up to day {day}", pluralize(lines.len() as u32, "line"))
     };
     let line = |lines: &[Line]| lines.get(same).map_or("nothing".to_owned(), describe_line);
     if draft_lines.len() == there.len() && same == draft_lines.len() {

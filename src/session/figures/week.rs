@@ -30,13 +30,13 @@ pub struct Forecasts {
     pub filled_naively: [bool; 4],
 }
 
-/// Describes how many forecasts are naive forecasts: `by projection`, `3 of 4 by projection`, or `None` if no forecast
-/// is naive.
+/// Describes how many forecasts are naive forecasts: `by naive forecast`, `3 of 4 by naive forecast`, or `None` if no
+/// forecast is naive.
 pub fn describe_naive_share(filled: &[bool]) -> Option<String> {
     match filled.iter().filter(|filled| **filled).count() {
         0 => None,
-        all if all == filled.len() => Some("by projection".to_owned()),
-        some => Some(format!("{some} of {} by projection", filled.len())),
+        all if all == filled.len() => Some("by naive forecast".to_owned()),
+        some => Some(format!("{some} of {} by naive forecast", filled.len())),
     }
 }
 
@@ -81,7 +81,10 @@ mod tests {
     fn describe_naive_share_names_all_some_or_none() {
         let texts =
             [[false; 4], [false, true, true, true], [true; 4]].map(|filled| describe_naive_share(&filled));
-        assert_eq!(texts, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
+        assert_eq!(
+            texts,
+            [None, Some("3 of 4 by naive forecast".to_owned()), Some("by naive forecast".to_owned())]
+        );
     }
 
     #[test]

@@ -11,7 +11,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::manifest_check::{ManifestCheck, check_start};
 use novamind_record::mode::Mode;
-use novamind_record::trajectory::{CHAIN_BROKEN_MESSAGE, Line, Trajectory};
+use novamind_record::trajectory::{CHAIN_BROKEN_MESSAGE, Line, RECOVERY_HINT, Trajectory};
 
 /// The result of a recovery.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,6 +34,21 @@ pub struct RecoveredRun {
 /// # Errors
 /// The run is not damaged, none of its lines can be used, or the branch cannot be written.
 pub fn recover(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
+    recover_prefix(folder, key).map_err(without_recovery_hint)
+}
+
+/// Removes the advice to recover the run, which has just failed.
+fn without_recovery_hint(error: RunError) -> RunError {
+    match error {
+        RunError::Damaged { path, line, problem, remedy } => {
+            RunError::Damaged { path, line, problem, remedy: remedy.replace(RECOVERY_HINT, "") }
+        }
+        RunError::InvalidRequest(message) => RunError::InvalidRequest(message.replace(RECOVERY_HINT, "")),
+        other => other,
+    }
+}
+
+fn recover_prefix(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
     let path = folder.join("trajectory.jsonl");
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
     let mut trajectory = Trajectory::default();
@@ -45,6 +60,7 @@ pub fn recover(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
     let words = match &problem {
         Some((line, problem)) => format!("line {line}: {problem}"),
         None => match Integrity::read(folder, &manifest, key).check(&path, &trajectory) {
+            Err(RunError::Damaged { line, problem, .. }) => format!("line {line}: {problem}"),
             Err(problem) => problem.to_string(),
             Ok(()) => {
                 let message = format!("run {} is not damaged; there is nothing to recover", manifest.id);
@@ -178,5 +194,21 @@ mod tests {
         assert!(whole.contains("not damaged"), "{whole}");
         let problem = recover_damaged(&run, |bytes| bytes[3] ^= 0x04).expect_err("no beginning").to_string();
         assert!(problem.contains("start of a run"), "{problem}");
+    }
+
+    #[test]
+    fn recover_does_not_advise_to_recover() {
+        let message = |remedy: &str| format!("Lines 1 to 3 are good; nothing was changed{remedy}");
+        let damaged = RunError::Damaged {
+            path: "trajectory.jsonl".into(),
+            line: 4,
+            problem: "the line is missing".to_owned(),
+            remedy: message(RECOVERY_HINT),
+        };
+        let invalid = RunError::InvalidRequest(message(RECOVERY_HINT));
+        for error in [damaged, invalid] {
+            let text = without_recovery_hint(error).to_string();
+            assert!(text.ends_with(&message("")), "{text}");
+        }
     }
 }

@@ -32,6 +32,7 @@ use crate::figures::changes::Decisions;
 use crate::figures::journal::JournalEntry;
 use novamind_database::ProjectionPosition;
 use novamind_record::figures::WeekFigures;
+use novamind_record::files::{open_regular_file, read_regular_file};
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{CalculationOutput, RequestId, RunEndReason};
 use novamind_record::trajectory::{Line, Record, first_line_hash};
@@ -124,7 +125,7 @@ impl Snapshot {
     /// # Errors
     /// The file cannot be used; returns a description of the problem.
     pub(crate) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
-        let mut file = match std::fs::read(folder.join(SNAPSHOT_FILE)) {
+        let mut file = match read_regular_file(&folder.join(SNAPSHOT_FILE)) {
             Ok(file) => file,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(_) => return Err("cannot be read"),
@@ -338,7 +339,8 @@ impl SnapshotTarget {
     /// the secret of a study is replaced only with that secret.
     pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
         let mut begin = [0; TITLE.len() + 1];
-        let read = File::open(folder.join(SNAPSHOT_FILE)).and_then(|mut file| file.read_exact(&mut begin));
+        let read =
+            open_regular_file(&folder.join(SNAPSHOT_FILE)).and_then(|mut file| file.read_exact(&mut begin));
         key.has_secret() || read.is_err() || begin[TITLE.len()] != STUDY_KEY_MARK
     }
 
@@ -358,5 +360,18 @@ impl SnapshotTarget {
             // Remove a partial file, which would use space on a full disk.
             let _ = std::fs::remove_file(&draft);
         }
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn read_rejects_devices() {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::os::unix::fs::symlink("/dev/zero", folder.path().join(SNAPSHOT_FILE)).expect("a link");
+        let found = Snapshot::read(folder.path(), &SealKey::default());
+        assert_eq!(found.err(), Some("cannot be read"));
     }
 }

@@ -70,6 +70,14 @@ impl Source {
             None => "organic",
         }
     }
+
+    /// Name on screens.
+    pub fn name(self) -> &'static str {
+        match self {
+            Source::Network => "word of mouth",
+            source => source.id(),
+        }
+    }
 }
 
 /// Leads of one group that arrived through one paid channel.

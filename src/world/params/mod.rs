@@ -199,20 +199,27 @@ impl Params {
     }
 }
 
-/// Returns the digest of parameters that are given as JSON, without the added keys for which `is_left_out` returns true.
+/// Returns the digest of parameters that are given as JSON, without the added keys for which `is_left_out` returns true, and
+/// without tables that have no other keys.
 fn digest_of(
     mut tables: Json,
     fault: Option<Fault>,
     added: &[(&str, &str, &str)],
     is_left_out: impl Fn(&Json, &Json) -> bool,
 ) -> String {
-    for (table, key, earlier) in added {
+    for (name, key, earlier) in added {
         let earlier = serde_json::from_str(earlier).expect("ADDED_KEYS contains valid JSON");
-        let table = tables.get_mut(table).and_then(Json::as_object_mut);
+        let table = tables.get_mut(name).and_then(Json::as_object_mut);
         if let Some(table) = table
             && table.get(*key).is_some_and(|value| is_left_out(value, &earlier))
         {
             table.shift_remove(*key);
+            // Earlier versions did not have a table whose keys were all added.
+            if table.is_empty()
+                && let Some(tables) = tables.as_object_mut()
+            {
+                tables.shift_remove(*name);
+            }
         }
     }
     let mut canonical = tables.to_string().into_bytes();
@@ -240,6 +247,23 @@ mod tests {
                 "{table}.{key}: the default is the earlier behavior"
             );
         }
+    }
+
+    #[test]
+    fn added_table_at_default_preserves_the_digest() {
+        let params = Params::bundled();
+        let added =
+            [&ADDED_KEYS[..], &[("next_table", "first", "1"), ("next_table", "second", "true")]].concat();
+        let digest = |first: u32, second: bool, added: &[(&str, &str, &str)]| {
+            let mut tables = serde_json::to_value(&params).expect("tables");
+            tables["next_table"] = serde_json::json!({ "first": first, "second": second });
+            digest_of(tables, params.fault, added, |current, earlier| current == earlier)
+        };
+        assert_eq!(digest(1, true, &added), params.digest(), "the table is left out");
+        let others = [digest(2, true, &added), digest(1, false, &added), digest(2, false, &added)];
+        let distinct: std::collections::BTreeSet<&String> = others.iter().collect();
+        assert!(distinct.len() == 3 && !others.contains(&params.digest()), "other values count");
+        assert_ne!(digest(1, true, &ADDED_KEYS), params.digest(), "its keys have to be listed");
     }
 
     #[test]

@@ -10,6 +10,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_tui::widgets::table::first_visible_row;
 
+const REJECTED_CALL_ERROR: &str = "a rejected call had no effect; change its arguments instead";
 const PARAMETER_EDIT_ERROR: &str = "omit this line, and add another value with set KEY VALUE";
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,7 +132,7 @@ impl DecisionList {
             Action::AddDecision => {
                 self.input = Some(DecisionInput { field: TextField::default(), line: None })
             }
-            Action::OmitDecision => self.toggle_selected(),
+            Action::OmitDecision => return self.toggle_selected(),
             Action::Open => return self.edit_selected(),
             _ => {}
         }
@@ -168,20 +169,23 @@ impl DecisionList {
         }
     }
 
-    /// Omits or restores the selected recorded decision, or removes the selected edit.
-    fn toggle_selected(&mut self) {
+    /// Omits or restores the selected recorded decision, or removes the selected edit. Returns an error message for a rejected call.
+    fn toggle_selected(&mut self) -> Result<(), String> {
         match self.rows().get(self.selected) {
             Some(DecisionRow::Edit(at)) => drop(self.current_edits().remove(*at)),
             Some(DecisionRow::Recorded(at)) => {
                 let line = self.recorded()[*at].seq();
+                let is_rejected = self.recorded()[*at].call().is_some_and(|call| !call.accepted);
                 match self.position_of_edit(line) {
                     Some(edit) => drop(self.current_edits().remove(edit)),
+                    None if is_rejected => return Err(REJECTED_CALL_ERROR.to_owned()),
                     None => self.current_edits().push(DecisionEdit::Drop(line)),
                 }
             }
             None => {}
         }
         self.select(self.selected);
+        Ok(())
     }
 
     fn edit_selected(&mut self) -> Result<(), String> {

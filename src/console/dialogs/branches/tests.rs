@@ -54,6 +54,10 @@ fn later_decisions_are_listed_and_can_be_omitted_or_changed() {
     assert_eq!(page.decisions.alternatives(), [vec![DecisionEdit::Drop(9)]]);
     dialog_action(&mut page, Action::OmitDecision, &company);
     assert!(page.decisions.alternatives().is_empty());
+    page.decisions.select(1);
+    assert!(page.decisions.handle_action(Action::OmitDecision).is_err(), "line 12 was rejected");
+    assert!(page.decisions.alternatives().is_empty());
+    page.decisions.select(0);
     dialog_action(&mut page, Action::Open, &company);
     assert_eq!(page.scopes(), [Scope::Field]);
     dialog_action(&mut page, Action::Commit, &company);

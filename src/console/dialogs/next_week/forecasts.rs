@@ -50,7 +50,7 @@ impl NextWeekDialog {
         }
     }
 
-    /// Describes the projection, and its past coverage if the rules permit.
+    /// Describes the naive forecasts, and its past coverage if the rules permit.
     fn naive_forecast_text(
         &self,
         context: &ScreenContext<'_>,
@@ -60,7 +60,7 @@ impl NextWeekDialog {
         let filled = self.filled_naively.as_flattened().contains(&true);
         let fills = match (filled, context.keys.label(Action::FillNaiveForecasts)) {
             (false, Some(key)) => format!("{key} fills empty cells"),
-            _ => "marked as projection".to_owned(),
+            _ => "marked as naive forecasts".to_owned(),
         };
         let text = format!("{fills}: the last four weeks continue at current costs");
         let mut lines: Vec<(String, Role)> =

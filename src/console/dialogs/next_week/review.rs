@@ -84,7 +84,7 @@ fn lines(
     lines.push(TextLine::default());
     lines.push(head("Before you continue", canvas));
     for tool in unsent {
-        let text = format!("  ! the {tool} form has unsent values");
+        let text = format!("  ! the {tool} form has unsubmitted values");
         lines.push(TextLine::from(canvas.span(text, Role::Warning)));
     }
     for need in &company.action_items {

@@ -114,7 +114,7 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
     match what {
         GroupColumn::Group => TableCell::from_text(group.id()).with_role(Role::Strong),
         GroupColumn::TrueValue(value) => value.cell(group, company),
-        GroupColumn::GroupKind => TableCell::from_text(if large { "comp." } else { "indiv." }).with_role(Role::Dim),
+        GroupColumn::GroupKind => TableCell::from_text(if large { "ent." } else { "indiv." }).with_role(Role::Dim),
         GroupColumn::StudyLevel => {
             let level = study_level(company, group);
             let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);

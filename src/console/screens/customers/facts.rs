@@ -12,6 +12,7 @@ use crate::screens::market::model::group_name;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{dollars_and_cents, compact_number, dollars, grouped_number, percent};
 use novamind_session::identifiers::{Group, Plan};
+use novamind_session::Source;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::sparkline::bar;
@@ -185,7 +186,11 @@ fn source_lines(company: &DisplayedCompany, facts: &GroupFacts, group: Group) ->
              AND c.acquisition_source = '{source}' AND c.created_day > {}",
             i64::from(company.observation.day) - 84
         );
-        let source = if source == "network" { "word of mouth" } else { source };
+        let named = Source::ALL.into_iter().find(|known| known.id() == source);
+        let source = match named {
+            Some(known) => known.name(),
+            None => source.as_str(),
+        };
         let title = format!("leads of {group} from {source} in 12 weeks");
         lines.push(figure_line(format!("  {source}"), figures, title, "acquisition-source", Some(sql)));
     }

@@ -108,7 +108,7 @@ impl WeeksPane {
         let Some(group) = customers.group(context.company) else { return };
         let held = points(customers.data.facts_of_group(group).subscriptions_by_week(context.company.observation.week));
         let values: Vec<f64> = held.iter().map(|point| point.1).collect();
-        let title = format!("{group} {}", if group.is_enterprise() { "companies" } else { "subscribers" });
+        let title = format!("{group} {}", if group.is_enterprise() { "enterprises" } else { "subscribers" });
         let words = summary(&values, &|value| grouped_number(value, 0), note_width(placement.area, &title));
         let inside = canvas.draw_pane_frame(placement.area, &title, &words, false);
         let mark = placement.focused.then(|| f64::from(self.week(customers, context)));

@@ -73,8 +73,11 @@ impl Pane<Journal> for ScoresPane {
     }
 
     fn border(&self, _: &Journal, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
-        let note = if context.company.shows_calibration() { "95 % coverage" } else { "" };
-        PaneBorder { title: "Forecasts".to_owned(), note: note.to_owned(), ..PaneBorder::default() }
+        let note = match context.company.shows_calibration() {
+            true => coverage_text(&context.company.forecast_scores),
+            false => String::new(),
+        };
+        PaneBorder { title: "Forecasts".to_owned(), note, ..PaneBorder::default() }
     }
 
     fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
@@ -125,6 +128,16 @@ impl Pane<Journal> for ScoresPane {
             let role = if outcome.is_covered() { Role::Text } else { Role::Warning };
             canvas.draw_text(row, &forecast_line(&outcome), role);
         }
+    }
+}
+
+/// Describes the measured coverage of all horizons and the intended one: `coverage 90% (aim: 95%)`.
+fn coverage_text(scores: &[ForecastScore]) -> String {
+    let (covered, scored) =
+        scores.iter().fold((0, 0), |(covered, scored), score| (covered + score.covered, scored + score.scored));
+    match scored {
+        0 => "aim: 95% coverage".to_owned(),
+        scored => format!("coverage {} (aim: 95%)", percent(f64::from(covered) / f64::from(scored), 0)),
     }
 }
 
@@ -180,6 +193,12 @@ mod tests {
             let sql = figure(&company, at).and_then(|figure| figure.sql).expect("rows");
             assert_eq!(session.query(&sql).expect("rows").rows.len(), single.len());
         }
+        let scores = &company.forecast_scores;
+        let covered: u32 = scores.iter().map(|score| score.covered).sum();
+        let scored: u32 = scores.iter().map(|score| score.scored).sum();
+        let share = percent(f64::from(covered) / f64::from(scored), 0);
+        assert_eq!(coverage_text(scores), format!("coverage {share} (aim: 95%)"));
+        assert_eq!(coverage_text(&[]), "aim: 95% coverage");
         assert!(company.forecast_scores[0].scored >= 8);
         assert_eq!(figure(&company, 9), None);
     }

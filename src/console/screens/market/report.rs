@@ -9,7 +9,7 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{compact_number, dollars, grouped_number, percent};
+use novamind_base::formatting::{compact_number, dollars, grouped_number, percent, pluralize};
 use novamind_report::fit::{Fit, TrueValueRange};
 use novamind_session::identifiers::Group;
 use novamind_session::true_value_range;
@@ -167,7 +167,7 @@ fn study_offer_text(company: &DisplayedCompany, group: Group, chosen: Option<u8>
         true => format!("update at level {target}"),
         false => format!("to level {target}"),
     };
-    format!("{what}: {}, {} days, then ±{}", dollars(terms.cost), terms.days, percent(terms.noise, 0))
+    format!("{what}: {}, {}, then ±{}", dollars(terms.cost), pluralize(terms.days, "day"), percent(terms.noise, 0))
 }
 
 /// Pane with the insight report of the selected group.

@@ -6,8 +6,8 @@ use unicode_width::UnicodeWidthStr;
 use crate::action::Action;
 use crate::context::ScreenId;
 use crate::screens::panes::PanePlacement;
-use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width};
-use novamind_tui::text::wrap;
+use novamind_tui::canvas::{Align, Canvas, Click};
+use novamind_tui::text::{wrap, wrap_sentences};
 use novamind_tui::theme::Role;
 
 pub fn move_selection(selected: &mut usize, rows: usize, action: Action) {
@@ -35,8 +35,11 @@ impl LinkedRow {
 
     /// Returns the wrapped text. Each line leaves space for the name of the linked screen.
     pub fn lines(&self, width: u16) -> Vec<String> {
-        let room = (width as usize).saturating_sub(self.destination.width() + 4);
-        wrap(&self.text, room.max(12))
+        wrap(&self.text, self.text_width(width))
+    }
+
+    fn text_width(&self, width: u16) -> usize {
+        (width as usize).saturating_sub(self.destination.width() + 4).max(12)
     }
 }
 
@@ -55,7 +58,8 @@ pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &[LinkedRow
             break;
         }
         let place = Rect { y, height: lines.len() as u16, ..area }.intersection(area);
-        draw_row(canvas, place, &rows[at], lines, placement.focused && at == selected);
+        let shown = wrap_sentences(&rows[at].text, rows[at].text_width(area.width), place.height as usize);
+        draw_row(canvas, place, &rows[at], &shown, placement.focused && at == selected);
         canvas.register_click(place, Click::Row(placement.index, at));
         y += lines.len() as u16;
     }
@@ -74,11 +78,7 @@ fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &LinkedRow, lines: &[Strin
             (0, false) => "·",
             _ => " ",
         };
-        let more = lines.get(at + 1).filter(|_| y + 1 == area.bottom());
-        let way = if at == 0 { row.destination.width() + 1 } else { 0 };
-        let room = (area.width as usize).saturating_sub(2 + way);
-        let shown = more.map_or_else(|| line.clone(), |more| truncate_to_width(&format!("{line} {more}"), room));
-        canvas.draw_text(Rect { y, height: 1, ..area }, &format!("{mark} {shown}"), role);
+        canvas.draw_text(Rect { y, height: 1, ..area }, &format!("{mark} {line}"), role);
     }
     let way = if selected { role } else { Role::Dim };
     canvas.draw_aligned(Rect { height: area.height.min(1), ..area }, &row.destination, way, Align::Right);

@@ -153,7 +153,7 @@ pub fn item_figure(need: &ActionItem, day: u32) -> Figure {
             )),
         ),
     };
-    Figure { title: need.text.clone(), term, sql, week_quantity: None }.with_week_quantity(item_quantity(need), day.div_ceil(7))
+    Figure { title: need.text.trim_end_matches('.').to_owned(), term, sql, week_quantity: None }.with_week_quantity(item_quantity(need), day.div_ceil(7))
 }
 
 /// Returns the weekly quantity that an item is about.

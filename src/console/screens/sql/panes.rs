@@ -128,7 +128,15 @@ impl Pane<Sql> for ResultsPane {
             None => sql.results.statement(),
         };
         let mark = if asked.is_some_and(|asked| sql.reads_hidden_state(asked)) { " · x-ray" } else { "" };
-        let title = title.replacen("Result", &format!("Result{}{mark}", sql.results.position_label()), 1);
+        let in_editor = sql.editor.statement();
+        let in_editor = in_editor.as_ref().map(|statement| statement.sql.as_str());
+        // Several results are named by their tabs.
+        let other = match &sql.running {
+            Some(_) => None,
+            None => sql.results.title_of_other_statement(in_editor),
+        };
+        let other = other.map_or(String::new(), |title| format!(" of {title}"));
+        let title = title.replacen("Result", &format!("Result{}{other}{mark}", sql.results.position_label()), 1);
         PaneBorder { title, note, keys: context.hints(sql.results.current().actions()), ..PaneBorder::default() }
     }
 

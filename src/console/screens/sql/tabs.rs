@@ -59,6 +59,14 @@ impl ResultTabs {
         self.tabs.get(self.current_index).map(|tab| tab.sql.as_str())
     }
 
+    /// Returns the title of the only result, if its statement is not the one in the editor.
+    pub fn title_of_other_statement(&self, in_editor: Option<&str>) -> Option<&str> {
+        match self.tabs.as_slice() {
+            [tab] if in_editor != Some(tab.sql.as_str()) => Some(&tab.title),
+            _ => None,
+        }
+    }
+
     /// Stores the answer to a statement and shows the answer. If the answer is an error, the tab with earlier rows of
     /// the statement is kept.
     pub fn add_answer(&mut self, sql: &str, answer: Result<QueryResult, Rejection>, took: Duration) {
@@ -206,6 +214,18 @@ mod tests {
 
     fn titles(tabs: &ResultTabs) -> Vec<&str> {
         tabs.tabs.iter().map(|tab| tab.title.as_str()).collect()
+    }
+
+    #[test]
+    fn only_result_is_named_if_the_editor_has_another_statement() {
+        let mut tabs = ResultTabs::default();
+        assert_eq!(tabs.title_of_other_statement(Some("SELECT 2")), None);
+        add_answer_for(&mut tabs, 1);
+        assert_eq!(tabs.title_of_other_statement(Some("SELECT 1")), None);
+        assert_eq!(tabs.title_of_other_statement(Some("SELECT 2")), Some("SELECT 1"));
+        assert_eq!(tabs.title_of_other_statement(None), Some("SELECT 1"));
+        add_answer_for(&mut tabs, 2);
+        assert_eq!(tabs.title_of_other_statement(Some("SELECT 3")), None, "the tabs name them");
     }
 
     #[test]

@@ -515,7 +515,7 @@ run 3 until subscribers(S1) < 0   # never
     for (one, line) in rejections.iter().zip(asked.lines()) {
         let error = match line.starts_with("run ") {
             true => "run simulates single days in debug runs only",
-            false => "the x-ray works in debug runs and in runs that are over",
+            false => "the x-ray is available in debug runs and in runs that have ended",
         };
         assert_eq!((&one["code"], &one["error"]), (&"not_in_this_mode".into(), &error.into()), "{one}");
     }

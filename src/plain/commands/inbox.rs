@@ -25,7 +25,7 @@ inbox all                 list every waiting thread
 inbox where CONDITION     list threads that meet a condition in the grammar of rules, for example
                           inbox where group = E2 and seats >= 500
 inbox all where CONDITION list all threads that meet a condition, without the limit of 20
-inbox NUMBER              show the newest thread of a company, turn by turn, for example inbox 5641
+inbox NUMBER              show the newest thread of an enterprise, turn by turn, for example inbox 5641
 thread NUMBER             show the thread with that number, waiting or ended
 Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
 send_enterprise_deal and reject_enterprise_deal answer a thread; rules answers many.";
@@ -255,7 +255,10 @@ mod tests {
         assert!(
             lines[2].contains("asks the price of plan A, no offer yet, needs a quota of 5,000 units a day")
         );
-        assert!(lines[21].starts_with("662 more: inbox all") && lines[22].starts_with("inbox NUMBER"));
+        assert!(
+            lines[21].starts_with("662 more: list all with inbox all")
+                && lines[22].starts_with("inbox NUMBER")
+        );
         let all = thread_lines(&waiting, &ThreadSelection { all: true, filter: None }, &names);
         assert_eq!(all.len(), 1 + 682 + 1);
         assert!(thread_lines(&[], &ThreadSelection::default(), &names).is_empty());

@@ -57,11 +57,13 @@ pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &[LinkedRow
         if y >= area.bottom() {
             break;
         }
-        let place = Rect { y, height: lines.len() as u16, ..area }.intersection(area);
-        let shown = wrap_sentences(&rows[at].text, rows[at].text_width(area.width), place.height as usize);
+        let room = lines.len().min((area.bottom() - y) as usize);
+        let shown = wrap_sentences(&rows[at].text, rows[at].text_width(area.width), room);
+        // A text that is cut after a sentence leaves lines to the next row.
+        let place = Rect { y, height: shown.len() as u16, ..area };
         draw_row(canvas, place, &rows[at], &shown, placement.focused && at == selected);
         canvas.register_click(place, Click::Row(placement.index, at));
-        y += lines.len() as u16;
+        y += place.height;
     }
 }
 

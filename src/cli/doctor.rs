@@ -134,10 +134,9 @@ fn describe_terminal() -> Result<String, String> {
         words.push("input or output is not a terminal: the program plays line by line here".to_owned());
     }
     if variable("TERM").as_deref() == Some("dumb") {
-        return Err(format!(
-            "{}: the console needs a terminal that moves the cursor; play with --plain",
-            words.join(", ")
-        ));
+        return Err(
+            "TERM=dumb: the console needs a terminal that moves the cursor; play with --plain".to_owned()
+        );
     }
     Ok(words.join(", "))
 }

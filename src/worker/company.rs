@@ -152,7 +152,7 @@ impl DisplayedCompany {
             running_studies: session.company().running_studies(),
             remarks: session.remarks().to_vec(),
             is_playback: false,
-            can_inspect: session.can_inspect(),
+            can_inspect: session.check_inspection().is_ok(),
             hidden_values: None,
             rules: session.rules(),
             study: session.manifest().study.clone(),

@@ -141,7 +141,7 @@ impl SessionThread {
         let (is_allowed, folder) = match &self.active_run {
             None => return Err(Rejection::new("not_possible", "no run is open")),
             Some(ActiveRun::Live(session)) => {
-                (session.can_inspect(), session.folder().filter(|_| !session.log().is_written()))
+                (session.check_inspection().is_ok(), session.folder().filter(|_| !session.log().is_written()))
             }
             Some(ActiveRun::Playback(playback)) => (playback.can_inspect(), playback.session().folder()),
         };

@@ -115,7 +115,7 @@ impl SessionThread {
     fn participation_curve(&mut self, group: Group) -> Result<CurveExplorer, Rejection> {
         let none_open = || Rejection::new("not_possible", "no run is open");
         let (is_allowed, day) = match self.active_run.as_ref().ok_or_else(none_open)? {
-            ActiveRun::Live(session) => (session.can_inspect(), session.day()),
+            ActiveRun::Live(session) => (session.check_inspection().is_ok(), session.day()),
             ActiveRun::Playback(playback) => (playback.can_inspect(), playback.session().day()),
         };
         let inspection = match is_allowed {

@@ -40,7 +40,7 @@ impl CurveExplorer {
     /// # Errors
     /// `group_not_discovered`, `guess_first`, `not_saved`.
     pub fn open(run: &mut Session, group: Group) -> Result<CurveExplorer, Rejection> {
-        if !run.can_inspect() {
+        if run.check_inspection().is_err() {
             return CurveExplorer::from_estimates(run, group);
         }
         let inspection = CurveInspection::record(run, group, run.day())?;

@@ -251,11 +251,6 @@ impl Session {
         self.simulation.state_hash()
     }
 
-    /// Returns whether hidden state may be shown; see [`can_inspect`](permission::can_inspect).
-    pub fn can_inspect(&self) -> bool {
-        permission::can_inspect(&self.manifest, self.history.ended, self.folder())
-    }
-
     /// Rejects an inspection if hidden state must not be shown. The result depends only on the mode, the study, the
     /// lesson, and whether run and lesson have ended.
     ///

@@ -53,7 +53,9 @@ impl Session {
         limits: QueryLimits,
     ) -> Result<QueryResult, Rejection> {
         let answer = self.up_to_date_database().and_then(|database| database.query(ticket, sql, limits));
-        answer.map_err(|refusal| if self.can_inspect() { with_hidden_table_hint(refusal) } else { refusal })
+        answer.map_err(|refusal| {
+            if self.check_inspection().is_ok() { with_hidden_table_hint(refusal) } else { refusal }
+        })
     }
 
     /// Runs an SQL statement of the program. The query is not recorded, because the user did not enter the statement.

@@ -16,7 +16,7 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
-/// Limits of hostile statements. Endless statements end at the limit of steps, because the time limit is never reached.
+/// Limits for hostile statements. Endless statements end at the step limit, because the time limit is never reached.
 const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(3600), steps: Some(400_000) };
 
 /// Limits for statements that must complete.
@@ -252,7 +252,7 @@ fn xray_connection_rejects_hostile_statements() {
         names.iter().any(|name| sql.to_lowercase().contains(name))
     };
     for attack in read_attacks() {
-        // Endless statements are excluded, because the limit of steps does not apply to x-ray queries.
+        // Endless statements are excluded, because the step limit does not apply to x-ray queries.
         let is_endless = attack.head.starts_with("stopped");
         let is_answered = attack.head.starts_with("answered");
         if is_endless || (!attack.head.starts_with("refused sql_write") && names_hidden(&attack.sql)) {
@@ -264,7 +264,7 @@ fn xray_connection_rejects_hostile_statements() {
             }
             Ok(rows) => Ok(rows),
         };
-        // This run has different data than the other test, so only success is checked.
+        // The run of this test has different data than the run of the other test, so only success is checked.
         let head = if is_answered { "answered".to_owned() } else { attack.head };
         problems.extend(outcome_problem(&Attack { head, sql: attack.sql }, &outcome));
     }

@@ -1,5 +1,5 @@
 //! Bundled scenarios, lessons, themes, policies and grids: all files of their folders in `configs/`, embedded in the
-//! program. A new file in such a folder needs no change of the code.
+//! program. A file that is added to one of these folders is bundled without a change to the code.
 
 use include_dir::{Dir, include_dir};
 
@@ -34,7 +34,7 @@ pub fn grids() -> Vec<BundledFile> {
     bundled_files(&GRIDS)
 }
 
-/// Returns name and text of every bundled lesson, in course order.
+/// Returns the name and the text of every bundled lesson, in course order.
 pub fn lessons() -> Vec<BundledFile> {
     let mut lessons = bundled_files(&LESSONS);
     let place = |name: &str| LESSON_ORDER.iter().position(|text| *text == name).unwrap_or(LESSON_ORDER.len());

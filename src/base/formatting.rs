@@ -166,7 +166,7 @@ pub fn parse_number(text: &str) -> Option<f64> {
     digits.parse::<f64>().ok().map(|number| number * factor).filter(|number| number.is_finite())
 }
 
-/// Converts a number to JSON: whole numbers have no decimal point, other numbers their shortest exact form.
+/// Converts a number to JSON. Whole numbers have no decimal point; other numbers are in their shortest exact form.
 pub fn json_number(value: f64) -> Value {
     const MAX_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
     if value.fract() == 0.0 && value.abs() < MAX_EXACT_INTEGER {

@@ -171,7 +171,8 @@ mod tests {
 
     #[test]
     fn mean_interval_matches_the_standard_error() {
-        // With standard deviation 1 and twenty values, the mean is known to ±1.96 / sqrt(20) = 0.44.
+        // With standard deviation 1 and twenty values, the interval extends about 1.96 / sqrt(20) = 0.44 on each side
+        // of the mean.
         let values: Vec<f64> = (0..20).map(|at| if at % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let interval = Interval::for_mean(&values).expect("values");
         assert!(

@@ -130,7 +130,7 @@ fn measure_in_process(cases: &[&BenchCase], bench: &BenchContext) -> Result<(), 
     Ok(())
 }
 
-/// Runs a benchmark in child processes, because peak memory is measured for a whole process.
+/// Runs a benchmark in child processes, because peak memory can only be measured for a whole process.
 fn measure(case: &BenchCase, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
     let (processes, each) = if case.needs_new_process { (repetitions, 1) } else { (1, repetitions) };
     let mut all: Samples = vec![Vec::new(); case.figures.len()];

@@ -71,7 +71,7 @@ enum ClassCommand {
         /// Show ranks instead of labels, so that no student can be identified
         #[arg(long)]
         hide_names: bool,
-        /// Write the results for a projector to this file, a web page without scripts
+        /// Write the results to this file, as a web page for a projector, without scripts
         #[arg(long, value_name = "FILE")]
         html: Option<PathBuf>,
         /// Print text instead of opening the screen

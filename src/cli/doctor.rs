@@ -28,7 +28,7 @@ const FULL_RUN: KnownHash = (500, "a6e13d9f17f50a662c19e8484eb0107fddf1be57ac495
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Simulate 500 days instead of 28, which takes several seconds
+    /// Simulate 500 days instead of 28; takes several seconds
     #[arg(long)]
     full: bool,
     /// Print one JSON object
@@ -87,7 +87,7 @@ fn describe_build() -> String {
     )
 }
 
-/// Names the versions that decide which recorded runs this program opens.
+/// Lists the versions that determine which recorded runs this program opens.
 fn describe_records(configuration: &Configuration) -> Result<String, String> {
     let scenario = configuration.load_scenario(DEFAULT_SCENARIO).map_err(|error| error.to_string())?;
     let params = configuration.load_parameters(&scenario, &[], true).map_err(|error| error.to_string())?;
@@ -111,7 +111,7 @@ fn check_simulation((days, expected): KnownHash) -> Result<String, String> {
     }
     Err(format!(
         "{days} days of seed {seed} give the state hash {} instead of {expected}: results of this machine are not \
-         comparable with those of others; report it",
+         comparable with results of other machines. Report this problem",
         outcome.state_hash
     ))
 }
@@ -141,7 +141,7 @@ fn describe_terminal() -> Result<String, String> {
     Ok(words.join(", "))
 }
 
-/// Names the variables that select colors, and shows samples of 16 and of 16 million colors on a terminal.
+/// Lists the variables that select colors. On a terminal, also shows samples of 16 and of 16 million colors.
 fn describe_colors() -> String {
     let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let depth =

@@ -55,7 +55,7 @@ enum LabCommand {
     Laws(distributions::Options),
     /// Draw participation curves: the quality that customers require at a price
     Curves(curves::Options),
-    /// Run the policies of a reference folder over many seeds and compare with its figures
+    /// Run the policies of a reference folder over many seeds and compare the results with its figures
     Golden(GoldenOptions),
     /// Play policies and measure the coverage of naive forecasts
     Forecasts(forecasts::Options),
@@ -72,7 +72,7 @@ enum LabCommand {
     Metrics(metrics::Options),
     /// Play the strong policies and the baseline with the seed and parameters of a finished run
     Opponents(opponents::Options),
-    /// Play all combinations of policies, scenarios, parameters and seeds into one tidy table, whole or in shards
+    /// Play all combinations of policies, scenarios, parameters and seeds, and write one tidy table, whole or in shards
     Study(study::Options),
     /// Merge the shards of a study
     Merge(study::MergeOptions),
@@ -280,7 +280,7 @@ fn describe(verdict: &Verdict, all: bool) -> String {
     text += &format!("  {head}:\n");
     listed.into_iter().for_each(|cell| text += &format!("    {cell}\n"));
     for cell in &comparison.excluded {
-        text += &format!("  shown only: {cell}\n");
+        text += &format!("  excluded from the comparison: {cell}\n");
     }
     for (figure, first) in comparison.suspect_figures() {
         let again = verdict.biased.iter().find(|(biased, ..)| *biased == figure);

@@ -197,7 +197,7 @@ fn check_lessons(names: &[String], configuration: &Configuration) -> Result<(), 
     }
     match failed {
         0 => Ok(()),
-        failed => Err(Failure::failed(format!("{failed} of {} lessons failed their check", names.len()))),
+        failed => Err(Failure::failed(format!("{failed} of {} lessons failed the check", names.len()))),
     }
 }
 

@@ -13,17 +13,17 @@ const MIN_WINDOW_SIZE: (u16, u16) = (60, 16);
 pub struct CheckItem {
     /// Checked object, in one word.
     pub name: &'static str,
-    /// Result.
+    /// Outcome of the check.
     pub outcome: CheckOutcome,
 }
 
 /// The outcome of a check, with its explanation.
 pub enum CheckOutcome {
-    /// Nothing to do.
+    /// The check passed. No action is needed.
     Passed(String),
-    /// The user should know about it, but it may be intended.
+    /// The check found a state that may be intended. The user should know about the state.
     Note(String),
-    /// The user must fix it first.
+    /// The check found a problem that the user must fix first.
     Failed(String),
 }
 
@@ -62,10 +62,10 @@ impl CheckItem {
     }
 }
 
-/// Fails if a check failed.
+/// Returns an error if a check failed.
 ///
 /// # Errors
-/// At least one check failed: the error has their number.
+/// At least one check failed. The message contains the number of failed checks.
 pub fn report_failures(items: &[CheckItem]) -> Result<(), Failure> {
     match items.iter().filter(|item| matches!(item.outcome, CheckOutcome::Failed(_))).count() {
         0 => Ok(()),
@@ -74,18 +74,20 @@ pub fn report_failures(items: &[CheckItem]) -> Result<(), Failure> {
     }
 }
 
-/// Checks that the wall clock runs evenly and is not earlier than the build date of this program.
+/// Checks that the wall clock runs evenly and is not years behind.
 pub fn check_clock() -> Result<String, String> {
     let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     const BUILT_AFTER: u64 = 1_760_000_000;
     let (before, steady) = (wall(), std::time::Instant::now());
     if before.as_secs() < BUILT_AFTER {
-        return Err("the clock of this machine is years behind: set it".to_owned());
+        return Err("the clock of this machine is years behind: set the clock".to_owned());
     }
     std::thread::sleep(std::time::Duration::from_millis(200));
     let drift = wall().as_secs_f64() - before.as_secs_f64() - steady.elapsed().as_secs_f64();
     if drift.abs() > 0.1 {
-        return Err(format!("the clock jumped by {drift:.1} s during the check: another program adjusts it"));
+        return Err(format!(
+            "the clock jumped by {drift:.1} s during the check: another program adjusts the clock"
+        ));
     }
     Ok("runs evenly".to_owned())
 }

@@ -359,7 +359,7 @@ fn ignore_file_size_signal() {
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
-/// Passes `--code` on to the tool that an agent calls if no study is given, because some tools have a `code` argument.
+/// If no study is given, passes `--code` to the tool that an agent calls, because some tools have a `code` argument.
 #[cfg(feature = "server")]
 fn pass_code_to_tool(mut arguments: Arguments) -> Arguments {
     let text = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));

@@ -79,7 +79,7 @@ impl NewRunOptions {
     /// Returns the settings of a run that a program plays, and a remark if days, cash or scenario make the run a sandbox run.
     ///
     /// # Errors
-    /// The errors of [`NewRunOptions::new_run`], or the terms of a baseline run cannot be read.
+    /// [`NewRunOptions::new_run`] fails, or the terms of a baseline run cannot be read.
     #[cfg(feature = "server")]
     pub fn program_run(&self, context: &Context) -> Result<(NewRun, Option<String>), Failure> {
         let sandbox = self.new_run(Mode::Sandbox, context)?;

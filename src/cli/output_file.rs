@@ -1,5 +1,5 @@
-//! Writes output files of commands completely or leaves them unchanged. Devices and pipes are written to and never replaced. A
-//! file that begins differently is never replaced either, because it may be a run, a policy or a study.
+//! Writes output files of commands completely or leaves them unchanged. Devices and pipes are written to and never
+//! replaced. An existing file with another signature is never replaced, because it may be a run, a policy or a study.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
@@ -60,7 +60,7 @@ fn replace_file(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Re
 /// Checks that an existing file begins with the first bytes of `expected`.
 ///
 /// # Errors
-/// The file begins differently or cannot be read.
+/// The file begins with other bytes or cannot be read.
 pub fn check_signature(place: &Path, expected: &str) -> Result<(), Failure> {
     let is_file = std::fs::metadata(place).is_ok_and(|found| found.is_file());
     let there = if is_file { read_signature(place) } else { Ok(Vec::new()) };
@@ -78,7 +78,7 @@ fn read_signature(path: &Path) -> io::Result<Vec<u8>> {
     Ok(first)
 }
 
-/// Returns an error if the existing file begins differently from the new one.
+/// Returns an error if the existing file and the new file begin with different bytes.
 fn check_same_kind(place: &Path, draft: &Path) -> io::Result<()> {
     match read_signature(place) {
         Ok(there) if !there.is_empty() && there != read_signature(draft)? => {
@@ -98,7 +98,7 @@ fn write_and_sync(
     Ok(file.into_inner()?)
 }
 
-/// Returns whether two paths name the same file, which may not exist yet.
+/// Returns whether two paths name the same file. The file need not exist.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let place = |path: &Path| {
         path.canonicalize()

@@ -54,7 +54,7 @@ enum PictureFormat {
     Svg,
 }
 
-/// Maximum number of columns or rows, because a larger value is probably a typing error.
+/// Maximum number of columns or rows. A larger value is probably a typing error.
 const MAX_WINDOW_SIZE: u16 = 500;
 
 pub(super) fn parse_size(text: &str) -> Result<(u16, u16), String> {

@@ -193,7 +193,7 @@ fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
     let code =
         crate::plain::play(open_run(options, context)?, QueryLibrary::load(&context.configuration), style)
             .map_err(|error| match error.kind() {
-                // The reader of the output has gone away, as `head` does.
+                // The reader of the output closed the pipe, as `head` does.
                 ErrorKind::BrokenPipe => Failure::code_only(1),
                 _ => Failure::failed(error.to_string()),
             })?;

@@ -25,7 +25,7 @@ pub struct Options {
     /// Id of the run, or `latest` for the newest run
     run: String,
     /// One read-only statement, or the name of a query in the library
-    // A statement may begin with a comment, and so with hyphens.
+    // A statement may begin with a comment, and therefore with hyphens.
     #[arg(allow_hyphen_values = true)]
     sql: String,
     /// Include the hidden tables; for debug runs and finished runs. The inspection is recorded
@@ -97,7 +97,7 @@ fn query_hidden_tables(folder: &Path, options: &Options, context: &Context) -> R
     Ok(rows)
 }
 
-/// Queries the database of the run, which is completed on disk first if necessary. If the run is being played or the
+/// Queries the database of the run. Completes the database on disk first if necessary. If the run is being played or the
 /// folder is read-only, the database is built in memory from the trajectory.
 fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Failure> {
     if let Some(rows) = query_database_file(folder, sql, key)? {

@@ -106,7 +106,7 @@ fn containing_run_folder(path: &Path) -> Option<PathBuf> {
     Some(path).filter(is_run).or_else(|| path.parent().filter(is_run)).map(Path::to_owned)
 }
 
-/// Records in the run that the run was read.
+/// Records in the run that its data was read.
 fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
         RecordSource::Run(id) => find_run_to_read(&context.runs_folder()?, id)?,

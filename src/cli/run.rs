@@ -137,7 +137,7 @@ fn play_seeds(
                 let mut collector =
                     if wanted { MetricsCollector::new(days.clone()) } else { MetricsCollector::disabled() };
                 let outcome = play_policy(&policy, &run_spec, &configuration, &mut collector);
-                // Sending fails only if the receiver was dropped because an earlier seed failed.
+                // The send fails only if the receiver was dropped because another seed failed.
                 let _ = done.send((seed, outcome, collector));
             });
         });
@@ -148,7 +148,7 @@ fn play_seeds(
 /// Writes the results in seed order. Each result is written as soon as all results of lower seeds are written.
 ///
 /// # Errors
-/// A result cannot be written, or a seed has no result because its thread panicked.
+/// A result cannot be written, or a thread panicked before its seed had a result.
 fn write_in_order(
     results: impl IntoIterator<Item = PlayedSeed>,
     seeds: RangeInclusive<u64>,

@@ -252,7 +252,7 @@ actions! {
         NextWeek "next-week" "next week" "Review the changes, write a rationale, forecast cash, and run the week."
         Palette "palette" "palette" "Find screens, tools, groups, queries, tables and commands by name."
         Help "help" "help" "List the keys that work here, the focused pane first."
-        Changes "changes" "changes" "Show the settings changed in this week."
+        Changes "changes" "changes" "Show the settings that changed this week."
         Undo "undo" "undo" "Undo the last setting of this week; c lists the changes."
         Redo "redo" "redo" "Redo the last undone setting."
         FocusNext "focus-next" "next pane" "Move to the next pane."
@@ -264,7 +264,7 @@ actions! {
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
         Explain "explain" "explain" "Explain the selected figure or field."
-        Why "why" "why" "Show how much each cause contributed to the change of the selected figure, by simulating the week without that cause. Not in an unfinished baseline run."
+        Why "why" "why" "Show how much each cause contributed to the change in the selected figure, by simulating the week without that cause. Not in an unfinished baseline run."
         Branches "branches" "what if" "Simulate the run again with other decisions, from a week you choose. The run itself does not change. Not in an unfinished baseline run."
         Curves "curves" "participation curve" "Show the quality that a group requires at each price. Drag prices and qualities of plans to see how leads respond; the settings do not change."
         Glossary "glossary" "glossary" "Look up any term."
@@ -299,7 +299,7 @@ actions! {
     Form {
         Apply "apply" "submit" "Submit the form."
         EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
-        CopyDown "same-down" "copy down" "Copy the value to the cells below. Right after you accept a value, the accepted value is copied."
+        CopyDown "same-down" "copy down" "Copy the value to the cells below. Right after you accept a value, the key copies the accepted value."
         ClearCell "clear-cell" "0" "Clear the cell."
         ResetForm "reset-form" "reset" "Discard the draft and show the current values; press again to restore the draft."
         CopyCall "copy-call" "copy call" "Copy the tool call that the form would send."
@@ -361,7 +361,7 @@ actions! {
     NextWeek {
         NextStep "next-step" "next step" "Go to the next step; on the last one, run the week."
         PreviousStep "previous-step" "previous step" "Go back to the previous step."
-        FillNaiveForecasts "fill-naively" "fill naively" "Fill empty forecasts with naive forecasts; the record marks these forecasts. In the review, fill in everything (not in baseline runs)."
+        FillNaiveForecasts "fill-naively" "fill naively" "Fill in empty forecasts with naive forecasts, which are marked in the record. In the review, fill in everything (not in baseline runs)."
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
@@ -408,7 +408,7 @@ actions! {
         DayWeekAfter "week-after" "week later" "Show the state one week later, at most the last day; right shows the next day."
         HoldFactor "hold" "fix" "Fix the selected factor of the leads at a value and show the expected leads, or release the factor."
         TypeCommand "ask" "command" "Type a plain-mode command: find, who, diff or set. set changes a parameter of a debug run, after confirmation."
-        RunDays "run-days" "run" "Type how many days of a debug run to simulate; it stops on the first day on which a breakpoint becomes true."
+        RunDays "run-days" "run" "Type how many days of a debug run to simulate; the simulation stops on the first day on which a breakpoint becomes true."
         BreakpointHistory "look-back" "history" "Show the days on which the condition of each breakpoint became true or false."
         RemoveBreakpoint "remove-breakpoint" "remove" "Remove the selected breakpoint."
     }
@@ -449,7 +449,7 @@ actions! {
     Lesson {
         ContinueLesson "lesson-on" "continue" "Answer the open question; after the end of a part, start the next part or open the debrief."
         AnswerQuestion "answer" "guess" "Answer the question of the step."
-        NextHint "next-hint" "hint" "Show the next hint of the step; the record notes it."
+        NextHint "next-hint" "hint" "Show the next hint of the step; each shown hint is recorded."
         TryAgain "try-again" "try again" "Try the step again from its start, in a new run, after confirmation."
         NextPart "next-part" "next part" "Start the next part of the lesson after this part has ended."
         Debrief "debrief" "debrief" "Compare a finished part with the reference play and the pitfall play."
@@ -472,7 +472,7 @@ actions! {
         DecisionsInFull "decisions-whole" "in full" "Show the decisions of the week in full, with arguments, statements and results."
         DecisionsUp "decisions-up" "decisions up" "Scroll the decisions up."
         DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
-        TakeOver "take-over" "take over" "Continue from this moment in your own branch."
+        TakeOver "take-over" "take over" "Continue from this position in your own branch."
         LeavePlayback "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
     }
     Decisions {

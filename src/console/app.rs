@@ -71,7 +71,7 @@ const MAX_SCREEN_HISTORY: usize = 50;
 pub enum Order {
     /// Work for the session thread.
     Job(Job),
-    /// A question that a page asks, and whether days are being simulated. Queries do not wait for the simulation.
+    /// A question of a page. The flag is true while other work is running.
     Ask(OutgoingQuestion, bool),
     /// Stop the user's query and other running work of the user.
     CancelQuery,
@@ -156,7 +156,7 @@ pub struct Run {
     pub requested_readings: BTreeMap<Reading, Pending<Reading>>,
     /// The tour, while it is shown.
     pub tour: Option<Tour>,
-    /// Playback state, if the run is a recorded one.
+    /// Playback state, if a recorded run is being replayed.
     pub playback: Option<PlaybackViewer>,
     /// State of the lesson that the run belongs to.
     pub lesson: lesson::LessonState,

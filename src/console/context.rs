@@ -100,7 +100,7 @@ pub struct Figure {
     pub term: &'static str,
     /// Query for the source rows, if the figure has source rows.
     pub sql: Option<String>,
-    /// The weekly quantity that the figure shows and the week, if the change of the figure can be explained.
+    /// The weekly quantity that the figure shows and its week, if the change in the figure can be explained.
     pub week_quantity: Option<(WeekQuantity, u32)>,
 }
 

@@ -47,7 +47,7 @@ pub enum Effect {
     Ask(OutgoingQuestion),
     /// Record that the draft at a place of the screen was sent.
     SentText(&'static str),
-    /// Show the causes of the change of a weekly figure.
+    /// Show the causes of the change in a weekly figure.
     ShowCauses(Figure),
     /// Show the source rows of a figure.
     ShowRows(Figure),
@@ -89,7 +89,7 @@ pub enum Effect {
     Prefill {
         /// The tool whose form is shown.
         tool: ToolId,
-        /// Arguments to fill in. `Null` fills in none.
+        /// Arguments to fill in, or `Null` for none.
         arguments: Value,
     },
     /// Show the thread with a number in the inbox.

@@ -8,7 +8,7 @@ use super::math_functions::register_mathematics;
 use super::tokens::{Token, TokenKind, tokenize};
 use novamind_base::similar_names;
 
-/// Replaces an error message of the engine by an explanation with valid alternatives. Suggestions contain only names
+/// Converts an error message of the engine to an explanation with valid alternatives. Suggestions contain only names
 /// of visible tables, functions of the engine and names in the statement.
 pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     if let Some(column) = message.strip_prefix("no such column: ") {

@@ -167,8 +167,8 @@ pub(super) struct InnerViews {
 }
 
 impl InnerViews {
-    /// Returns statements that replace a view by a temporary table with the read columns, or `None` if the visible table is not a
-    /// view.
+    /// Returns statements that replace a view with a temporary table of the read columns. Returns `None` if the
+    /// visible table is not a view.
     pub fn copy_statements(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
         let table = catalogue::table(name).filter(|table| self.names.contains(&table.name))?;
         // The authorizer does not report the columns of a USING clause, which usually joins tables by customer.
@@ -206,7 +206,7 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// Replaces the views of the visible tables by temporary views with the same names. The temporary views read
+    /// Replaces the views of the visible tables with temporary views of the same names. The temporary views read
     /// copies of the original views with unpredictable names.
     ///
     /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like

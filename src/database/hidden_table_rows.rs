@@ -14,7 +14,7 @@ const MAX_FILL_TIME: Duration = Duration::from_secs(600);
 
 impl QueryConnection {
     /// Returns the hidden tables that statements name, without duplicates. If a statement does not compile, returns
-    /// the tables of the statements before it.
+    /// only the tables of the statements before the error.
     pub fn hidden_tables_in(&self, sql: &str) -> Vec<&'static Table> {
         let mut statements = self.released.statements(sql);
         let mut named = Vec::new();

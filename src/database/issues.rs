@@ -110,7 +110,7 @@ pub(super) fn write_column(
     }
 }
 
-/// Returns the age of an issue, measured with the issue clock, which advances on days on which issues are processed.
+/// Returns the age of an issue by the issue clock. The clock advances on days on which issues are processed.
 /// On each day, issues are resolved before the clock advances, and new issues are opened afterwards. `clock` contains
 /// the value after each day.
 pub(super) fn days_open(clock: &[u32], opened: u32, solved: Option<u32>) -> u32 {

@@ -18,7 +18,7 @@ use super::rows::{LAYOUT_VERSION, ProjectionEntry, RowWriter, create_tables};
 use novamind_world::events::Facts;
 use novamind_world::params::Params;
 
-/// Maximum number of queued entries, which limits memory usage. The simulation waits if the queue is full.
+/// Maximum number of queued entries, to limit memory usage. The simulation waits if the queue is full.
 const QUEUE_CAPACITY: usize = 16;
 /// Maximum number of written facts that are kept to reuse their memory: one per day of a week.
 const MAX_SPARE_FACTS: usize = 7;
@@ -186,7 +186,7 @@ impl Projector {
         QueryConnection::open(&self.location, source, scope).map_err(to_error)
     }
 
-    /// Limits the growth of the database to `more` pages, which simulates a full disk.
+    /// Limits the growth of the database to `more` pages, to simulate a full disk.
     #[cfg(any(test, feature = "test-kit"))]
     pub fn limit_pages(&self, more: Option<u32>) {
         self.send(WriterJob::Run(Box::new(move |connection| {
@@ -223,8 +223,8 @@ fn to_error(error: rusqlite::Error) -> ProjectionError {
 fn to_memory_error(error: rusqlite::Error) -> ProjectionError {
     match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DiskFull) => ProjectionError(
-            "in memory it can have at most 1 GiB; a run in a writable folder that no other program plays has it \
-             on disk"
+            "a database in memory is limited to 1 GiB; the database is on disk if the folder is writable and no \
+             other program plays the run"
                 .to_owned(),
         ),
         _ => to_error(error),

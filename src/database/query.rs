@@ -101,7 +101,7 @@ impl QueryConnection {
         let guard = Guard::with_inner_views(&connection, scope)?;
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
-        // Connect the virtual tables now, because the authorizer would reject their connection at first use.
+        // Connect the virtual tables now, because the authorizer would reject a connection at first use.
         for table in ["daily_usage", "ads_revenue", "issues", "ledger", "notifications"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }

@@ -13,11 +13,11 @@ pub(super) const STEPS_BETWEEN_CHECKS: u32 = 250;
 /// Maximum additional memory of a query in bytes. Sorting and recursion keep their rows in memory.
 const MAX_QUERY_MEMORY_BYTES: u64 = 512 << 20;
 
-/// A handle that stops a running query on request of another thread or at a limit.
+/// A handle that stops a running query at the request of another thread or at a limit.
 #[derive(Debug, Clone)]
 pub struct Interrupt(Arc<InterruptState>);
 
-/// Identifies a query from its request to its end. The caller obtains the ticket before sending the query to
+/// The identity of a query from its request to its end. The caller obtains the ticket before sending the query to
 /// another thread. A stop request before the start of the query is therefore not lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct QueryTicket(u64);

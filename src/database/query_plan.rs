@@ -35,7 +35,7 @@ pub(super) fn mask_plan(plan: &mut Vec<Vec<Cell>>, sql: &str) {
 }
 
 fn mask_detail(detail: &str, sql: &str) -> String {
-    // Remove the index string of a virtual table, which is internal.
+    // Remove the internal index string of a virtual table.
     let detail = detail.split_once(" VIRTUAL TABLE INDEX").map_or(detail, |(before, _)| before);
     let mut text = String::new();
     for word in detail.split_inclusive(|letter: char| !is_word_character(letter)) {

@@ -2,8 +2,7 @@
 //!
 //! Every statement is first compiled against these tables. Error messages and column names are taken from this
 //! compilation, so that they never contain internal names. Spellings that only ordinary tables support (`rowid`,
-//! `main.ledger`) are replaced if both spellings
-//! compile to the same program.
+//! `main.ledger`) are replaced if the replacement compiles to the same program.
 
 use std::collections::BTreeSet;
 

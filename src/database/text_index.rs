@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 /// Maximum total size in bytes of the indexes built for a statement on a table.
 const MAX_INDEX_BYTES: usize = 256 << 20;
-/// Number of lookups without an index. An index costs little more than two scans.
+/// Number of lookups without an index. Building an index costs little more than two scans.
 const LOOKUPS_BEFORE_INDEX: usize = 2;
 
 /// The hash of a row's text and the position of the row: index of the day, and position within the day.
@@ -45,7 +45,7 @@ impl TextIndex {
     }
 }
 
-/// Computes the FNV-1a hash, which distributes short texts well that differ only in numbers.
+/// Computes the FNV-1a hash. It distributes short texts well even if they differ only in numbers.
 fn hash(text: &str) -> u64 {
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))

@@ -26,7 +26,7 @@ pub struct Explanation {
     pub sections: Vec<Section>,
     /// Subjects that are related to the explained subject.
     pub related: Vec<Subject>,
-    /// Screens and dialogs that show the subject, by action name.
+    /// Action names of the screens and dialogs that show the subject.
     pub places: &'static [String],
 }
 

@@ -34,7 +34,7 @@ pub struct Term {
     /// IDs of related terms.
     #[serde(default)]
     pub see: Vec<String>,
-    /// Screens and dialogs that show the term, by action name.
+    /// Action names of the screens and dialogs that show the term.
     #[serde(default)]
     pub places: Vec<String>,
     /// Tools that set or return the figure.
@@ -65,7 +65,7 @@ pub fn term(id: &str) -> Option<&'static Term> {
     TERMS.iter().find(|term| term.id == id)
 }
 
-/// Returns the terms that a screen or dialog shows, by action name.
+/// Returns the terms that are shown on the screen or dialog with this action name.
 pub fn terms_shown_on(place: &str) -> impl Iterator<Item = &'static Term> {
     TERMS.iter().filter(move |term| term.places.iter().any(|text| text == place))
 }

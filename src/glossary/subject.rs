@@ -99,7 +99,7 @@ pub fn find_subject(words: &str) -> Result<Subject, Vec<&'static str>> {
 
 /// Returns the tool whose result contains a field of this name, because the manual of the tool describes the field.
 fn tool_with_result_field(field: &str) -> Option<Subject> {
-    // A single word is more likely to name a type than a field.
+    // A name without an underscore is more likely to be a type than a field.
     if !field.contains('_') && field != "description" {
         return None;
     }

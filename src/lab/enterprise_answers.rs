@@ -31,7 +31,7 @@ pub struct EnterpriseRule {
 pub struct OfferRule {
     /// Offered plan.
     pub plan: Plan,
-    /// Price before the factor, $ per month and seat.
+    /// Price before the factor, $ per seat per month.
     pub price: f64,
 }
 
@@ -41,7 +41,7 @@ pub struct OfferRule {
 pub struct PriceFactor {
     /// Price factor of the first offer.
     pub start: f64,
-    /// Change of the factor with each further offer.
+    /// Change in the factor with each further offer.
     pub step: f64,
     /// Minimum price factor.
     pub floor: f64,

@@ -252,7 +252,7 @@ impl GoldenComparison {
             let (mean, error, value) = (worst.reference.mean, worst.standard_error(), worst.measured.mean);
             let place = format!("{} day {}", worst.group, worst.day);
             Some(format!(
-                "{figure:<32} {:>3} cells  median z {middle:>6.2}  worst {:>6.2} ({}: {mean:.4} \u{b1} {error:.4}, ours {value:.4})",
+                "{figure:<32} {:>3} cells  median z {middle:>6.2}  worst {:>6.2} ({}: {mean:.4} \u{b1} {error:.4}, measured {value:.4})",
                 cells.len(),
                 worst.z,
                 place.trim_start()

@@ -119,7 +119,7 @@ fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Pars
     if let Some(named) = std::iter::once(why).chain(numbers).find(|argument| argument.key.is_some()) {
         return Err(wrong(
             named.column,
-            "next takes no named arguments; write next \"WHY\" and twelve numbers".to_owned(),
+            "next takes no named arguments. Type: next \"WHY\" and twelve numbers".to_owned(),
         ));
     }
     if numbers.len() != 12 {
@@ -150,7 +150,7 @@ pub fn advance_week(session: &mut Session, filing: NextWeekInput) -> CommandResp
                 .lesson()
                 .is_some_and(|lesson_progress| lesson_progress.access().uses_naive_forecasts());
             let form = if fills { "next \"WHY\"" } else { "next \"WHY\" naive" };
-            let message = format!("{}; write {form}; help next explains more", refusal.message);
+            let message = format!("{}. Type: {form}. For help, type: help next", refusal.message);
             CommandResponse::rejected("next", Rejection { message, ..refusal })
         }
         Err(refusal) => CommandResponse::rejected("next", refusal),

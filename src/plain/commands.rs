@@ -58,12 +58,12 @@ const COMMANDS: &[(&str, &str)] = &[
     ("status", "status                   show run, day, cash, runway, subscribers and waiting threads"),
     (
         "inbox",
-        "inbox [all] [where …]    list threads that wait for an answer; inbox NUMBER shows the thread of one enterprise",
+        "inbox [all] [where …]    list threads that wait for an answer; with the NUMBER of an enterprise, show its thread",
     ),
     ("thread", "thread NUMBER            show one thread, turn by turn"),
     (
         "rules",
-        "rules [send] RULES       preview the replies of rules to waiting threads; with send, send them",
+        "rules [send] RULES       preview the replies of rules to waiting threads; with send, send the replies",
     ),
     (
         "needs",
@@ -468,14 +468,13 @@ fn unknown_command(word: &str, column: usize) -> ParseError {
     let name = word.rsplit('.').next().unwrap_or(word);
     if novamind_tools::find(name).is_some_and(|tool| tool.spec().kind == ToolKind::Time) {
         let text = format!(
-            "{word} is not a command in plain mode; next \"WHY\" naive simulates a week, and help next \
-             explains more"
+            "{word} is not a command in plain mode. To simulate a week, type: next \"WHY\" naive. For help, type: help next"
         );
         return ParseError { text, column };
     }
     let near = similar_names(name, commands.chain(tools));
     let help = if near.is_empty() {
-        "; help lists all commands".to_owned()
+        "; type help to list all commands".to_owned()
     } else {
         format!("; did you mean {}?", near.join(" or "))
     };

@@ -38,7 +38,7 @@ impl EndReason {
         }
     }
 
-    /// Returns the cause that the record stores for this reason.
+    /// Returns the cause that is recorded for this reason.
     pub fn leaving_cause(self) -> DetachCause {
         match self {
             EndReason::Quit | EndReason::RunOver => DetachCause::Quit,

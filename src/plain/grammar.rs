@@ -89,7 +89,7 @@ pub fn sql_statement(rest: &str) -> String {
 }
 
 /// Combines arguments into the argument object of a tool. A single unnamed object is returned unchanged. Any other
-/// single unnamed value becomes the argument `only_required`.
+/// single unnamed value becomes the value of the argument `only_required`.
 pub fn arguments_to_object(arguments: &[Argument], only_required: Option<&str>) -> Result<Value, ParseError> {
     if let [Argument { key: None, value: Value::Object(map), .. }] = arguments {
         return Ok(Value::Object(map.clone()));

@@ -73,7 +73,7 @@ fn run_dialogue(
         .session
         .activity()
         .detach(end.as_ref().map_or(DetachCause::Hangup, |end| end.leaving_cause()));
-    // Every confirmed change is already on disk. Only derived rows can be missing, which the program can rebuild.
+    // Every confirmed change is already on disk. Only derived rows can be missing, and the program can rebuild them.
     let _ = interpreter.session.save();
     let end = end?;
     if end == EndReason::Withdrawn {

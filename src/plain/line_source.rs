@@ -50,7 +50,7 @@ impl LineSource {
         self.watch.clone()
     }
 
-    /// Returns the reason for which the session ends when no more lines are available.
+    /// Returns the reason why the session ends when no more lines are available.
     pub fn end_reason(&self) -> EndReason {
         self.watch.caught_signal().map_or(EndReason::EndOfInput, EndReason::Signal)
     }

@@ -64,9 +64,10 @@ pub fn run_participant_session(
 const TEXT_COLUMNS: usize = 78;
 
 /// Explanation of how to leave or interrupt a run of a study.
-const LEAVE_HELP: &str = "quit leaves the run; everything confirmed is saved.\n\
-                        withdraw erases everything you did in this study. Both also work at questions.\n\
-                        pause stops the clock for a break, resume restarts it.";
+const LEAVE_HELP: &str = "quit: leave the run; everything confirmed is saved.\n\
+                        withdraw: erase everything you did in this study.\n\
+                        quit and withdraw also work at questions.\n\
+                        pause: stop the clock for a break. resume: restart the clock.";
 
 struct SessionHost<'a> {
     lines: LineSource,
@@ -110,7 +111,7 @@ impl SessionHost<'_> {
                     visit.record_finished();
                     self.show_text(
                         "thanks",
-                        "Thank you. Everything is recorded; please tell the experimenter.",
+                        "Thank you. Everything is recorded. Please tell the experimenter that you have finished.",
                     )?;
                     return Ok(0);
                 }
@@ -122,7 +123,7 @@ impl SessionHost<'_> {
     fn ask_label(&mut self, study: Study, runs: &Path) -> Result<ParticipantSession, SessionStop> {
         let mut refused = 0;
         loop {
-            let label = self.ask_line("label", "Your label (quit leaves):")?;
+            let label = self.ask_line("label", "Your label (or quit to leave):")?;
             if is_quit(&label) {
                 return Err(SessionStop::Left(0));
             }
@@ -166,7 +167,7 @@ impl SessionHost<'_> {
         may_pass: bool,
     ) -> Result<(), SessionStop> {
         if may_pass {
-            let question = "Type practice to practice first, skip to start the session";
+            let question = "Type practice to practice first, or skip to start the session";
             match self.ask_choice(visit, "practice", question, ["practice", "skip"])? {
                 None => return Ok(()),
                 Some("practice") => {}
@@ -178,7 +179,7 @@ impl SessionHost<'_> {
         }
         let first = if unfinished.is_some() { "The practice continues" } else { "The practice starts" };
         let text = format!(
-            "{first}. It uses a separate company and does not count. It ends after its last day.\n{LEAVE_HELP}"
+            "{first}. The practice uses a separate company and does not count. It ends after the last day.\n{LEAVE_HELP}"
         );
         self.show_text("practice", &text)?;
         let session = self.open_or_create_run(visit, true, unfinished.as_deref())?;
@@ -193,7 +194,8 @@ impl SessionHost<'_> {
         question: &str,
         words: [&'static str; 2],
     ) -> Result<Option<&'static str>, SessionStop> {
-        let question = format!("{question} (quit leaves, withdraw erases your runs of this study):");
+        let question =
+            format!("{question} (or type quit to leave, withdraw to erase your runs of this study):");
         loop {
             let typed = self.ask_line(event, &question)?.trim().to_lowercase();
             if let Some(word) = words.into_iter().find(|word| *word == typed) {

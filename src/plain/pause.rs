@@ -22,7 +22,7 @@ impl Interpreter {
     pub(super) fn pause(&mut self, reason: &str) -> CommandResponse {
         match self.session.activity().stop_clock(Some(reason)) {
             Ok(()) => {
-                let text = "the clock is stopped; resume restarts it".to_owned();
+                let text = "the clock is stopped. To restart it, type: resume".to_owned();
                 CommandResponse::success("pause", text, json!({ "stopped": true }))
             }
             Err(refusal) => CommandResponse::rejected("pause", refusal),
@@ -33,7 +33,7 @@ impl Interpreter {
     pub(super) fn resume(&mut self, code: &str) -> CommandResponse {
         let right = self.code_check.as_ref().is_none_or(|check| check(code));
         if self.session.log().is_stopped_by_limit() && !right {
-            let text = "the time limit is reached; the experimenter restarts the clock with resume CODE";
+            let text = "the time limit is reached. To restart the clock, the experimenter types: resume CODE";
             return CommandResponse::rejected("resume", Rejection::new("code_needed", text));
         }
         match self.session.activity().start_clock() {
@@ -54,7 +54,7 @@ impl Interpreter {
         if !self.session.log().is_clock_stopped() || ALLOWED_WHILE_PAUSED.contains(&word.as_str()) {
             return None;
         }
-        let text = "the clock is stopped: type resume to restart it; help and quit work, too";
+        let text = "the clock is stopped. To restart it, type: resume. The commands help and quit also work";
         Some(CommandResponse::rejected(word, Rejection::new("clock_stopped", text)))
     }
 
@@ -84,7 +84,7 @@ impl Interpreter {
                 let stopped = self.session.activity().stop_clock(Some(TIME_LIMIT_RATIONALE));
                 let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
                 let stopped = stopped.map_or("", |()| "; the clock is stopped");
-                vec![tell(&format!("{stopped}; {rest} restarts it"))]
+                vec![tell(&format!("{stopped}; to restart the clock, type: {rest}"))]
             }
         }
     }
@@ -121,7 +121,7 @@ impl Interpreter {
         // The clock may already be stopped.
         let _ = self.session.activity().stop_clock(Some(TIME_LIMIT_RATIONALE));
         let rest = if self.code_check.is_some() { "resume CODE" } else { "resume" };
-        let text = format!("a time limit has stopped the clock; {rest} restarts it");
+        let text = format!("a time limit has stopped the clock. To restart it, type: {rest}");
         Some(CommandResponse::success("limit", text, json!({ "stopped": true })))
     }
 }

@@ -82,7 +82,7 @@ fn ask_question(
     }
 }
 
-/// Prints why a line is not a valid answer.
+/// Prints the reason why a line is not a valid answer.
 fn show_invalid_answer(due: &DueQuestion, problem: &str, style: OutputStyle) -> io::Result<()> {
     if style.json {
         println!("{}", json!({ "event": "question_refused", "id": due.question.id, "error": problem }));
@@ -113,7 +113,7 @@ fn show_question(due: &DueQuestion, style: OutputStyle) -> io::Result<()> {
         }
         let pass = if question.required { "" } else { ", or an empty line to skip" };
         println!(
-            "type {}{pass}; quit leaves, withdraw erases your runs of this study",
+            "type {}{pass}; or type quit to leave, withdraw to erase your runs of this study",
             describe_expected_answer(&question.form)
         );
     }

@@ -1,5 +1,5 @@
-//! Handles ctrl-c and termination signals. A signal cancels a query or a simulation, waits for the end of a week, and
-//! leaves a prompt immediately.
+//! Handles ctrl-c and termination signals. A signal cancels a query or a simulation, and ends a prompt immediately. A
+//! running week is simulated to its end first.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -96,7 +96,7 @@ impl SignalWatch {
         self.state().phase = phase;
     }
 
-    /// Sets the activity to waiting for a line. Returns false if a signal arrived before, because the wait would not end.
+    /// Sets the activity to waiting for a line. Returns false if a signal has already arrived, because the wait would not end.
     pub fn enter_prompt(&self) -> bool {
         let mut state = self.state();
         let waits = state.caught.is_none();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 
-/// Current moment of the scripted clock, in nanoseconds since 1970; 0 if no scripted clock is active.
+/// Current time of the scripted clock, in nanoseconds since the Unix epoch; 0 if no scripted clock is active.
 static SCRIPTED_MOMENT: AtomicI64 = AtomicI64::new(0);
 
 /// A clock that a script controls. The scripted clock replaces the wall clock and the monotonic clock of the whole
@@ -19,7 +19,7 @@ static SCRIPTED_MOMENT: AtomicI64 = AtomicI64::new(0);
 pub struct ScriptedClock(());
 
 impl ScriptedClock {
-    /// Starts the scripted clock at a moment, in nanoseconds since 1970.
+    /// Starts the scripted clock at a time, in nanoseconds since the Unix epoch.
     pub fn start(moment: i64) -> ScriptedClock {
         SCRIPTED_MOMENT.store(moment, Ordering::SeqCst);
         ScriptedClock(())
@@ -30,7 +30,7 @@ impl ScriptedClock {
         SCRIPTED_MOMENT.fetch_add(i64::try_from(time.as_nanos()).unwrap_or(0), Ordering::SeqCst);
     }
 
-    /// Returns the current moment of the scripted clock, in nanoseconds since 1970.
+    /// Returns the current time of the scripted clock, in nanoseconds since the Unix epoch.
     pub fn moment(&self) -> i64 {
         SCRIPTED_MOMENT.load(Ordering::SeqCst)
     }
@@ -40,7 +40,7 @@ fn scripted_moment() -> Option<i64> {
     Some(SCRIPTED_MOMENT.load(Ordering::SeqCst)).filter(|moment| *moment != 0)
 }
 
-/// Returns the current moment in RFC 3339.
+/// Returns the current time as an RFC 3339 timestamp.
 pub fn now() -> String {
     match scripted_moment() {
         Some(moment) => format_moment(moment),
@@ -48,30 +48,31 @@ pub fn now() -> String {
     }
 }
 
-/// Returns the monotonic time since a fixed moment of this process.
+/// Returns the monotonic time since a fixed point in the life of this process.
 pub fn monotonic_time() -> Duration {
     static START: OnceLock<Instant> = OnceLock::new();
     scripted_monotonic_time().unwrap_or_else(|| START.get_or_init(Instant::now).elapsed())
 }
 
-/// Returns the time since 1970 on the scripted clock, or `None` if no scripted clock is active.
+/// Returns the time since the Unix epoch on the scripted clock, or `None` if no scripted clock is active.
 pub fn scripted_monotonic_time() -> Option<Duration> {
     scripted_moment().map(|moment| Duration::from_nanos(moment.unsigned_abs()))
 }
 
-/// Formats a moment, in nanoseconds since 1970, as RFC 3339.
+/// Formats a time, in nanoseconds since the Unix epoch, as an RFC 3339 timestamp.
 pub fn format_moment(nanoseconds: i64) -> String {
     let moment = OffsetDateTime::from_unix_timestamp_nanos(i128::from(nanoseconds)).ok();
     moment.and_then(|moment| moment.format(&Rfc3339).ok()).unwrap_or_default()
 }
 
-/// Converts the RFC 3339 moment of a line to nanoseconds since 1970. Returns 0 if the moment cannot be parsed.
+/// Converts the RFC 3339 timestamp of a line to nanoseconds since the Unix epoch. Returns 0 if the timestamp is
+/// invalid.
 pub fn parse_nanoseconds(at: &str) -> i64 {
     let moment = OffsetDateTime::parse(at, &Rfc3339).map_or(0, OffsetDateTime::unix_timestamp_nanos);
     i64::try_from(moment).unwrap_or(0)
 }
 
-/// Converts the RFC 3339 moment of a line to seconds since 1970. Returns 0 if the moment cannot be parsed.
+/// Converts the RFC 3339 timestamp of a line to seconds since the Unix epoch. Returns 0 if the timestamp is invalid.
 pub fn parse_seconds(at: &str) -> f64 {
     OffsetDateTime::parse(at, &Rfc3339).map_or(0.0, |moment| moment.unix_timestamp_nanos() as f64 / 1e9)
 }

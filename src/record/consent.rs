@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct Consent {
     /// BLAKE3 digest of the consent text, in hexadecimal digits.
     pub digest: String,
-    /// Moment of the agreement, RFC 3339.
+    /// Time of the agreement, RFC 3339.
     pub at: String,
     /// Circumstances of the agreement; `None` in runs of format 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -83,12 +83,12 @@ impl ConsentText {
 pub struct ConsentAgreement {
     /// Circumstances of the agreement.
     pub given: ConsentDetails,
-    /// Moment of the agreement, RFC 3339.
+    /// Time of the agreement, RFC 3339.
     pub at: String,
 }
 
 impl ConsentDetails {
-    /// Returns an agreement with these circumstances and the current moment.
+    /// Returns an agreement with these circumstances at the current time.
     pub fn agree_now(self) -> ConsentAgreement {
         ConsentAgreement { given: self, at: now() }
     }

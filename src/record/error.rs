@@ -179,8 +179,8 @@ pub enum RunError {
 fn describe_saved_copy(kept: &Result<PathBuf, String>) -> String {
     match kept {
         Ok(file) => format!(
-            "All confirmed lines are in {}. Quit the program. If trajectory.jsonl is gone, rename this file to it and open \
-            the run again; if it exists, keep both files and inform the experimenter",
+            "All confirmed lines are in {}. Quit the program. If trajectory.jsonl no longer exists, rename this copy to \
+             trajectory.jsonl and open the run again; otherwise, keep both files and inform the experimenter",
             file.display()
         ),
         Err(problem) if problem.is_empty() => {

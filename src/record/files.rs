@@ -1,6 +1,6 @@
 //! File operations that survive a power cut. A file is safe only after its content and its directory entry are synced.
 //!
-//! The `open_regular_file` functions reject other files: opening a pipe would block the program.
+//! The `open_regular_file` functions reject pipes and devices, because opening a pipe would block the program.
 
 use std::fs::File;
 use std::io::{self, Read, Write};

@@ -80,7 +80,7 @@ pub struct TimeLimits {
     /// Limit for all sessions together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study_minutes: Option<u32>,
-    /// Minutes before a limit when the participant is warned.
+    /// Number of minutes before a limit at which the participant is warned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warning_minutes: Option<u32>,
     /// Action when a limit is reached.

@@ -51,7 +51,7 @@ pub struct EarlierRun {
     pub seed: u64,
     /// Name of the scenario of the earlier run.
     pub scenario: String,
-    /// Moment at which the earlier run was created, RFC 3339.
+    /// Time at which the earlier run was created, RFC 3339.
     pub created: String,
 }
 

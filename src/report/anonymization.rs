@@ -70,9 +70,9 @@ pub struct Anonymizer {
     texts: TextHandling,
     /// Columns to omit in addition to `IDENTIFYING_COLUMNS`.
     omitted_columns: Vec<String>,
-    /// Start of each run, in nanoseconds since 1970.
+    /// Start of each run, in nanoseconds since the Unix epoch.
     run_starts: BTreeMap<String, i64>,
-    /// First use of each label, in nanoseconds since 1970.
+    /// First use of each label, in nanoseconds since the Unix epoch.
     first_visits: BTreeMap<String, i64>,
 }
 
@@ -297,7 +297,8 @@ fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
     of("kind") == "call" && of("value") == "accepted" && begins
 }
 
-/// Returns the seconds from `began`, in nanoseconds since 1970, to `at`. Returns an empty text if `began` is `None`.
+/// Returns the number of seconds from `began` to `at` as text. `began` is in nanoseconds since the Unix epoch. Returns
+/// an empty text if `began` is `None`.
 fn seconds_between(began: Option<&i64>, at: &str) -> String {
     began.map_or(String::new(), |began| {
         let passed = novamind_record::clock::parse_nanoseconds(at) - began;

@@ -19,7 +19,7 @@ pub struct CollectOptions<'a> {
     pub sources: &'a [PathBuf],
     /// Folder to which the archives are written.
     pub output_folder: &'a Path,
-    /// The study, which assigns participants to arms.
+    /// The study that is collected; `None` to collect runs without a study definition.
     pub study: Option<&'a Study>,
     /// Labels that replace the recorded labels, by run.
     pub labels: &'a BTreeMap<String, String>,
@@ -117,9 +117,10 @@ pub fn collect(
     }
     archive_conflicts(&conflicts, out, keys, &mut notes)?;
     for id in conflicts.keys() {
-        collected
-            .tables
-            .add_unreadable_run(id, "two records contradict each other; both are kept in conflicts");
+        collected.tables.add_unreadable_run(
+            id,
+            "two records contradict each other; both are stored in the folder conflicts",
+        );
     }
     let known: BTreeSet<&String> = runs.iter().map(|run| &run.manifest.id).chain(conflicts.keys()).collect();
     let unknown = labels.keys().filter(|run| !known.contains(run));

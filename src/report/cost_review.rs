@@ -4,7 +4,7 @@ use super::formatting::{format_money, pluralize};
 use novamind_base::formatting::{dollars, price_to_cents, signed_dollars};
 use novamind_session::{IdenticalPlans, Observation, Preview};
 
-/// Describes income, committed costs and runway before the next week, line by line.
+/// Describes income, committed costs and runway before the next week, one line per topic.
 pub fn money_lines(seen: &Observation) -> Vec<String> {
     let (pace, now) = (seen.pace, seen.pace.committed);
     let change = now - seen.committed_before;

@@ -4,7 +4,7 @@ use novamind_base::formatting::{dollars_and_cents, percent, price_to_cents};
 use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Plan};
 
-/// Number of points of the curve for each row of the table.
+/// Number of curve points per table row.
 const POINTS_PER_ROW: usize = 6;
 
 const UNREACHABLE: &str = "–";
@@ -26,7 +26,7 @@ pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
     names[..shown].iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Returns the qualities that 10%, 50% and 90% of the leads accept, in a row for each of several prices.
+/// Returns a table row for each displayed price: the price, and the qualities that 10%, 50% and 90% of the leads accept.
 pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     let row = |point: &CurvePoint| {
         let (least, most) = point.median_range;

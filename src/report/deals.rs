@@ -9,7 +9,8 @@ use novamind_tools::ToolId;
 
 const MAX_LISTED_DEALS: usize = 3;
 
-/// Describes the deals in the arguments of a tool call. Returns `None` if the tool has no deals or the arguments contain none.
+/// Describes the deals in the arguments of a tool call. Returns `None` if the tool has no deals, or if the arguments
+/// contain no deals.
 pub fn describe_deals(tool: ToolId, arguments: &Value, names: &EnterpriseNames) -> Option<String> {
     if !matches!(tool, ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal) {
         return None;

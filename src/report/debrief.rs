@@ -1,4 +1,4 @@
-//! Formats the debrief of a lesson as text and as a page.
+//! Formats the debrief of a lesson as text or as a page.
 
 use serde_json::Value;
 

@@ -7,7 +7,8 @@ use novamind_record::figures::WeekFigures;
 use novamind_session::{Decisions, JournalEntry, SettingChange, week_of_day};
 use novamind_tools::ToolId;
 
-/// Consecutive weeks with the same decisions: the player decided before the first week and changed nothing before the others.
+/// Consecutive weeks with the same decisions: the player decided before the first week and changed nothing before the
+/// following weeks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionPeriod {
     /// Number of the first week.
@@ -26,7 +27,7 @@ pub struct DecisionPeriod {
     pub actions: Vec<String>,
     /// Cash at the end of the period, dollars.
     pub cash: f64,
-    /// Change of cash over the period, dollars.
+    /// Change in cash over the period, dollars.
     pub cash_change: f64,
 }
 
@@ -124,7 +125,7 @@ fn rationale_first_line(entry: &JournalEntry) -> Option<String> {
     }
 }
 
-/// Lists purchases, offers and posts with their texts. Repeated actions are listed once, with their number.
+/// Lists purchases, offers and posts with their texts. Repeated actions are listed once, with a count.
 fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
     let posts = entries.iter().filter_map(|entry| match entry {
         JournalEntry::Call { tool, args, .. } if *tool == ToolId::PostSocialMedia => {

@@ -11,19 +11,19 @@ pub struct FigureChange {
     pub unusualness: f64,
     /// Size of the figure's random variation.
     pub noise: f64,
-    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was.
+    /// Number of weeks since a change in this direction was at least as large; `None` if no earlier change was as large.
     pub weeks_since_larger: Option<usize>,
     /// Number of earlier weekly changes.
     pub earlier_changes: usize,
 }
 
-/// Minimum number of earlier changes with which a change can be compared.
+/// Minimum number of earlier changes for a comparison.
 const MIN_EARLIER_CHANGES: usize = 4;
 /// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
 const MAD_TO_STD: f64 = 1.4826;
 
 impl FigureChange {
-    /// Returns the size of the change relative to the larger of both values.
+    /// Returns the size of the change relative to the larger of the two values.
     pub fn relative_size(&self) -> f64 {
         (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
     }

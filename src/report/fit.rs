@@ -101,14 +101,14 @@ pub struct PlanFit {
     pub plan: Plan,
     /// List price, dollars a month; 0 if the plan is not on sale.
     pub list_price: f64,
-    /// List price less the promotion for leads of all channels. Leads compare this price with their budget.
+    /// List price less the promotion for leads from all channels. Leads compare this price with their budget.
     /// Enterprises negotiate their price.
     pub lead_price: f64,
     /// List price less the current promotion. Subscribers are billed this price.
     pub billed_price: f64,
     /// Quality that the plan delivers to the group.
     pub quality: f64,
-    /// Quota of the plan, units a day for each customer.
+    /// Quota of the plan, units per customer per day.
     pub quota: f64,
 }
 
@@ -140,9 +140,9 @@ pub struct Fit {
     pub age_days: u32,
     /// Mean required quality of the group at low prices. Required quality rises with the price.
     pub floor: TrueValueRange,
-    /// Mean budget of a customer, dollars a month; for enterprises, dollars a month and seat.
+    /// Mean budget: dollars per month for individuals, dollars per seat per month for enterprises.
     pub budget: TrueValueRange,
-    /// Mean usage of a customer, units a day; for enterprises, usage of the smallest enterprise.
+    /// Mean usage of an individual, or usage of the smallest enterprise, units a day.
     pub usage: TrueValueRange,
     /// The plans that are compared with the group's requirements.
     pub plans: ByPlan<PlanFit>,

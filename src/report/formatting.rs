@@ -11,7 +11,7 @@ pub fn format_money(value: f64) -> String {
     format!("{sign}${}", grouped_number(value.abs(), 0))
 }
 
-/// Describes the last change of cash and its period: `+$1,234 over the last week`.
+/// Describes the last change in cash and its period: `+$1,234 over the last week`.
 pub fn describe_cash_change(seen: &Observation) -> String {
     let span = match seen.cash_change_days {
         0 | 7 => "week".to_owned(),
@@ -36,9 +36,9 @@ pub fn describe_first_change(change: &FirstChange) -> String {
     format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })
 }
 
-/// Describes the lengths of two compared weeks if the lengths differ: `of 3 days, the week before of 7`.
+/// Describes the lengths of two compared weeks if the lengths differ: `of 3 days, the previous week of 7`.
 pub fn describe_short_week(days: u32, before: u32) -> Option<String> {
-    (days != before).then(|| format!("of {}, the week before of {before}", pluralize(days, "day")))
+    (days != before).then(|| format!("of {}, the previous week of {before}", pluralize(days, "day")))
 }
 
 /// Returns the display name of a ledger category.
@@ -59,7 +59,7 @@ pub fn category_name(category: Category) -> &'static str {
     }
 }
 
-/// Formats a whole number.
+/// Formats a number rounded to a whole number.
 pub fn format_whole(value: f64) -> String {
     grouped_number(value + 0.0, 0)
 }

@@ -1,4 +1,4 @@
-//! Sales funnel of enterprises: number of enterprises by group that arrived, requested an offer and signed.
+//! Sales funnel of enterprises: number of enterprises in each group that arrived, requested an offer and signed.
 
 use super::fit::{RangePosition, TrueValueRange};
 use super::formatting::{format_whole, pluralize};

@@ -1,11 +1,12 @@
-//! Cost per lead by channel and group: the last four weeks compared with the four consecutive earlier weeks of the lowest cost.
+//! Cost per lead by channel and group: the last four weeks compared with the four consecutive earlier weeks with the
+//! lowest cost.
 
 use novamind_session::identifiers::{ByGroup, Channel, Group};
 use novamind_session::{GroupWeek, PaidLeads};
 
 /// Number of weeks over which the cost per lead is computed. A single week has too few leads for a comparison.
 pub const WINDOW_WEEKS: usize = 4;
-/// Minimum number of leads in four weeks whose cost per lead is compared.
+/// Minimum number of leads in four weeks for a comparison of the cost per lead.
 pub const MIN_LEADS: f64 = 20.0;
 /// Minimum ratio of the current to the lowest cost per lead that counts as a rise.
 pub const MIN_RISE_FACTOR: f64 = 2.0;
@@ -32,7 +33,8 @@ pub struct LeadCost {
     pub group: Group,
     /// Results of the last four weeks.
     pub recent: AdWindow,
-    /// Results of the four consecutive earlier weeks with the lowest cost per lead. `None` if no four weeks had enough leads.
+    /// Results of the four consecutive earlier weeks with the lowest cost per lead. `None` if no four consecutive
+    /// weeks had enough leads.
     pub cheapest: Option<AdWindow>,
 }
 
@@ -68,7 +70,7 @@ impl AdWindow {
 
 impl LeadCost {
     /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is too small, or if
-    /// the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost, so that chance cannot be ruled out.
+    /// the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost: a difference in so few leads can be random.
     /// If there are no leads, the whole spending counts as the cost of one lead.
     pub fn cost_rise(&self) -> Option<f64> {
         let before = self.cheapest?.cost_per_lead()?;

@@ -112,7 +112,7 @@ fn curve_values(curve: &Curve) -> Vec<f64> {
 }
 
 /// Draws values as one row of bars, scaled from the smallest to the largest value. If no value is positive, the
-/// amounts are drawn.
+/// absolute values are drawn.
 fn sparkline(values: &[f64]) -> String {
     let is_cost = values.iter().all(|value| *value <= 0.0);
     let sizes: Vec<f64> =

@@ -121,14 +121,14 @@ pub struct BestTriedChannelSpend {
 }
 
 impl BestTriedChannelSpend {
-    /// Returns the mean number of channels with spending over the advertised groups.
+    /// Returns the number of channels with spending, averaged over the advertised groups.
     pub fn mean_channels_tried(&self) -> f64 {
         let tried: usize = self.groups.iter().map(|group| group.tried).sum();
         tried as f64 / self.groups.len().max(1) as f64
     }
 }
 
-/// Returns the share of advertising spending on the channel of each group with the most leads per dollar. A group
+/// Returns the share of advertising spending on each group's best channel, which has the most leads per dollar. A group
 /// counts if at least two channels have spending and the best channel has enough leads.
 pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<BestTriedChannelSpend> {
     let names: BTreeSet<&str> =
@@ -312,7 +312,7 @@ impl WordCounts {
 }
 
 /// Returns the sentences of a text that contain a planning word, in order. A sentence ends at a full stop, question
-/// mark or exclamation mark before a blank, at a semicolon, or at the end of its line.
+/// mark or exclamation mark followed by a space, at a semicolon, or at the end of a line.
 pub fn planning_sentences(text: &str) -> Vec<String> {
     let mut sentences = Vec::new();
     for line in text.lines() {

@@ -43,7 +43,7 @@ impl OpponentResult {
         if self.is_bankrupt { 0.0 } else { self.cash }
     }
 
-    /// Describes the final cash of the policy, or the reason why it ended early.
+    /// Describes the final cash of the policy, or the reason why the policy ended early.
     pub fn describe(&self) -> String {
         match &self.stopped {
             Some(why) => format!("{} when it stopped on day {}: {why}", dollars(self.cash), self.day),

@@ -64,8 +64,8 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // The runway is computed from the current settings and the income and usage of recent weeks, not from the cash
-    // change since the start.
+    // The runway follows from the current settings and from the income and usage of recent weeks. It does not follow
+    // from the cash change since the start.
     let runway = match (seen.ended, seen.whole_runway_weeks()) {
         (Some(_), _) => String::new(),
         (None, None) => "at current costs and income, cash lasts to the last day".to_owned(),
@@ -273,7 +273,7 @@ fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
                 .and_then(|skill| skill.share)
                 .map_or_else(none, |share| percent(share, 0)),
             format!(
-                "of spending on groups with two paid channels and at least {MIN_CHANNEL_LEADS} leads from the best"
+                "of spending on groups with two paid channels and at least {MIN_CHANNEL_LEADS} leads from the best channel"
             ),
         ),
         NamedValue::new(
@@ -319,8 +319,7 @@ fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
             rows: skill.groups.iter().map(row).collect(),
         }));
         blocks.push(Block::Note(format!(
-            "The best channel has the most leads per dollar among the paid channels. None is named if \
-                 only one was paid, or if the best brought fewer than {MIN_CHANNEL_LEADS} leads."
+            "The best channel has the most leads per dollar among the paid channels. No channel is named if only one was paid, or if the best one brought fewer than {MIN_CHANNEL_LEADS} leads."
         )));
     }
     if !measures.tools.tools.is_empty() {

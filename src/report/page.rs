@@ -70,7 +70,7 @@ impl NamedValue {
 pub struct Table {
     /// Heading of each column, and whether the column is numeric.
     pub columns: Vec<(&'static str, bool)>,
-    /// Cells of the table by row.
+    /// Rows of the table, each with its cells.
     pub rows: Vec<Vec<String>>,
 }
 
@@ -114,7 +114,7 @@ pub enum Plot {
         /// Shaded interval, if any.
         band: Option<Band>,
     },
-    /// Stacked bars. Positive values are stacked upwards, negative values downwards.
+    /// Stacked bars. Positive values are stacked upwards, and negative values are stacked downwards.
     Stacks {
         /// Position of each bar on the horizontal axis.
         positions: Vec<f64>,

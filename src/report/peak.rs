@@ -10,7 +10,7 @@ use novamind_record::figures::WeekFigures;
 pub struct PeakProjection {
     /// Usage of the busiest day of the last week, units.
     pub peak_usage: f64,
-    /// Ratio of `peak_usage` to the busiest day of the week before.
+    /// Ratio of `peak_usage` to the usage on the busiest day of the week before.
     pub growth: f64,
 }
 

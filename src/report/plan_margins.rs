@@ -54,17 +54,17 @@ impl PlanUsage {
         }
     }
 
-    /// Returns the usage in units a day and seat, or `None` without measured usage.
+    /// Returns the usage in units per seat per day, or `None` without measured usage.
     pub fn units_per_seat(&self) -> Option<f64> {
         (self.measured_seats > 0.0).then(|| self.measured_units / self.measured_seats)
     }
 
-    /// Returns the compute cost in dollars a month and seat. `unit_cost` is in dollars a unit.
+    /// Returns the compute cost in dollars per seat per month. `unit_cost` is in dollars a unit.
     pub fn compute_cost(&self, unit_cost: f64) -> Option<f64> {
         self.units_per_seat().map(|usage| usage * DAYS_PER_MONTH * unit_cost)
     }
 
-    /// Returns the revenue in dollars a month and seat. Only subscriptions with measured usage count, or all
+    /// Returns the revenue in dollars per seat per month. Only subscriptions with measured usage count, or all
     /// subscriptions if no usage was measured.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         match self.measured_seats > 0.0 {
@@ -166,11 +166,11 @@ fn by_plan(rows: &QueryResult, read: impl Fn(&[Cell]) -> PlanUsage) -> Vec<(Grou
 /// Price, model tier and quota of a plan in a draft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DraftPlanTerms {
-    /// List price, dollars a month and seat.
+    /// List price, dollars per seat per month.
     pub price: f64,
     /// Model tier of the plan.
     pub tier: u8,
-    /// Quota, units a day for each customer.
+    /// Quota, units per customer per day.
     pub quota: f64,
 }
 
@@ -181,7 +181,7 @@ impl DraftPlanTerms {
     }
 }
 
-/// Setting that a form changes. It determines which margins are shown.
+/// Setting that a form changes, which determines the displayed margins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarginSetting {
     /// List prices. Margins at the list price are also shown.
@@ -231,7 +231,7 @@ pub fn margin_lines(
     }
     let mut lines = vec![format!("gross margin by model tier at day-{day} usage; [ ] current")];
     let tiers: String = models.iter().map(|(tier, _)| format!("{:>8}", format!("T{tier} "))).collect();
-    lines.push(format!("{:<16}{tiers}", "a month and seat").trim_end().to_owned());
+    lines.push(format!("{:<16}{tiers}", "$/seat·month").trim_end().to_owned());
     for plan in Plan::ALL {
         let (plan_usage, set) = (sales.usage_of_plan(plan), terms[plan]);
         let row = |label: String, margin: &dyn Fn(f64) -> Option<f64>| {
@@ -328,7 +328,7 @@ fn describe_groups(
     })
 }
 
-/// Formats a margin. Losses above about ten times the price are all shown as `loss`.
+/// Formats a margin. A loss above about ten times the price is shown as `loss`.
 fn format_margin(margin: Option<f64>) -> String {
     margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
         true => "loss".to_owned(),

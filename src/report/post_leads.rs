@@ -21,7 +21,7 @@ pub fn lead_lines_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]
         .collect();
     vec![
         format!("Leads in the week before → in the week after: {}", texts.join(", ")),
-        "Other changes of these weeks also affect these counts.".to_owned(),
+        "Other changes in these weeks also affect the counts.".to_owned(),
     ]
 }
 

@@ -206,7 +206,8 @@ fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usiz
     Some((&inner[..end], end + 2 * mark.len()))
 }
 
-/// Breaks characters into lines, between words if possible. The first line starts with `first`, all other lines with `next`.
+/// Breaks characters into lines, between words if possible. The first line starts with `first`, and all other lines
+/// start with `next`.
 fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
     let width_of = |word: &[(char, TextStyle)]| {
         word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>()

@@ -74,7 +74,7 @@ fn scenario_section(study: &Study, configuration: &Configuration) -> Result<Stri
     }
     if let Some(model) = &protocol.voice {
         text += &format!(
-            "- Language model: {}; a week waits at most {} seconds for it, then uses the built-in voice.\n",
+            "- Language model: {}; a week waits at most {} seconds for the model, then uses the built-in voice.\n",
             model.recorded_settings().describe(),
             model.seconds_a_week
         );
@@ -89,17 +89,16 @@ fn participants_section(study: &Study) -> String {
         SeedPlan::One => {
             format!("All participants play seed {}.", listed(&seeds.seed.into_iter().collect::<Vec<_>>()))
         }
-        SeedPlan::Blocks => format!(
-            "Each block of participants plays every seed of {}, in random order.",
-            listed(&seeds.block)
-        ),
+        SeedPlan::Blocks => {
+            format!("Each block of participants plays the seeds {} in random order.", listed(&seeds.block))
+        }
         SeedPlan::Assigned => "Seeds are assigned by the experimenter.".to_owned(),
     };
     let conditions = match seeds.conditions.as_slice() {
         [] => String::new(),
         some => format!(
             " Conditions: {}. They label and balance participants. The program is the same under all conditions; \
-             their differences are outside the program.",
+             the conditions differ only outside the program.",
             some.join(", ")
         ),
     };
@@ -129,12 +128,12 @@ fn describe_assignment(study: &Study, assignment: &Assignment) -> String {
 fn procedure_section(study: &Study) -> String {
     let mut steps = vec!["Label. Labels that are not assigned are rejected and counted."];
     if study.consent.is_some() {
-        steps.push("Consent to the text below. If a participant declines, no run is created; the list of visits keeps the label and the refusal.");
+        steps.push("Consent to the text below. If a participant declines, no run is created; the list of visits contains the label and the refusal.");
     }
     match study.protocol.practice.offer {
         PracticeOffer::None => {}
-        PracticeOffer::Required => steps.push("Practice, to its end."),
-        PracticeOffer::Optional => steps.push("Practice, which can be skipped."),
+        PracticeOffer::Required => steps.push("Practice run, played to its end."),
+        PracticeOffer::Optional => steps.push("Practice run, which can be skipped."),
     }
     steps.push("Session. It can be interrupted and resumed; the record shows when.");
     steps.push("Questions, when they are due.");
@@ -206,14 +205,14 @@ fn limit_rows(limits: &TimeLimits) -> String {
     let at_limit = match limits.at_limit {
         LimitAction::Remind => "the participant is reminded, once",
         LimitAction::Naive => {
-            "of a week: it is filed with naive forecasts; of a session or run: the clock is stopped until the experimenter \
+            "week limit: the week is filed with naive forecasts; session or run limit: the clock is stopped until the experimenter \
              starts it"
         }
         LimitAction::Pause => "the clock is stopped until the experimenter starts it",
     };
     let warning = minutes(limits.warning_minutes, "none");
     text + &format!(
-        "| Minutes before a limit at which the participant is warned | {warning} |\n| At a limit | {at_limit} |\n"
+        "| Minutes before a limit at which the participant is warned | {warning} |\n| Action at a limit | {at_limit} |\n"
     )
 }
 
@@ -221,7 +220,7 @@ fn time_section() -> String {
     format!(
         "## Time\n\n\
          - Active: the run is open and in front, its clock runs, no question of the study is open, and the participant is not idle.\n\
-         - Answering: the same, while a question of the study is open.\n\
+         - Answering: like active time, but while a question of the study is open.\n\
          - Idle: in the console, from the last key if no other follows within {} s. Plain mode does not receive keys; there, a gap \
          of more than {} s between two lines is idle.\n\
          - Away: the run is closed, suspended or in the background, or its clock is stopped.\n\
@@ -293,7 +292,8 @@ fn form_questions(form: &AnswerFormat) -> String {
 /// Returns the definition of every column of every table. The columns are defined where their values are computed.
 fn measures_section() -> String {
     let mut text =
-        "## Measures\n\nComputed by the program; `columns.csv` is exported with the tables.\n".to_owned();
+        "## Measures\n\nThe program computes all measures and exports `columns.csv` with the tables.\n"
+            .to_owned();
     for (table, columns) in table_headings() {
         text += &format!("\n### {table}\n\n| Column | Unit | Definition |\n|---|---|---|\n");
         for column in columns {
@@ -308,22 +308,21 @@ fn exclusion_section() -> String {
     let of_sessions = FindingKind::ALL.iter().filter(|kind| **kind != FindingKind::NothingExamined);
     let grave: Vec<&str> = of_sessions.map(|kind| kind.title()).collect();
     format!(
-        "## Exclusion\n\nRun `novamind study audit` before inspecting any result. It reads only the records: it cannot detect a run \
-         whose lines were rewritten with correct hashes, or that was continued in a copy of its folder. A \
-         session with one of these findings, or named in one, is excluded, and reported as excluded: {}. Decide \
-         before the first session: the number of failed \
-         attention checks, of naive weeks and of weeks decided in less than ten active seconds at which a session is excluded.\n",
+        "## Exclusion\n\nRun `novamind study audit` before inspecting any result. The audit reads only the records. It cannot detect a run \
+         whose lines were rewritten with correct hashes, or a run that was continued in a copy of its folder. A session is excluded, \
+         and reported as excluded, if it has or is named in one of these findings: {}. Before the first session, decide how many \
+         failed attention checks, naive weeks, and weeks decided in less than ten active seconds exclude a session.\n",
         grave.join(", ")
     )
 }
 
 fn checklist_section(study: &Study) -> String {
     let points = [
-        "`novamind study check` on every machine.".to_owned(),
-        format!("The digest on every machine is {}.", &study.digest[..16]),
-        "Labels handed out once each.".to_owned(),
-        "`novamind study watch` during sessions; remarks recorded with `--note`.".to_owned(),
-        "`novamind study collect` and `novamind study audit` at the end of each day.".to_owned(),
+        "Run `novamind study check` on every machine.".to_owned(),
+        format!("Check that the digest on every machine is {}.", &study.digest[..16]),
+        "Hand out each label once.".to_owned(),
+        "Run `novamind study watch` during sessions, and record remarks with `--note`.".to_owned(),
+        "Run `novamind study collect` and `novamind study audit` at the end of each day.".to_owned(),
     ];
     let lines: Vec<String> = points.iter().map(|point| format!("- [ ] {point}\n")).collect();
     format!("## Checklist\n\n{}", lines.concat())

@@ -22,7 +22,7 @@ pub struct PublishedResults {
     pub rule_based_baseline: f64,
     /// Estimated cash of a perfect player, dollars.
     pub estimated_upper_bound: f64,
-    /// Share of advertising that reaches the best channel with random spending.
+    /// Share of advertising spending on the best channel if spending is random.
     pub best_channel_random_share: f64,
     /// Results of agents.
     pub agent: Vec<PublishedAgent>,

@@ -120,11 +120,11 @@ impl<'a> RankingCriteria<'a> {
 pub enum RankingObstacle {
     /// The run belongs to a lesson.
     Lesson,
-    /// Number of days of the run, which differs from the published runs.
+    /// Number of days of the run, which differs from the length of the published runs.
     Length(u32),
-    /// Starting cash of the run in dollars, which differs from the published runs.
+    /// Starting cash of the run in dollars, which differs from the starting cash of the published runs.
     StartCash(f64),
-    /// Name of the run's scenario, whose rules differ from the published runs.
+    /// Name of the run's scenario, whose rules differ from the rules of the published runs.
     Scenario(String),
     /// Parameters of the scenario were changed.
     Parameters,

@@ -1,4 +1,4 @@
-//! Weekly report: the cash change with its components, the most unusual changes of figures, decisions before the week,
+//! Weekly report: the cash change with its components, the most unusual changes in figures, decisions before the week,
 //! news, and the outcome of due forecasts.
 
 use std::ops::Range;
@@ -25,7 +25,7 @@ pub struct MovedFigure {
     pub new: String,
     /// Whether the figure rose.
     pub is_increase: bool,
-    /// Whether the change is favorable for the company; `None` if it can be either.
+    /// Whether the change is favorable for the company; `None` if the change can be either.
     pub is_favorable: Option<bool>,
     /// Whether the figure is a share from 0 to 1.
     pub is_share: bool,
@@ -452,7 +452,7 @@ mod tests {
             assert_eq!(names, ["payments", "cancellations"], "after {more} weeks");
             assert_eq!(report.moved_figures[1].change.describe_rarity(), "", "after {more} weeks");
         }
-        // Many cancellations rank above a minor change of payments.
+        // Many cancellations rank above a minor change in payments.
         let wave = WeekFigures { cancellations: 90, payments: 4_100.0, ..before };
         assert_eq!(two_weeks(before, wave, 5).moved_figures[0].name, "cancellations");
     }

@@ -209,7 +209,7 @@ pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String>
     let ended = futures.bankruptcy_count(branch);
     (ended > 0).then(|| {
         format!(
-            "{branch}: {ended} of {} end in bankruptcy; afterwards, their cash is constant and they have no subscribers",
+            "{branch}: {ended} of {} end in bankruptcy; after a bankruptcy, cash is constant and there are no subscribers",
             pluralize(futures.count, "future")
         )
     })

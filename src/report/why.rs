@@ -143,7 +143,10 @@ mod tests {
         assert_eq!(equation_told, "cancellations +942 = price +938 · competitors +3.5 · residual +0.5");
         assert_eq!(heading(&change_explanation), "cancellations, week 20: 195 → 1,137");
         let short = ChangeExplanation { days: [7, 3], ..change_explanation };
-        assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
+        assert_eq!(
+            heading(&short),
+            "cancellations, week 20: 195 → 1,137 (of 3 days, the previous week of 7)"
+        );
         let explanation =
             sample_explanation(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
         assert_eq!(

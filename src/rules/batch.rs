@@ -38,7 +38,7 @@ pub struct RuleTotals {
     pub seats: u32,
     /// Largest possible revenue from the offers, in dollars per month.
     pub monthly_revenue: f64,
-    /// Revenue from enterprises with known compute cost, and the compute cost, both in dollars per month.
+    /// Revenue from enterprises with known compute cost, and this compute cost, in dollars per month.
     known_margin: (f64, f64),
     /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,

@@ -35,7 +35,7 @@ pub(super) enum Action {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OfferLine {
-    /// Offered plan; `None` means the plan that the enterprise asked for.
+    /// Offered plan. `None` stands for the plan that the enterprise asked for.
     pub(super) plan: Option<Plan>,
     pub(super) price: Price,
 }

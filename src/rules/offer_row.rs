@@ -5,7 +5,7 @@ use serde_json::Value;
 use novamind_session::identifiers::Plan;
 
 /// Parses the JSON of a row. Returns the plans and prices that the player offered, and the price that the enterprise
-/// asked for, in dollars per month and seat.
+/// asked for, in dollars per seat per month.
 pub fn parse_offer(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
     let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
     let one = |offer: &Value| {

@@ -8,7 +8,7 @@ use novamind_session::identifiers::Group;
 /// SQL query for the usage of the last day. Columns: group, plan, users, seats, units.
 pub const SEAT_USAGE_SQL: &str = include_str!("../../assets/readings/usage.sql");
 
-/// By group: seats of the enterprises that used the product on the last day, and the units that they used.
+/// Seats of the enterprises that used the product on the last day, and the units that they used, by group.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SeatUsage(BTreeMap<String, (f64, f64)>);
 
@@ -25,7 +25,7 @@ impl SeatUsage {
         SeatUsage(groups)
     }
 
-    /// Returns the usage of a group in units per day and seat, or `None` if no enterprise of the group used the
+    /// Returns the usage of a group in units per seat per day, or `None` if no enterprise of the group used the
     /// product on the last day.
     pub fn measured_usage(&self, group: &str) -> Option<f64> {
         self.0.get(group).filter(|(seats, _)| *seats > 0.0).map(|(seats, units)| units / seats)

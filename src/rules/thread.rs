@@ -16,7 +16,7 @@ pub const LAST_MESSAGES_SQL: &str = include_str!("../../assets/readings/last_let
 
 const DAYS_PER_MONTH: f64 = 30.0;
 
-/// By thread: the plan that the enterprise named in its latest message, with a price or as a request.
+/// The plan that the enterprise named in its latest message, with a price or as a request, by thread.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RequestedPlans(BTreeMap<u32, Plan>);
 
@@ -55,15 +55,15 @@ fn plans_in(text: &str) -> Vec<Plan> {
 /// Prices, quotas and costs of the plans, and the usage per seat of each group.
 #[derive(Debug, Clone, Default)]
 pub struct PlanEconomics {
-    /// List price of each plan, in dollars per month and seat.
+    /// List price of each plan, in dollars per seat per month.
     pub list_prices: [f64; 3],
-    /// Quota of each plan, in units per day and customer.
+    /// Quota of each plan, in units per customer per day.
     pub quotas: [f64; 3],
     /// Compute cost of each plan, in dollars per unit.
     pub unit_costs: [f64; 3],
     /// Usage per seat measured on the last day, by group.
     pub usage: SeatUsage,
-    /// Usage estimated by the last market study, in units per day and seat.
+    /// Usage estimated by the last market study, in units per seat per day.
     pub estimated_usage: BTreeMap<Group, f64>,
 }
 
@@ -107,7 +107,7 @@ impl PlanEconomics {
 pub struct ThreadContext {
     /// The waiting thread of the session.
     pub waiting: WaitingThread,
-    /// Plan that the enterprise named with its price, or whose price it asked for.
+    /// Plan for which the enterprise named a price or asked for the price.
     pub asked_plan: Option<Plan>,
     /// Quota that covers the usage of all seats, in units per day.
     pub required_quota: Option<f64>,

@@ -13,8 +13,8 @@ struct RunningRequest {
     interrupt: Interrupt,
 }
 
-/// The running request and its interrupt. When the server stops, a running week is still simulated to its end, but the
-/// week's calculations are stopped.
+/// The running request and its interrupt. When the server shuts down, a running week is still simulated to its end,
+/// but the week's calculations are stopped.
 #[derive(Clone, Default)]
 pub(super) struct CurrentRequest(Arc<Mutex<Option<RunningRequest>>>);
 

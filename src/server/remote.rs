@@ -72,7 +72,7 @@ impl RemoteServer {
     /// Sends a POST request with an object.
     ///
     /// # Errors
-    /// The errors of [`RemoteServer::get`]. The server may have executed the request.
+    /// As [`RemoteServer::get`]. The server may have executed the request despite the error.
     pub fn post(&self, path: &str, body: &Value) -> Result<ServerResponse, String> {
         self.send(Method::POST, path, Some(body), REQUEST_DEADLINE)
     }
@@ -80,7 +80,7 @@ impl RemoteServer {
     /// Asks the server to finish pending requests and close the run.
     ///
     /// # Errors
-    /// The errors of [`RemoteServer::get`].
+    /// As [`RemoteServer::get`].
     pub fn shut_down(&self) -> Result<ServerResponse, String> {
         self.post("/shutdown", &json!({}))
     }

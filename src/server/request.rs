@@ -47,7 +47,7 @@ pub enum ApiRequest {
     CurrentDay,
     /// Request for the dashboard of the last week.
     Dashboard,
-    /// Request for day, cash, subscribers, and whether the run is over.
+    /// Request for the day, the cash, the subscribers, and the status of the run.
     GameStatus,
     /// Request for the names and sizes of the stored scripts.
     DailyScripts,
@@ -72,7 +72,7 @@ pub enum ApiRequest {
 }
 
 impl ApiRequest {
-    /// Returns the request of a tool call. Calls of `query` and `next_week` become [`ApiRequest::Query`] and
+    /// Returns the request for a tool call. Calls to `query` and `next_week` become [`ApiRequest::Query`] and
     /// [`ApiRequest::NextWeek`].
     ///
     /// The arguments may contain the request id.
@@ -222,7 +222,7 @@ impl ApiResponse {
         self
     }
 
-    /// Returns the response for an invalid request, which did not reach a tool.
+    /// Returns the response for an invalid request that did not reach a tool.
     pub fn invalid_request(
         status: ResponseStatus,
         code: &'static str,

@@ -50,7 +50,7 @@ pub struct ForeignCall {
 pub struct PlayedTranscript {
     /// Number of executed calls, including weeks and statements.
     pub call_count: usize,
-    /// Calls whose result differs from the transcript, or that follow the end of the run: position, tool, result.
+    /// Position, tool and result of each call whose result differs from the transcript or that follows the end of the run.
     pub mismatches: Vec<(usize, String, String)>,
     /// Number of accepted Python programs, which are not executed.
     pub not_run: usize,
@@ -61,7 +61,7 @@ impl ForeignTranscript {
     /// with the keys `tool` and `args`.
     ///
     /// # Errors
-    /// The file has none of these formats, or contains no call of a tool of this program.
+    /// The file has none of these formats, or contains no call to a tool of this program.
     pub fn read(bytes: &[u8]) -> Result<ForeignTranscript, String> {
         let read = match serde_json::from_slice::<Value>(bytes) {
             Ok(Value::Object(whole)) if whole.contains_key("steps") => from_steps(&whole),
@@ -74,7 +74,7 @@ impl ForeignTranscript {
             }
         };
         match read.calls.is_empty() {
-            true => Err("the file contains no call of a tool of this program".to_owned()),
+            true => Err("the file contains no call to a tool of this program".to_owned()),
             false => Ok(read),
         }
     }

@@ -73,7 +73,7 @@ impl SessionWorker {
         (SessionWorker { thread, running, run, folder }, handle)
     }
 
-    /// Stops the running script, calculation or statement. A stopping server does not wait for such code.
+    /// Stops the running script, calculation or statement. A server that shuts down does not wait for such code.
     pub fn stop_running_code(&self) {
         self.running.stop();
     }
@@ -81,7 +81,8 @@ impl SessionWorker {
     /// Waits until all responses are sent and the run is closed. All handles must have been dropped.
     ///
     /// # Errors
-    /// The end of the record cannot be written; everything confirmed is saved. [`RunError::Defect`] if the thread panicked.
+    /// The last line of the record cannot be written; everything confirmed is saved. [`RunError::Defect`] if the
+    /// thread panicked.
     pub fn finish(self) -> Result<(), RunError> {
         let SessionWorker { thread, run, folder, .. } = self;
         thread.join().unwrap_or(Err(RunError::Defect { run, folder }))

@@ -167,7 +167,7 @@ impl Read for Frames<'_> {
     }
 }
 
-/// Returns the offset of the end record. A comment follows, whose length is stored in the record.
+/// Returns the offset of the end record. The record stores the length of the comment that follows it.
 fn end_record(bytes: &[u8]) -> Option<usize> {
     let last = bytes.len().checked_sub(END_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));

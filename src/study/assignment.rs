@@ -26,7 +26,7 @@ pub struct AssignmentRow {
     pub condition: Option<String>,
     /// Seed of the session; `None` if all participants play the same seed.
     pub seed: Option<u64>,
-    /// Position in the order of the study, from 1.
+    /// Position of the participant in the assignment, from 1.
     pub order: u32,
 }
 
@@ -143,8 +143,8 @@ impl Assignment {
     }
 }
 
-/// Returns the numbers below `count` in a random order for a block. They are sorted by a keyed hash, so the order is
-/// the same on every machine.
+/// Returns the numbers below `count` in a random order for a block. The order follows from a keyed hash, so it is the
+/// same on every machine.
 fn shuffled_indexes(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();

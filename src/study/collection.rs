@@ -121,8 +121,7 @@ impl fmt::Display for CollectNote {
                 let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
                 write!(
                     out,
-                    "conflict: run {run} has two records that differ from line {line}: {}; both are in conflicts, neither is \
-                     in the tables",
+                    "conflict: run {run} has two records that differ from line {line}: {}; both are in the folder conflicts and not in the tables",
                     paths.join(" and ")
                 )
             }

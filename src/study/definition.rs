@@ -75,7 +75,7 @@ pub struct Protocol {
     /// Language model that words the messages of the runs; `None` for the built-in voice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelSettings>,
-    /// Settings of earlier versions that have no effect. They are accepted so that old studies can be read.
+    /// Settings of earlier versions that have no effect, which are accepted so that old studies can be read.
     #[serde(default, skip_serializing)]
     integrity: RemovedSettings,
     /// Access of the experimenter to additional functions.
@@ -107,7 +107,7 @@ impl Default for StudyWorld {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Seeds {
-    /// How seeds are assigned.
+    /// Method of assigning seeds.
     pub plan: SeedPlan,
     /// Seed of all participants, with plan `one`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -136,7 +136,7 @@ impl Seeds {
     }
 }
 
-/// How seeds are assigned to participants.
+/// Method of assigning seeds to participants.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SeedPlan {
@@ -153,7 +153,7 @@ pub enum SeedPlan {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Practice {
-    /// Whether there is a practice run, and whether it can be skipped.
+    /// Whether the practice run is required, optional or omitted.
     pub offer: PracticeOffer,
     /// Name of the bundled scenario of the practice run.
     pub scenario: String,
@@ -164,7 +164,7 @@ pub struct Practice {
     pub days: Option<u32>,
 }
 
-/// Whether there is a practice run, and whether it can be skipped.
+/// Whether the practice run is required, optional or omitted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PracticeOffer {
@@ -373,7 +373,7 @@ impl Protocol {
     /// Parses the text of `study.toml`. `source` is the name of the file in error messages.
     ///
     /// # Errors
-    /// Returns the first problem with its line and key.
+    /// Returns an error that names the first problem, its line and its key.
     pub fn parse(source: &str, text: &str) -> Result<Protocol, ParameterError> {
         let protocol: Protocol =
             toml::from_str(text).map_err(|error| ParameterError::from_toml(source, text, &error))?;
@@ -406,7 +406,7 @@ impl Protocol {
             && of_session.into_iter().any(|seed| *seed == self.practice.seed)
         {
             let problem = format!(
-                "{} is also the seed of a session. Choose another seed for the practice",
+                "{} is also the seed of a session. Choose another seed for the practice run",
                 self.practice.seed
             );
             return Err(("practice.seed", problem));

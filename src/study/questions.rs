@@ -232,7 +232,7 @@ impl Questionnaire {
     /// Parses the text of a questionnaire file.
     ///
     /// # Errors
-    /// Returns the first problem with its line and key.
+    /// Returns an error that names the first problem, its line and its key.
     pub fn parse(path: &Path, text: &str) -> Result<Questionnaire, ParameterError> {
         let source = path.display().to_string();
         let read: Questionnaire =
@@ -268,7 +268,7 @@ impl Questionnaire {
             let fits = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
             if question.id.is_empty() || !question.id.bytes().all(fits) {
                 let problem = format!(
-                    "{:?} is not a valid name of a question: use letters, digits, underscores",
+                    "{:?} is not a valid name of a question: use letters, digits and underscores",
                     question.id
                 );
                 return Err(ParameterError::for_key(&source, text, "question", problem));

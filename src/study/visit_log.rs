@@ -104,14 +104,14 @@ pub struct VisitSummary {
     pub withdrew: usize,
     /// Number of labels that finished and did not withdraw.
     pub finished: usize,
-    /// Number of rejected entries of a label, including repetitions.
+    /// Number of rejected label entries, including repetitions.
     pub refused_labels: usize,
-    /// Number of rejected entries of the experimenter's code.
+    /// Number of rejected code entries.
     pub refused_codes: usize,
 }
 
 impl VisitSummary {
-    /// Summarizes the lists of visits of all machines. Takes the labels that have runs.
+    /// Summarizes the lists of visits of all machines. `with_runs` contains the labels that have runs.
     pub fn from_lines<'a>(
         lines: impl IntoIterator<Item = &'a VisitLine>,
         with_runs: &BTreeSet<&str>,

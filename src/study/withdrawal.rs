@@ -23,7 +23,7 @@ pub(crate) struct WithdrawalRecord {
 }
 
 impl WithdrawalRecord {
-    /// Creates the record of runs of a study that are erased now.
+    /// Creates the record of a withdrawal at the current time that erases these runs of a study.
     pub(crate) fn new(runs: &[String], study: &str) -> WithdrawalRecord {
         WithdrawalRecord { run: runs.join(" "), study: study.to_owned(), at: now() }
     }

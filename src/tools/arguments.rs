@@ -79,7 +79,7 @@ impl Arguments {
     /// Parses an argument with `reader`. Returns `None` if the argument was not given.
     ///
     /// # Errors
-    /// The rejections of `reader`.
+    /// As `reader`.
     pub fn read<T>(
         &self,
         name: &'static str,
@@ -373,7 +373,7 @@ pub fn parse_per_channel_group(
 /// Serializes whole numbers without a decimal point, for fields that are integers in the released simulator.
 ///
 /// # Errors
-/// The errors of the serializer.
+/// The serializer fails.
 pub(super) fn serialize_whole_as_integer<T: Serialize, S: Serializer>(
     data: &T,
     serializer: S,

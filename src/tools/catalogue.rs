@@ -84,7 +84,7 @@ impl ToolId {
         self.tool().spec()
     }
 
-    /// Returns whether a call of the tool executes code immediately, which can be slow.
+    /// Returns whether a call to the tool executes code immediately, which can be slow.
     pub fn executes_code(self) -> bool {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }

@@ -1,4 +1,4 @@
-//! Limits of numbers in arguments, which keep all sums of money exact.
+//! Limits for numbers in arguments, to keep all sums of money exact.
 //!
 //! A session checks these limits only for new calls. Recorded calls of older versions can have larger numbers and are replayed
 //! unchanged.
@@ -38,12 +38,12 @@ pub fn check_arguments(spec: &ToolSpec, arguments: &Arguments) -> Result<(), Rej
     Ok(())
 }
 
-/// Rejects a number beyond a limit at any depth of a value.
+/// Rejects a value that contains a number beyond a limit, at any depth.
 fn check_value(value: &Value, bound: f64, path: &str, unit: &str) -> Result<(), Rejection> {
     let within = |name: &str, value: &Value| check_value(value, bound, &format!("{path}.{name}"), unit);
     match value {
         Value::Array(list) => {
-            // Skip the first element of a deal, which is the customer number.
+            // Skip the customer number, the first element of a deal.
             let is_deal = matches!(list.as_slice(), [_, Value::Array(_), ..]) && !list[0].is_array();
             let values = list.iter().enumerate().skip(usize::from(is_deal));
             values.into_iter().try_for_each(|(at, value)| within(&at.to_string(), value))

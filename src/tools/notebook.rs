@@ -26,7 +26,7 @@ pub enum NotebookSection {
     Script,
 }
 
-/// A change of the notebook.
+/// A change to the notebook.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotebookChange {
     /// Stores code under a name.
@@ -112,8 +112,8 @@ impl Notebook {
         }
     }
 
-    /// Rejects a change beyond the quotas. A session checks only new calls. Recorded calls of older versions are
-    /// applied without this check.
+    /// Rejects a change that would exceed a quota. A session checks only new calls. Calls that older versions recorded
+    /// are applied without this check.
     ///
     /// # Errors
     /// `quota_exceeded`, with the limit.

@@ -1,4 +1,4 @@
-//! Numbers in documentation: placeholders in braces name a parameter and are replaced by the value in force.
+//! Numbers in documentation: each placeholder in braces names a parameter and is replaced with the current value.
 //!
 //! `{table.key}` is a parameter. `{info_level.2.cost}` is a parameter in a list of tables, whose entries are named by
 //! level, tier or id, otherwise by index from 0. A colon introduces the format:
@@ -55,7 +55,7 @@ impl ParameterNumbers {
         self.0.get(key).copied()
     }
 
-    /// Replaces the placeholders in a text by parameter values. Placeholders with unknown names do not change.
+    /// Replaces the placeholders in a text with parameter values. Placeholders with unknown names do not change.
     pub fn substitute(&self, text: &str) -> String {
         let mut filled = String::new();
         let mut rest = text;

@@ -1,4 +1,4 @@
-//! Planned tool calls: the effect and the result of a call before random draws.
+//! Planned tool calls: the effect and the result of a call before its random draws.
 
 use serde::Serialize;
 use serde_json::Value;

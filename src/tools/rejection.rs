@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// The rejection of a tool call, which has changed nothing.
+/// The rejection of a tool call. A rejected call changes nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Rejection {
     /// Rejection code for programs.

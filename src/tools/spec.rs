@@ -25,7 +25,7 @@ pub struct ToolSpec {
     pub arguments: &'static [Argument],
     /// Whether the tool rejects unknown arguments with a tool-specific code.
     pub has_own_unknown_code: bool,
-    /// The argument that a call can give without its name, for example the matrix of ad spend.
+    /// The argument that a call can give without its name, for example the matrix of advertising budgets.
     pub unnamed_argument: Option<&'static str>,
     /// Time at which a call takes effect.
     pub effect_timing: EffectTiming,
@@ -70,8 +70,8 @@ impl ToolSpec {
         self.id.name()
     }
 
-    /// Returns the argument that may be given without its name: the only required one, the whole object, or the only
-    /// one.
+    /// Returns the argument that may be given without its name: the only required argument, the whole object, or the
+    /// only argument.
     pub fn positional_argument(&self) -> Option<&'static str> {
         let mut required = self.arguments.iter().filter(|argument| argument.required);
         let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
@@ -129,7 +129,7 @@ pub enum ToolKind {
     Read,
     /// A tool that advances the simulation.
     Time,
-    /// A tool for the notebook or the documentation, which never affects the company.
+    /// A tool for the notebook or the documentation. Such a tool never affects the company.
     Engine,
 }
 
@@ -161,7 +161,7 @@ pub enum EffectTiming {
     NextBilling,
     /// The call takes effect immediately.
     Now,
-    /// The call takes effect after a delay, which the result contains.
+    /// The call takes effect after a delay. The result contains the delay.
     AtCompletion,
     /// The call takes effect when the customer replies.
     CustomerReply,
@@ -249,7 +249,7 @@ pub struct NumberRange {
     pub excludes_min: bool,
     /// Maximum of the range.
     pub max: f64,
-    /// Maximum magnitude of a number, which keeps sums exact.
+    /// Maximum magnitude of a number, to keep sums exact.
     pub magnitude_limit: f64,
 }
 

@@ -28,7 +28,7 @@ pub trait Tool: Sync {
     /// Parses the arguments of a call.
     ///
     /// # Errors
-    /// The first rejections in the [`ToolSpec`], which depend only on the arguments and the player's knowledge.
+    /// The rejections in the [`ToolSpec`] that depend only on the arguments and the player's knowledge.
     fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection>;
 
     /// Plans a call with these arguments, and returns its effect and result.

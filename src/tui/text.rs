@@ -42,8 +42,8 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Wraps sentences to a width and a number of lines. Text that does not fit ends after a sentence, or in the middle of
-/// the first sentence if not even that fits, with a mark.
+/// Wraps sentences to a width and a number of lines. Text that does not fit is cut after a sentence and marked. If not
+/// even the first sentence fits, the text is cut within it.
 pub fn wrap_sentences(text: &str, width: usize, lines: usize) -> Vec<String> {
     let all = wrap(text, width);
     if all.len() <= lines {
@@ -55,7 +55,7 @@ pub fn wrap_sentences(text: &str, width: usize, lines: usize) -> Vec<String> {
     }
     let mut rows: Vec<String> = all.iter().take(lines).cloned().collect();
     if let Some(last) = rows.last_mut() {
-        // The next word does not fit, so that the text is cut and marked.
+        // The next word does not fit, so the text is cut and marked.
         *last = truncate_to_width(&format!("{last} {}", all[lines]), width);
     }
     rows

@@ -66,7 +66,7 @@ impl EnterpriseNames {
         format!("{} #{customer}", self.name(customer))
     }
 
-    /// Replaces `customer 16064` in a recorded text by the name and the number of the enterprise.
+    /// Replaces `customer 16064` in a recorded text with the name and the number of the enterprise.
     pub fn insert_names(&self, text: &str) -> String {
         const WORD: &str = "ustomer ";
         let mut output = String::with_capacity(text.len() + 16);
@@ -141,7 +141,7 @@ mod tests {
         let same = of_seed(42).iter().zip(of_seed(7)).filter(|(one, other)| **one == *other).count();
         assert!(same < 5, "{same} of 199 have the same name in two runs");
         assert_eq!(names(42).name_with_number(16_064), format!("{} #16064", names(42).name(16_064)));
-        // Users recognize enterprises by their names, and a change of the word lists would rename all enterprises.
+        // Users recognize enterprises by their names, and a change to the word lists would rename all enterprises.
         assert_eq!(names(42).name(1), "Westhaven Wolgrove");
     }
 

@@ -1,8 +1,8 @@
 //! A grammar for sentences: rules with alternatives, which are expanded with the values and tags of a context
 //! (docs/mechanics/market/social/texts.md#grammar).
 //!
-//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` optional values, and `tags`
-//! possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
+//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` lists optional values, and
+//! `tags` lists possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
 //!
 //! | notation | meaning |
 //! |---|---|
@@ -121,7 +121,8 @@ impl Grammar {
     /// Parses a grammar.
     ///
     /// # Errors
-    /// If the text is not a TOML grammar, a symbol is unknown, or a rule contains itself or cannot always be expanded.
+    /// Returns an error if the text is not a TOML grammar, a symbol is unknown, a rule contains itself, or a rule
+    /// cannot always be expanded.
     pub fn parse(source: &str) -> Result<Grammar, GrammarError> {
         parse::parse(&[source])
     }
@@ -129,7 +130,7 @@ impl Grammar {
     /// Parses a grammar from several files that share names and rules.
     ///
     /// # Errors
-    /// The errors of [`Grammar::parse`], or if two files define the same rule.
+    /// Returns an error for the same reasons as [`Grammar::parse`], or if two files define the same rule.
     pub fn parse_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
         parse::parse(sources)
     }
@@ -151,7 +152,8 @@ impl Grammar {
         count::count_phrasings(self, rule, context)
     }
 
-    /// Expands a rule. Within one text, an alternative is repeated only after all other alternatives of its rule. An
+    /// Expands a rule. Within one text, an alternative is repeated only after all other alternatives of its rule have
+    /// been used. An
     /// unknown rule expands to an empty text.
     pub fn expand(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
         let mut writer =

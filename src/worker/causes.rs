@@ -1,4 +1,4 @@
-//! Causes of changes of figures, computed on a background thread while the run continues.
+//! Causes of changes in figures, computed on a background thread while the run continues.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use novamind_insight::{
 };
 use novamind_tools::Rejection;
 
-/// A question for the causes of a figure's change in a week.
+/// A question about the causes of a figure's change in a week.
 #[derive(Debug, Clone)]
 pub struct CausesQuestion {
     /// The figure that changed.

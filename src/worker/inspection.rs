@@ -36,13 +36,13 @@ pub enum InspectionQuestion {
     Rivals(u32),
     /// The drift of required quality and budgets up to a day.
     Drift(u32),
-    /// The random draws of a part of the model on the day after a day.
+    /// The random draws of a part of the model on the day after the given day.
     Draws(RandomPart, u32),
     /// The state of a customer, identified by number, on a day.
     Customer(u32, u32),
     /// The result of a breakpoint command.
     Breakpoints(BreakpointCommand),
-    /// The result of a plain-mode command, given as text and as parsed command.
+    /// The result of a plain-mode command, given as text and as a parsed command.
     Command(String, InspectionCommand),
 }
 

@@ -186,14 +186,14 @@ pub struct SessionThread {
     runs_folder: PathBuf,
     initial_runs_folder: PathBuf,
     last_company: Option<Arc<DisplayedCompany>>,
-    /// When the playback shows the next week.
+    /// Time at which the playback shows the next week.
     next_week_at: Option<Instant>,
-    /// When a followed run was last polled for new lines.
+    /// Time at which a followed run was last polled for new lines.
     last_poll: Instant,
     repair_at: Option<Instant>,
     study: Option<ActiveStudy>,
     lists_all_participants: bool,
-    /// When time limits are checked next; `None` if the run has no time limits.
+    /// Time of the next check of the time limits; `None` if the run has no time limits.
     next_limit_check: Option<Instant>,
     minutes_left: Vec<i64>,
     causes_cache: Arc<Mutex<AnalysisCache<CauseAnalysis>>>,

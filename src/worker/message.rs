@@ -84,7 +84,7 @@ pub struct DebugRunResult {
 
 /// A response of a worker thread.
 pub enum Response {
-    /// The runs of the folder. If a run was ended or deleted before, also the outcome in words.
+    /// The runs in the runs folder. If the request was to end or delete a run, also a message about the outcome.
     Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
     /// A class was read for display.
     ClassRead(Box<Result<(CollectedClass, ClassDisplayOptions), String>>),

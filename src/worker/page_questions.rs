@@ -13,7 +13,7 @@ use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Rejection, ToolId};
 
-/// A question for the preview of a tool call.
+/// A question that asks for the preview of a tool call.
 #[derive(Debug, Clone)]
 pub struct PreviewCallQuestion {
     /// Tool to call.
@@ -33,8 +33,8 @@ impl Question for PreviewCallQuestion {
     }
 }
 
-/// A question for the participation curve of a group. The curve is the true curve if inspections are permitted,
-/// otherwise the estimated curve.
+/// A question that asks for the participation curve of a group. The curve is the true curve if inspections are
+/// permitted, otherwise the estimated curve.
 #[derive(Debug, Clone)]
 pub struct CurveQuestion(pub Group);
 
@@ -49,7 +49,7 @@ impl Question for CurveQuestion {
     }
 }
 
-/// A question for the true values of a day.
+/// A question that asks for the true values of a day.
 #[derive(Debug, Clone)]
 pub struct HiddenValuesQuestion {
     /// Day whose true values are requested.
@@ -68,8 +68,8 @@ impl Question for HiddenValuesQuestion {
     }
 }
 
-/// A question for the runs that are related to the open run. The answer is empty in studies and for runs outside the
-/// runs folder.
+/// A question that asks for the runs that are related to the open run. The answer is empty in studies and for runs
+/// outside the runs folder.
 #[derive(Debug, Clone)]
 pub struct RelatedRunsQuestion;
 
@@ -89,8 +89,8 @@ impl Question for RelatedRunsQuestion {
     }
 }
 
-/// A question for the results of strong policies. The function simulates the policies with the scenario and seed of
-/// the open run.
+/// A question that asks for the results of strong policies. Its function simulates these policies with the scenario and
+/// seed of the open run.
 #[derive(Debug, Clone)]
 pub struct OpponentsQuestion(pub PlayOpponentsFn);
 

@@ -124,7 +124,7 @@ impl QueryThreads {
         QueryThreads { user: start(), screens: start(), interrupt: Arc::default() }
     }
 
-    /// Opens a connection to the database of a run for each thread.
+    /// Opens a separate connection to the database of a run for each query thread.
     pub(super) fn connect(&self, session: &Session) {
         let limits = session.company().query_limits();
         let database = session.database();
@@ -165,7 +165,7 @@ impl QueryThreads {
             DatabaseQuestion::Query(..) => &self.user,
             DatabaseQuestion::Reading(..) => &self.screens,
         };
-        // Ignore the error: the threads have ended when the program ends.
+        // Ignore the error: the thread may already have ended because the program is ending.
         let _ = thread.send(QueryJob::Ask(question));
     }
 }

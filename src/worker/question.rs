@@ -198,7 +198,7 @@ impl<Q: Question> Reply<Q> {
                 put(&mut lock_slot(&slot));
             }
         });
-        // Ignore the error: the receiver has been dropped when the program ends.
+        // Ignore the error: the receiver may already have been dropped because the program is ending.
         let _ = self.messages.send(Message::Arrived(Delivery { store: put, is_answer }));
     }
 }

@@ -18,7 +18,7 @@ use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Access, NewRun, SealKey, Session, Storage, abandon_run, recover};
 use novamind_tools::Rejection;
 
-/// A question for the preview of a run.
+/// A question that asks for the preview of a run.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
     /// Id of the run.

@@ -12,7 +12,7 @@ pub(super) struct ActiveStudy {
     pub(super) participant: Option<ParticipantSession>,
     /// The participant's consent that is not recorded in a run yet.
     pub(super) consent: Option<ConsentAgreement>,
-    /// Due questions that were last reported to the console.
+    /// Due questions that were most recently reported to the console.
     pub(super) due_questions: Vec<DueQuestion>,
 }
 

@@ -20,7 +20,7 @@ use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
-    /// Number of pending bytes at which they are hashed.
+    /// Number of pending bytes that triggers hashing.
     chunk_bytes: usize,
 }
 

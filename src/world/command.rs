@@ -1,5 +1,5 @@
-//! Commands that change the world. A tool call is converted to a command, then its random draws are resolved, then it
-//! is applied. Applying a command cannot fail.
+//! Commands that change the world. A tool call is converted to a command. The random draws of the command are resolved
+//! before the command is applied. Applying a command cannot fail.
 //!
 //! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
 //! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
@@ -16,7 +16,7 @@ use super::random::Streams;
 use super::settings::SettingsChange;
 use super::state::World;
 
-/// A validated change of the world that a tool call requests.
+/// A validated change to the world that a tool call requests.
 #[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
@@ -30,7 +30,7 @@ pub enum Command {
     ResearchMarket,
     /// Pays for a study of a group up to this level and starts it.
     ResearchGroup(Group, u8),
-    /// No change of the world, but draws the errors of a group's estimates.
+    /// Draws the errors of a group's estimates. Does not change the world.
     ReadInsights(Group),
     /// Sends offers to enterprises.
     SendDeals(Vec<OfferDraft>),
@@ -53,7 +53,7 @@ pub struct PostDraft {
 #[expect(clippy::large_enum_variant, reason = "only one exists at a time")]
 #[derive(Debug, Clone, PartialEq)]
 pub enum ResolvedCommand {
-    /// No change of the world.
+    /// No change to the world.
     None,
     /// New values for a family of settings.
     Set(SettingsChange),

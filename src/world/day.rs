@@ -232,7 +232,7 @@ struct DecisionRound {
     billed: Vec<BlockBills>,
 }
 
-/// Settles issues, computes the decisions of due customers, and bills the customers who stay.
+/// Updates issues, computes the decisions of due customers, and bills the customers who stay.
 fn settle_and_decide(
     customers: &mut Customers,
     calls: Vec<IssueBatch>,

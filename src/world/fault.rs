@@ -1,7 +1,7 @@
 //! Seeded faults: deliberate errors of mechanisms for debugging exercises with the x-ray
 //! (`docs/debugging-walkthrough.md`).
 //!
-//! The simulation checks faults once per day, group or event and never per customer, so a fault costs no speed. A
+//! The simulation checks faults once per day, group or event and never per customer, so a fault does not slow the simulation. A
 //! fault is not a parameter: no file and no setting can change it.
 
 use serde::{Deserialize, Serialize};

@@ -41,8 +41,8 @@ pub fn compute_cost(metered: &MeteredUsage, morning: &Morning, params: &Params) 
     Plan::ALL.into_iter().map(cost).sum()
 }
 
-/// Books the running costs of a day and returns their sum, in dollars. General costs are booked even if they are zero,
-/// targeted costs only if they are not zero.
+/// Books the running costs of a day and returns their sum, in dollars. General costs are booked even if they are zero;
+/// targeted costs are booked only if they are not zero.
 pub fn pay_running_costs(
     finance: &mut Finance,
     metered: &MeteredUsage,

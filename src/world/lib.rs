@@ -34,6 +34,6 @@ pub mod state;
 #[cfg(any(test, feature = "test-kit"))]
 pub mod test_kit;
 
-/// Version of the mechanics. Every change after which the same decisions can lead to a different state increases the
-/// version. Runs of earlier versions are rejected with a reason.
+/// Version of the mechanics. The version increases with every change after which the same decisions can lead to a
+/// different state. Runs of earlier versions are rejected with a reason.
 pub const MECHANICS: u32 = 1;

@@ -1,4 +1,4 @@
-//! Quotas in units per day and customer, whole or fractional.
+//! Quotas in units per customer per day, whole or fractional.
 
 use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 
@@ -9,7 +9,7 @@ const MAX_UNITS_EXCLUSIVE: f64 = 9.0e15;
 /// smaller than 2^63.
 const FRACTION_BIT: u64 = 1 << 63;
 
-/// A quota in units per day and customer, at least 0.
+/// A quota in units per customer per day, at least 0.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub struct Quota(f64);
 
@@ -19,7 +19,7 @@ impl Quota {
         (0.0..MAX_UNITS_EXCLUSIVE).contains(&units).then_some(Quota(units.abs()))
     }
 
-    /// Returns the quota in units per day and customer.
+    /// Returns the quota in units per customer per day.
     pub fn units(self) -> f64 {
         self.0
     }

@@ -40,7 +40,7 @@ macro_rules! parts {
 }
 
 parts! {
-    /// (day): outage, downtime, latency, error rate.
+    /// (day): outage, downtime, latency and error rate of the service.
     Service = "service",
     /// (day): daily noise of the shared quality.
     QualityNoise = "quality_noise",
@@ -66,7 +66,7 @@ parts! {
     LeadNoise = "lead_noise",
     /// (day, group): number of leads.
     LeadCount = "lead_count",
-    /// (group, month): monthly change of the channel yields.
+    /// (group, month): monthly change in the channel yields.
     LeadRateDrift = "lead_rate_drift",
     /// (attempt): success of market research, and the discovered group.
     MarketResearch = "market_research",

@@ -52,7 +52,7 @@ pub enum ReputationCause {
 pub struct Spillover {
     /// The source group, whose reputation changed.
     pub source: Group,
-    /// Change of the source group's reputation by its subscribers.
+    /// Change in the source group's reputation that its subscribers caused.
     pub change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
@@ -60,14 +60,14 @@ pub struct Spillover {
     pub factor: f64,
 }
 
-/// Consecutive changes of a reputation by one mechanism, and the resulting reputation.
+/// Consecutive changes that one mechanism made to a reputation, and the resulting reputation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReputationWrite<'a> {
     /// Group whose reputation changed.
     pub group: Group,
     /// Mechanism that changed the reputation.
     pub cause: ReputationCause,
-    /// Changes of the reputation before clamping.
+    /// Changes that the mechanism made, before clamping.
     pub changes: &'a [f64],
     /// Reputation before the first of the changes.
     pub before: f64,
@@ -124,14 +124,14 @@ pub fn contribution(satisfaction: f64, reputation: &Reputation) -> f64 {
     reputation.base_rep_per_customer * weight * satisfaction
 }
 
-/// Returns the change of a group's reputation from today's contributions, before the threshold is applied: (sum / m)
+/// Returns the change in a group's reputation from today's contributions, before the threshold is applied: (sum / m)
 /// log2(m), where m = max(count, 2).
 pub fn unrounded_daily_change(mood: &ReputationContribution, reputation: &Reputation) -> f64 {
     let size = f64::from(mood.count.max(reputation.min_group_size));
     mood.sum / size * libm::log2(size)
 }
 
-/// Returns the daily change of a group's reputation, or `None` if the change is below the threshold.
+/// Returns the daily change in a group's reputation, or `None` if the change is below the threshold.
 pub fn daily_change(mood: &ReputationContribution, reputation: &Reputation) -> Option<f64> {
     let change = unrounded_daily_change(mood, reputation);
     (change.abs() >= reputation.daily_delta_min_abs).then_some(change)
@@ -144,13 +144,13 @@ pub struct SpilloverEffect {
     pub from: Group,
     /// The group to which the change spills over.
     pub to: Group,
-    /// Change of the source group's reputation.
+    /// Change in the source group's reputation from which the spillover is computed.
     pub source_change: f64,
     /// Weight of the source group for the affected group.
     pub weight: f64,
     /// Factor that all spillover is multiplied by.
     pub factor: f64,
-    /// Change of the affected group's reputation, which is applied if `counts` is true.
+    /// Change in the affected group's reputation, which is applied if `counts` is true.
     pub change: f64,
     /// Whether the spillover is applied: the weight is positive and the change is large enough.
     pub counts: bool,

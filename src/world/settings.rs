@@ -44,7 +44,7 @@ pub struct CoreSettings {
     pub prices: ByPlan<f64>,
     /// Model tier of each plan, 1..=5.
     pub tiers: ByPlan<u8>,
-    /// Quotas, units per day and customer.
+    /// Quotas, units per customer per day.
     pub quotas: ByPlan<Quota>,
     /// Operations, dollars per day.
     pub operations: f64,
@@ -54,7 +54,7 @@ pub struct CoreSettings {
     pub capacity_tier: u8,
 }
 
-/// Ongoing discounts, dollars per month and seat. The discounts of all scopes are added, with a minimum of 0.
+/// Ongoing discounts, dollars per seat per month. The discounts of all scopes are added, with a minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Promotion {
     /// Discount for all subscribers.
@@ -76,7 +76,7 @@ pub struct LeadPromotion {
     pub by_group: PerGroup,
     /// Discounts for the leads of each advertising channel.
     pub by_channel: IndexMap<Channel, f64>,
-    /// Discounts for the leads of a group through a channel.
+    /// Discounts for the leads of a group that arrive through a channel.
     pub by_channel_group: IndexMap<Channel, PerGroup>,
 }
 

@@ -134,7 +134,7 @@ mod tests {
         world
     }
 
-    /// A change of one field of the world. Some changes use the group.
+    /// A function that changes one field of the world. Some of these functions use the group.
     type WorldChange = fn(&mut World, Group);
 
     fn changed_parts(world: &World, other: &World) -> Vec<&'static str> {

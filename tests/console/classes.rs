@@ -75,7 +75,7 @@ fn start_menu_opens_and_resumes_a_handout() {
         |console: &Console| console.app.run().expect("a run").company.folder.clone().expect("a folder");
     let first = run_folder(&console);
     assert!(first.starts_with(runs.join("participants/S01")), "{}", first.display());
-    // The menu lists the student's runs, and the same file resumes.
+    // The menu lists the student's runs, and the same handout resumes its run.
     console.press("esc ; q");
     console.assert_shows("1 on this machine");
     choose_menu_entry(&mut console, "Handout");

@@ -1,4 +1,4 @@
-//! The curve explorer: pictures and dragging with the mouse. Only true values are recorded as inspections.
+//! The curve explorer: snapshots and dragging with the mouse. Only true values are recorded as inspections.
 
 use std::path::Path;
 

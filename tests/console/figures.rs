@@ -1,5 +1,5 @@
-//! One definition per figure. A number that a screen, plain mode, a report or the dashboard shows with a figure's name
-//! must equal the value in the database. New texts that show a figure with one of these names are
+//! One definition per figure. A number that is shown with a figure's name must equal the value in the database, on
+//! every screen and in plain mode, reports and the dashboard. New texts that show a figure with one of these names are
 //! compared as well.
 
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ const PLAIN_COMMANDS: &str = "status\ndashboard\nneeds\ninbox\nchanges\nreport w
 /// compared with each other.
 struct Figure(&'static [&'static str], &'static str);
 
-/// Relative error between sums of the same amounts in different orders.
+/// Maximum relative difference between sums of the same amounts in different orders.
 const SUM_TOLERANCE: f64 = 1e-12;
 
 /// Figures whose sign depends on whether they are listed among costs.

@@ -61,7 +61,7 @@ fn submitting_a_zoomed_form_keeps_the_screen() {
 fn breadcrumbs_are_shown_and_esc_goes_back() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (80, 24));
-    // From a group in the list to the form of its development spending, and back.
+    // Navigates from a group in the list to the form of its development spending, and back.
     console.press("3 down enter");
     console.assert_shows("Customers › S2 › Go to");
     console.press("tab");

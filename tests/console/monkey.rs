@@ -131,7 +131,7 @@ fn random_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
     Event::Mouse(MouseEvent { kind: *dice.pick(&kinds), column, row, modifiers: KeyModifiers::NONE })
 }
 
-/// Texts that can hold a draft: keys that open the text, and keys that return to it.
+/// Text fields with drafts: keys that open the field, and keys that return to it.
 const DRAFTS: [(&str, &str); 5] = [
     ("9 esc i ctrl-n", "9 esc"),
     ("5 esc esc p ctrl-u", "5 esc esc p"),

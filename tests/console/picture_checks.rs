@@ -30,7 +30,7 @@ const MIN_FREE_SPACES: usize = 4;
 pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
     let wasteful = |line: &&str| {
         line.match_indices('…').any(|(at, sign)| {
-            // A mark after a complete sentence does not stand for a part of a word.
+            // An ellipsis after a complete sentence does not replace a part of a word.
             if line[..at].ends_with(". ") {
                 return false;
             }

@@ -154,7 +154,7 @@ fn drafts_record_how_text_was_entered() {
     advance_clock(&mut console, 3);
     console.send(Event::Paste(" pasted".to_owned()));
     console.press("ctrl-s");
-    // A SQL statement is typed and not run.
+    // An SQL statement is typed and not run.
     console.press("9 'SELECT1' esc esc 1");
     drop(console);
     let drafts = drafts(runs.path());
@@ -188,7 +188,7 @@ fn run_is_hidden_while_the_clock_is_stopped() {
     let expected = ["start", "session Opened", "view overview from  5 s", "clock Stopped", "clock Started"];
     assert_eq!(texts[..5], expected, "{texts:#?}");
     assert!(texts.iter().filter(|line| *line == "clock Stopped").count() == 2, "{texts:#?}");
-    // If the clock was stopped when the program ended, it starts when the run is opened again.
+    // If the program ended while the clock was stopped, the clock starts when the run is opened again.
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.assert_shows("NovaMind");
     drop(console);

@@ -13,7 +13,7 @@ use super::replay::{console_in_replay, played_run};
 use crate::support::company::{advance_weeks, call_tool};
 
 /// Creates a run of four weeks, a branch from week 3 with different decisions, and a branch of the branch. Returns the
-/// ids of the three runs.
+/// IDs of the three runs.
 fn create_related_runs(runs: &Path) -> [String; 3] {
     let id = |session: &Session| session.manifest().id.clone();
     let root = played_run(runs, Mode::Sandbox, 4);
@@ -30,7 +30,7 @@ fn console_in_run(runs: &Path, id: &str, size: (u16, u16)) -> Console {
     console
 }
 
-/// Returns the screen with fixed names instead of the run ids.
+/// Returns the screen with fixed names instead of the run IDs.
 fn screen_without_ids(console: &mut Console, ids: &[String; 3]) -> String {
     let names = ["run-root", "run-left", "run-late"];
     ids.iter().zip(names).fold(console.screen(), |text, (id, name)| text.replace(id, name))

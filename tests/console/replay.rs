@@ -143,7 +143,7 @@ fn replay_is_read_only() {
     }
     console.press("esc esc :");
     console.press("'undo'");
-    console.assert_shows("not now, this is a replay");
+    console.assert_shows("unavailable (this is a replay)");
     console.press("esc q");
     assert_eq!(console.exit.as_ref().map(|(code, _)| *code), Some(0));
 }

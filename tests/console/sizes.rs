@@ -6,7 +6,7 @@ use novamind::tui::glyphs::Glyphs;
 
 use super::harness::Console;
 
-/// Keys that open every screen and dialog of the console, and keys that close it.
+/// Keys that open each screen and dialog of the console, and keys that close it.
 const PLACES: [(&str, &str); 40] = [
     ("1", ""),
     ("1 z", "z"),
@@ -112,7 +112,7 @@ impl ScreenWords {
     }
 }
 
-/// Draws every screen and dialog in windows of the given sizes. Asserts that restoring the size restores the picture,
+/// Draws every screen and dialog in windows of the given sizes. Asserts that restoring the size restores the screen,
 /// and that no word is truncated.
 fn check_sizes(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
     let mut words = ScreenWords::default();

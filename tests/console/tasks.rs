@@ -48,7 +48,7 @@ const UNDO_TWICE_AND_REDO: usize = 3;
 const COMPARE_TWO_RUNS: usize = 5;
 const LEAVE_AND_RESUME: usize = 2;
 
-/// Presses keys one by one. Each key must change the picture, and no key may be rejected.
+/// Presses keys one by one. Each key must change the screen, and no key may be rejected.
 fn press_within(console: &mut Console, keys: &str, most: usize) {
     let mut pressed = 0;
     for word in keys.split(' ') {

@@ -1,5 +1,4 @@
-//! Causes of a change, opened with `; w` from figures of screens and of the weekly report, and runs in which causes
-//! are not available.
+//! Causes of a change: opened with `; w` from figures on screens and in the weekly report, and unavailable in some runs.
 
 use std::path::Path;
 

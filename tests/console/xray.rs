@@ -1,4 +1,4 @@
-//! The X-ray screen: pictures, plain-mode commands, breakpoints, and missing permission.
+//! The X-ray screen: snapshots, plain-mode commands, breakpoints, and missing permission.
 
 use std::path::Path;
 

@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 
 use crate::support::company::call_tool;
 
-/// A limit of steps instead of time, which statements with nested scans exceed.
+/// A step limit instead of a time limit. Statements with nested scans would exceed the step limit.
 const LIMITS: QueryLimits =
     QueryLimits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
 
@@ -166,7 +166,7 @@ fn query_plain_tables(plain: &Connection, sql: &str) -> QueryResult {
     }
 }
 
-/// Returns whether a SQL statement defines the order of its rows.
+/// Returns whether an SQL statement defines the order of its rows.
 fn is_ordered(sql: &str) -> bool {
     sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
 }

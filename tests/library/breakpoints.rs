@@ -301,8 +301,8 @@ fn apply_changes(from: f64, changes: &[f64], floor: f64) -> f64 {
     changes.iter().fold(from, |value, change| (value + change).clamp(0.0, 1.0).max(floor))
 }
 
-/// Counts the writes of each mechanism. Checks that the writes of a day lead, bit for bit, from the recorded value of
-/// the previous day to the recorded value of the day.
+/// Counts the writes of each mechanism. Checks that the writes of a day, applied to the recorded value of the previous
+/// day, give exactly the recorded value of the day.
 fn check_write_chain(
     session: &mut Session,
     targets: &[WriteTarget],
@@ -539,8 +539,8 @@ fn condition_errors_name_column_and_similar_words() {
         ("churn(S1) = 0.05", 11, "one of > >= < <= rises falls is expected, not ="),
         ("churn(S1) > many", 13, "a number is expected, not many"),
         ("churn(S1) > 1e400", 13, "a number is expected, not 1e400"),
-        ("churn(S1) > 0.05 over", 22, "over needs a number of days"),
-        ("churn(S1) > 0.05 over 0", 18, "over needs 1 to 1000 days"),
+        ("churn(S1) > 0.05 over", 22, "\"over\" needs a number of days"),
+        ("churn(S1) > 0.05 over 0", 18, "\"over\" needs 1 to 1000 days"),
         ("churn(S1) > 0.05 over 1.5", 23, "a whole number is expected, not 1.5"),
         ("cash(S1) < 5", 1, "cash is a figure of the whole company"),
         ("reputation falls", 1, "reputation is a figure of a group"),

@@ -90,7 +90,7 @@ fn debrief_curves_match_the_record_and_reference_plays() {
     assert_eq!(found.bad_play.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
     assert_eq!(found.steps.len(), 2);
     assert_eq!(found.pitfalls, [(7, "Somebody bought.".to_owned())]);
-    // The debrief of the run that is read from disk is equal.
+    // The debrief is the same after the run is read from disk.
     let run = session.folder().expect("a folder").to_owned();
     drop(session);
     assert_eq!(debrief(&Session::open(&run, Access::Read, true).expect("it opens")), found);

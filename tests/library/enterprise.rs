@@ -167,7 +167,7 @@ fn check_turn_rows() {
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number = 0 AND (seat_count < 30 OR thread_type <> 'renegotiation')",
     );
-    // A thread closes with the acceptance and the row of the market, or with a rejection. Unanswered threads have no
+    // The last rows of a closed thread are the acceptance and the row of the market, or a rejection. Unanswered threads have no
     // closing row.
     assert_no_rows(
         run,

@@ -67,8 +67,7 @@ fn parameter_value(session: &Session, key: &str) -> f64 {
         .expect("a number")
 }
 
-/// Symptom of a fault: the number of days after which it is visible, and a check whether a view differs from the
-/// correct mechanism.
+/// Symptom of a fault: the number of days after which it is visible, and a function that checks whether a view shows the fault.
 struct FaultSymptom {
     days: u32,
     shows: fn(&mut Session) -> bool,
@@ -218,8 +217,8 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         for place in [&path, &branch_place] {
             verify(place).expect("it verifies");
         }
-        // The manifest can be lost, because the first line contains the number of the fault. It contains no other data
-        // about the fault.
+        // The manifest is not required, because the first line of the trajectory contains the fault number. The line
+        // contains no other data about the fault.
         let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
         std::fs::remove_file(path.join("run.toml")).expect("it goes");
@@ -228,7 +227,7 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let text = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
         assert!(!text.contains(&format!("{fault:?}")));
-        // A different number of the fault makes a different run.
+        // A different fault number makes a different run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
         let mut forged = read_manifest(&path).expect("of the line");
         forged.fault = Some(other);

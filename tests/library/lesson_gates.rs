@@ -1,5 +1,5 @@
-//! Special cases of lessons: goals relative to a reference play with rules, hidden state before the last part ends,
-//! interrupted starts, and figures that are measured in a separate simulation.
+//! Special cases of lessons: reference plays with rules, hidden state before the last part ends, interrupted starts,
+//! and figures measured in a separate simulation.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -148,7 +148,7 @@ fn interrupted_retry_is_counted_on_open() {
     }
 }
 
-/// Truncates a run to the given lines, as a kill does, and removes the files that store a later position.
+/// Truncates a run to the given lines, as if the program had been killed, and removes the files that store a later position.
 fn truncate_run(folder: &Path, lines: &[&str]) {
     std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n") + "\n").expect("written");
     for entry in std::fs::read_dir(folder).expect("a folder").flatten() {
@@ -170,7 +170,7 @@ fn goal_compares_with_a_reference_play_that_uses_rules() {
     for _ in 0..3 {
         advance_lesson_week(&mut session).expect("a week");
     }
-    // Without an implementation of the rules, the step is not judged instead of being judged wrongly.
+    // Without an implementation of the rules, the step is not judged, because the judgment could be wrong.
     advance_lesson_week(&mut session).expect("a week");
     assert!(session.lesson().expect("a lesson").goal_results(0).is_empty());
     assert_eq!(rejection_code(advance_lesson_week(&mut session)), "step_not_begun");

@@ -22,7 +22,8 @@ fn set_parameter(session: &mut Session, key: &str, value: Value, from: Option<u3
     session.set_parameter(key, &value, from).unwrap_or_else(|refusal| panic!("{key}: {refusal}"));
 }
 
-/// Plays a run of eight weeks that sets parameters of all types, with immediate effect, within a week, and from a later day on.
+/// Plays a run of eight weeks that sets parameters of all types. Changes take effect immediately, within a week, or
+/// from a later day on.
 fn run_with_overrides(folder: &Path) -> Session {
     let mut session = begin_run(folder, Mode::Debug, 140);
     apply_opening_decisions(&mut session);

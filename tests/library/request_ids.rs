@@ -1,4 +1,4 @@
-//! Requests with an id run only once: within a session, after reopening the run, and after a kill during a week.
+//! Requests with an ID run only once: within a session, after reopening the run, and after a kill during a week.
 
 use std::fs;
 use std::path::Path;
@@ -122,7 +122,7 @@ fn reused_or_invalid_request_ids_are_rejected() {
     let seven = session.call_once("set_prices", &json!({ "A": 13 }), Via::Http, &json!(7));
     assert_eq!(seven.expect_err("no text").code, "request_id_invalid");
     call(&mut session, "set_prices", json!({ "A": 13 }), &"ä".repeat(128)).expect("prices");
-    // Read-only tools ignore the request id.
+    // Read-only tools ignore the request ID.
     call(&mut session, "get_vars", json!({}), "x").expect("the day");
     call(&mut session, "get_vars", json!({}), "").expect("the day");
     assert_eq!(code(advance_week(&mut session, "on", json!(7), "w")), "unexpected_day");

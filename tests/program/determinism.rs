@@ -1,5 +1,5 @@
-//! A run has the same states in a different process, with a different number of threads, when it is closed and
-//! continued, and when it is killed.
+//! A run reaches the same states in another process, with another number of threads, after it is closed and continued,
+//! and after a kill.
 
 use std::fs;
 use std::io::Write;
@@ -83,7 +83,7 @@ fn figures_and_states_do_not_depend_on_threads() {
 #[test]
 fn saved_run_has_the_reported_state() {
     let runs = tempfile::tempdir().expect("a folder");
-    // Spending has fractions of dollars, of which the trajectory must preserve every bit.
+    // Spending has fractions of dollars, which the trajectory must preserve bit for bit.
     let mut command = program(runs.path());
     command.args(["run", "--policy", "P1a", "--seed", "5", "--until", "84", "--save"]);
     let value = run(&mut command).remove(0);
@@ -127,7 +127,7 @@ fn reopening_at_any_week_keeps_the_state() {
     let create = |storage| Session::create(new(storage), &Configuration::bundled()).expect("it begins");
     let mut straight = create(Storage::Memory);
     (0..WEEKS).for_each(|week| play_week(&mut straight, week));
-    // The run is closed after every week, or after one week.
+    // The run is closed after one of the weeks, or after every week.
     for left_after in (0..WEEKS).map(Some).chain([None]) {
         let mut session = create(Storage::Runs(folder.path().to_owned()));
         let place = session.folder().expect("a folder").to_owned();
@@ -183,8 +183,8 @@ fn new_run_options() -> Vec<&'static str> {
     [&["--seed", "9", "--days", "56", "--mode", "debug"][..], &SATURATED_MARKET].concat()
 }
 
-/// Returns the number of complete weeks on disk if the last line is an advance, so that the next week is in progress. Reads only the
-/// kinds of lines, because it must be much faster than a week.
+/// Returns the number of complete weeks on disk, or `None` unless the last line is an advance, which means that the
+/// next week is in progress. Reads only the kinds of lines, because the check must be much faster than a week.
 fn complete_weeks_while_simulating(folder: &Path) -> Option<usize> {
     let text = fs::read_to_string(folder.join("trajectory.jsonl")).ok()?;
     let last = text.strip_suffix('\n')?.lines().last()?;

@@ -153,7 +153,7 @@ fn check_large_bodies(server: &Server, known: &str) {
 fn check_concurrent_weeks(server: &Server, known: &str) {
     let day =
         || server.request_with_head("GET", "/vars", known, "").1["current_day"].as_u64().expect("a day");
-    // The current day is requested, because a random call of `next_week` may have been valid.
+    // The current day is requested, because a random call to `next_week` may have been valid.
     let before = day();
     let body = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let statuses: Vec<u16> = thread::scope(|scope| {

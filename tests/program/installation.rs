@@ -21,7 +21,7 @@ fn failed_checks(home: &Home) -> Vec<String> {
     let mut failed: Vec<String> =
         checks.into_iter().filter(|(_, verdict)| verdict == "wrong").map(|(name, _)| name).collect();
     assert_eq!(exit_code, i32::from(!failed.is_empty()));
-    // These depend on the machine.
+    // The checks of the clock and the disk depend on the machine.
     failed.retain(|name| name != "clock" && name != "disk");
     failed
 }
@@ -47,7 +47,7 @@ fn manual_pages_exist_for_commands_only() {
     home.run(&["man", "runs", "nonsense"]).assert_fails(2, &["novamind runs has no command nonsense"]);
 }
 
-/// Every crate that is compiled into the program on any system is on the page.
+/// The page lists every crate that is compiled into the program on any system.
 #[test]
 fn third_party_page_is_complete() {
     let output = Command::new(env!("CARGO"))
@@ -68,7 +68,7 @@ fn third_party_page_is_complete() {
         .expect("cargo starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).expect("UTF-8");
-    // Crates of this workspace have a path in parentheses, procedural macros a word.
+    // Crates of this workspace have a path in parentheses. Procedural macros have the word `proc-macro`.
     let crates: BTreeSet<&str> = text
         .lines()
         .filter(|line| !line.contains("(/") && !line.contains("(proc-macro)") && !line.is_empty())

@@ -108,7 +108,7 @@ fn why_shows_causes_without_hidden_state() {
             program_output.stdout
         );
         assert!(
-            program_output.stdout.contains("why needs a figure: cash_change"),
+            program_output.stdout.contains("\"why\" needs a figure: cash_change"),
             "{}",
             program_output.stdout
         );

@@ -156,7 +156,7 @@ const INSTRUCTION_EXAMPLES: [Example; 6] = [
         stage.assert_manual_contains("set_targeted_dev_spend", &["ln(1 + spend"]);
         stage.assert_term_contains("development", &["ln(1 + spend"]);
     }),
-    ("the increase of perceived quality", |stage| {
+    ("the increase in perceived quality", |stage| {
         stage.assert_term_contains("perceived quality", &["days as a subscriber"]);
     }),
     ("the ranges of the economy's index", |stage| {
@@ -211,7 +211,7 @@ const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
     ("the outcome of new leads", |stage| {
         assert!(list(&stage.fixture_data("queries first-offers")["rows"])[0]["signed_percent"].is_number());
     }),
-    ("the change of cash in the last week", |stage| {
+    ("the change in cash over the last week", |stage| {
         let report = stage.fixture_data("report week");
         assert!(list(&report["parts"]).iter().any(|part| part["part"] == "payments"), "{report}");
         assert!(report["decided"].is_array());

@@ -321,7 +321,7 @@ fn report_describes_weeks_and_runs() {
     let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
     let (output, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
     for part in [
-        "> report\nrefused no_week_yet: no week has run yet; next simulates a week\n",
+        "> report\nrefused no_week_yet: no week has run yet. To simulate a week, type: next\n",
         "> report\nweek to day 7: cash change -$",
         "capacity -$",
         "decisions before the week: price A: 0 → 12 $/month",
@@ -525,7 +525,7 @@ run 3 until subscribers(S1) < 0   # never
         format!("{EXAMPLE}break subscribers(S1) >= 20\nrun 70\nwho reputation(S1)\nback 1\n"),
     );
     for part in [
-        "breakpoint 1: subscribers(S1) >= 20; run DAYS stops there",
+        "breakpoint 1: subscribers(S1) >= 20; to simulate until then, type: run DAYS",
         "\nstopped on day ",
         " >= 20 (day before ",
         "satisfaction of ",

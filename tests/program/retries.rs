@@ -75,7 +75,7 @@ fn next_week_rejects_unknown_arguments() {
         assert_eq!(answer["field"], "expected_dy");
     }
     assert_eq!(trajectory_lines(&home, "call").len(), 2, "both are on record");
-    // The request id and the day can be arguments of the call or separate fields of the request.
+    // The request ID and the day can be arguments of the call or separate fields of the request.
     let filed = json!({ "rationale": "on", "predictions": predictions() });
     let mut within = filed.clone();
     within["request_id"] = "b".into();

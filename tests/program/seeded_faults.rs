@@ -53,7 +53,7 @@ fn play(home: &Home, planted: Option<&str>) -> String {
     options.extend(planted.into_iter().flat_map(|number| ["--planted", number]));
     let program_output = home.play(&options, &walkthrough_decisions());
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
-    // `run 02fe6680 · seed 7 · …`
+    // The output starts with `run 02fe6680 · seed 7 · …`.
     program_output.stdout.split_whitespace().nth(1).expect("the name of the run").to_owned()
 }
 
@@ -87,7 +87,8 @@ fn debugging_answers_match_the_program() {
             None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
         }
         let shown = run_commands(&home, &faulty, &row.commands);
-        // The page also lists figures of the run without the fault. They are not compared if a command runs further days.
+        // The page also lists figures of the run without the fault. These figures are not compared if a command
+        // simulates further days.
         let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
         let sound_output = if moves_on { String::new() } else { run_commands(&home, &sound, &row.commands) };
         let texts = figures(&row.shown);

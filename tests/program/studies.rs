@@ -192,9 +192,12 @@ fn leaving_and_withdrawing_work_at_every_prompt() {
         read.stdout
     );
     let passed = lab.play_session("P01\nyes\nperhaps\nskip\nabc\n300\nquit\n");
-    for part in
-        ["neither practice nor skip", "The session begins.", "quit leaves, withdraw erases", "To continue"]
-    {
+    for part in [
+        "neither practice nor skip",
+        "The session begins.",
+        "quit to leave, withdraw to erase",
+        "To continue",
+    ] {
         assert!(passed.stdout.contains(part), "{part} is missing in\n{}", passed.stdout);
     }
     let back = lab.play_session(&format!("P01\n9\n2\nhelp\nhelp branch\n{WEEKS}quit\n"));
@@ -318,7 +321,7 @@ fn watch_lists_sessions_and_writes_remarks() {
     lab.play_session("P02\nyes\n3\n");
     let watch = |options: &[&str]| lab.0.run(&[&["study", "watch", &lab.folder()], options].concat());
     let shown = watch(&["--once"]).stdout;
-    assert!(shown.contains("0 running · 2 of 3 assigned have begun") && shown.contains("left"), "{shown}");
+    assert!(shown.contains("0 running · 2 of 3 assigned started") && shown.contains("left"), "{shown}");
     assert_eq!(watch(&["--note", "P01", "asked what a lead is"]).exit_code, 0);
     watch(&["--note", "P 01", "no label"]).assert_fails(2, &["participant label"]);
     assert!(watch(&["--once"]).stdout.contains("P01: asked what a lead is"));
@@ -405,7 +408,7 @@ fn final_page_shows_only_permitted_results() {
                 assert_eq!(shown_words, [false; 5], "{after}");
                 assert!(!end.stdout.contains("day 35 ·") || json, "{}", end.stdout);
             }
-            // A participant who returns to the questions sees the result only if the study permits it.
+            // A participant who returns to the questions is shown the result only if the study permits it.
             let program_output = visit(&format!("{label}\n"));
             assert_eq!(program_output.stdout.contains('$'), shows, "{results}:\n{}", program_output.stdout);
         }

@@ -89,7 +89,7 @@ fn check_reports_impossible_designs() {
     for words in [
         "ok    world       scenario default\n",
         "note  questions   questions/week.toml is due after week 9: a session has 4 weeks",
-        "note  forecasts   of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84",
+        "note  forecasts   forecasts that come due in 4 weeks: 4 for 7 days ahead, 1 for 28 days ahead, 0 for 84",
     ] {
         assert!(output.stdout.contains(words), "{words} is missing in\n{}", output.stdout);
     }
@@ -202,7 +202,7 @@ fn protocol_lists_randomization_and_limits() {
         "| Active minutes per week of the company | 20 |".to_owned(),
         "| Active minutes per session | no limit |".to_owned(),
         "warned | 3 |".to_owned(),
-        "of a week: it is filed with naive forecasts".to_owned(),
+        "week limit: the week is filed with naive forecasts".to_owned(),
         "if no other follows within 60 s".to_owned(),
         "no; the week report and the Cash and Journal screens".to_owned(),
     ] {

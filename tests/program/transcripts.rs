@@ -23,7 +23,7 @@ set_daily_spend operations=120
 next "help" naive
 "#;
 
-/// Plays a run in plain mode, and returns its id and its last state hash.
+/// Plays a run in plain mode, and returns its ID and its last state hash.
 fn played_run(home: &Home) -> (String, String) {
     played_run_with(home, &["--seed", "11", "--days", "28", "--participant", "P01"])
 }
@@ -280,7 +280,7 @@ fn imported_evaluation_log_reaches_the_same_state() {
 }
 
 /// `tests/data/inspect.eval` was written by Inspect 0.3.285. It contains four calls of NovaMind tools, one of which
-/// was rejected, and a call of an unrelated tool.
+/// was rejected, and a call to an unrelated tool.
 #[test]
 fn archive_of_inspect_is_imported() {
     let home = Home::new();

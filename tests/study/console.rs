@@ -1,4 +1,4 @@
-//! A scripted participant at the console. The script controls the clock and therefore knows every time to the millisecond.
+//! A scripted participant at the console. The script controls the clock, so every time is known to the millisecond.
 
 use std::ops::{Deref, DerefMut};
 use std::time::Duration;
@@ -62,7 +62,7 @@ impl<'a> ConsoleParticipant<'a> {
         ConsoleParticipant { console, clock, diary, began: 0, current_view: view, spends: TimeCategory::Away }
     }
 
-    /// Advances the clock after all messages to the worker have been processed.
+    /// Advances the clock, each time after all messages to the worker have been processed.
     pub fn wait(&mut self, seconds: u64) {
         let mut left = Duration::from_secs(seconds);
         while !left.is_zero() {
@@ -85,7 +85,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.process_pending_events();
     }
 
-    /// Also waits for messages that are not responses: due questions and time limits.
+    /// Processes all pending messages, including due questions and time limits.
     fn process_pending_events(&mut self) {
         self.console.flush_notes();
         while let Some(message) = self.console.try_receive() {
@@ -254,7 +254,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("dialog", "final page", "cancelled", Some(seconds * 1000));
     }
 
-    /// Closes the final page, as before the next participant.
+    /// Closes the final page. The console then asks the next participant for a label.
     pub fn close_final_page(mut self) -> Diary {
         self.close_view();
         self.record_leaving("quit");
@@ -335,7 +335,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.note("draft", "rationale", "left", Some(0));
         self.assert_shows("The time for this week ran out: the week was submitted with naive forecasts.");
         self.assert_shows("a week ago the program, at the time limit, forecast");
-        self.assert_shows("Your draft was not submitted; the record keeps it as a draft.");
+        self.assert_shows("Your draft was not submitted; it was recorded as a draft.");
         self.record_week("time limit", "form");
     }
 
@@ -436,6 +436,6 @@ impl<'a> ConsoleParticipant<'a> {
     }
 }
 
-/// Limit of active seconds per week, and the time of the warning before it.
+/// Limit of active time per week, and time of the warning before the limit, in seconds.
 const WEEK_SECONDS: u64 = 600;
 const WARNING_SECONDS: u64 = 60;

@@ -1,4 +1,4 @@
-//! The actions of a script, which the script itself records in the format of the tables.
+//! The actions of a script, recorded by the script itself in the format of the tables.
 
 use std::collections::BTreeMap;
 
@@ -58,14 +58,14 @@ pub struct Diary {
     pub over: bool,
     /// Whether the run was erased or never created.
     pub erased: bool,
-    /// Whether times come from a real clock, for which the script knows only bounds.
+    /// Whether times come from a real clock, so that only bounds are known.
     pub is_real_time: bool,
     /// Minimum and maximum milliseconds by class of time.
     pub bounds: BTreeMap<TimeCategory, (u64, u64)>,
 }
 
 impl Diary {
-    /// Returns the week that is being decided, or the last week after the end.
+    /// Returns the week that is being decided or, after the end of the run, the last week.
     pub fn week(&self) -> u32 {
         (self.weeks.len() as u32 + 1).min(WEEKS)
     }
@@ -119,6 +119,6 @@ pub const WEEK: StudyQuestion =
 /// Question that is asked after a break.
 pub const BREAK: StudyQuestion =
     StudyQuestion { occasion: "break", questionnaire: "3-break", question: "spoke" };
-/// Question that is asked after the end.
+/// Question that is asked after the end of the run.
 pub const END: StudyQuestion =
     StudyQuestion { occasion: "end", questionnaire: "4-end", question: "strategy" };

@@ -7,7 +7,7 @@ use novamind::study::Study;
 
 use crate::support::home::{Home, ProgramOutput};
 
-/// A study on three machines.
+/// A lab that runs a study on three machines.
 pub struct Lab {
     home: Home,
 }

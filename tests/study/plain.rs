@@ -1,5 +1,5 @@
-//! A scripted participant in plain mode: the built program with a real clock. The script knows lower and upper bounds of all
-//! times.
+//! A scripted participant in plain mode: the built program with a real clock. The script computes lower and upper
+//! bounds of all times.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout};

@@ -67,13 +67,13 @@ pub fn advance_weeks(session: &mut Session, count: usize) {
     }
 }
 
-/// Returns the rows of a SQL statement, up to the row limit of a query.
+/// Returns the rows of an SQL statement, up to the row limit of a query.
 #[track_caller]
 pub fn query_rows(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
     session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
 }
 
-/// Returns the rows of a SQL statement as numbers.
+/// Returns the rows of an SQL statement as numbers.
 #[track_caller]
 pub fn query_numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     let number = |cell: &Cell| match cell {
@@ -84,19 +84,19 @@ pub fn query_numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     query_rows(session, sql).iter().map(|row| row.iter().map(number).collect()).collect()
 }
 
-/// Returns the first column of a SQL statement as numbers.
+/// Returns the first column of an SQL statement as numbers.
 #[track_caller]
 pub fn query_column(session: &mut Session, sql: &str) -> Vec<f64> {
     query_numbers(session, sql).iter().map(|row| row[0]).collect()
 }
 
-/// Returns the first cell of a SQL statement as a number.
+/// Returns the first cell of an SQL statement as a number.
 #[track_caller]
 pub fn query_number(session: &mut Session, sql: &str) -> f64 {
     query_column(session, sql)[0]
 }
 
-/// Returns the first cell of a SQL statement as a text.
+/// Returns the first cell of an SQL statement as a string.
 #[track_caller]
 pub fn query_text(session: &mut Session, sql: &str) -> String {
     match &query_rows(session, sql)[0][0] {

@@ -265,7 +265,7 @@ fn links_resolve() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// Returns whether a word is a path in the repository. Capitals are placeholders.
+/// Returns whether a word is a path in the repository. Words in capitals are placeholders.
 fn is_path(word: &str) -> bool {
     let tops = ["src/", "tests/", "configs/", "assets/", "docs/"];
     if ["NAME", "MODULE", "PART"].iter().any(|stands_for| word.contains(stands_for)) {
@@ -301,7 +301,7 @@ fn named_files_exist() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// Returns whether a documentation page exists, and the heading if the link names one.
+/// Returns whether a link to a documentation page resolves, including its heading if the link names one.
 fn is_existing_page_or_heading(word: &str) -> bool {
     let (file, anchor) = word.split_once('#').unwrap_or((word, ""));
     let path = root().join(file);

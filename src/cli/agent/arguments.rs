@@ -48,7 +48,9 @@ pub fn parse_next_week(words: &[String]) -> Result<Value, Failure> {
 
 fn parse_number(word: &str) -> Result<f64, Failure> {
     let read = word.parse::<f64>().ok().filter(|value| value.is_finite());
-    read.ok_or_else(|| Failure::usage(format!("{word} is not a number; write it as 950000 or 9.5e5")))
+    read.ok_or_else(|| {
+        Failure::usage(format!("{word} is not a number; write a number such as 950000 or 9.5e5"))
+    })
 }
 
 /// Returns the arguments of a tool call as a JSON value.

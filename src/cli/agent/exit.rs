@@ -19,8 +19,8 @@ pub fn unreachable_failure(error: &str) -> Failure {
     Failure::with_code(
         UNREACHABLE,
         format!(
-            "the server does not respond: {error}. Everything confirmed is saved; `novamind agent status` restarts it and \
-             shows the day of the run"
+            "the server does not respond: {error}. Everything confirmed is saved. `novamind agent status` restarts \
+             the server and shows the day of the run"
         ),
     )
 }

@@ -81,7 +81,7 @@ enum AgentCommand {
 }
 
 impl Options {
-    /// Passes `--code` on to the called tool. Without a study, `--code` cannot be an experimenter's code.
+    /// Passes `--code` to the called tool. Without a study, `--code` cannot be an experimenter's code.
     pub fn restore_code_argument(&mut self, code: String) {
         if let AgentCommand::Call { arguments, .. } = &mut self.command {
             arguments.splice(0..0, ["--code".to_owned(), code]);
@@ -146,7 +146,7 @@ fn create_run(new: &NewRunOptions, context: &Context) -> Result<(), Failure> {
     print(&format!("{value}\n"))
 }
 
-/// Returns the run and a connection to its server, which is started if necessary.
+/// Returns the run and a connection to its server. Starts the server if necessary.
 fn connect(named: Option<&str>, context: &Context) -> Result<(AgentRun, RemoteServer), Failure> {
     let agent_run = AgentRun::find(named, context)?;
     let remote = agent_run.connect_or_start(Authentication::Token)?;

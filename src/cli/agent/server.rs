@@ -19,7 +19,7 @@ use crate::server::{RemoteServer, write_client};
 
 /// File in the folder of runs that names the last run that `agent new` created.
 const LATEST_RUN_FILE: &str = "agent-run.txt";
-/// Time limit for stopping a server, which first finishes the week that it simulates.
+/// Time limit for stopping a server. The server first finishes a running week.
 const STOP_DEADLINE: Duration = Duration::from_secs(120);
 
 /// Whether requests must include a token.
@@ -44,7 +44,7 @@ impl AgentRun {
     /// Creates a run for an agent.
     ///
     /// # Errors
-    /// The errors of `serve --new`.
+    /// As `serve --new`.
     pub fn create(new: &NewRunOptions, context: &Context) -> Result<AgentRun, Failure> {
         let mut session = create_run(new, context)?;
         session.save()?;
@@ -55,7 +55,7 @@ impl AgentRun {
     /// Finds the named run, or the run that `agent new` last created in this folder of runs.
     ///
     /// # Errors
-    /// There is no such run, or it belongs to a study.
+    /// The run does not exist or belongs to a study.
     pub fn find(named: Option<&str>, context: &Context) -> Result<AgentRun, Failure> {
         let runs = context.runs_folder()?;
         let remembered =
@@ -179,7 +179,10 @@ impl AgentRun {
             return Err(Failure::with_code(code.unwrap_or(1), message));
         }
         RemoteServer::find(&self.folder, &self.id).ok_or_else(|| {
-            Failure::failed(format!("the server does not respond; its output is in {}", log.display()))
+            Failure::failed(format!(
+                "the server does not respond; for the server's output, see {}",
+                log.display()
+            ))
         })
     }
 }

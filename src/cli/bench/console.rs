@@ -10,7 +10,7 @@ use crate::lab::benchmark::{
 use crate::lab::play_opponents;
 use crate::tui::glyphs::Glyphs;
 
-/// Weeks per repetition in which key presses are timed, several hundred in total.
+/// Number of weeks per repetition. A repetition times several hundred key presses.
 const WEEKS: usize = 6;
 
 pub const CASES: &[BenchCase] = &[
@@ -30,13 +30,13 @@ pub const CASES: &[BenchCase] = &[
         name: "keys",
         figures: &[
             BenchFigure::with_target(
-                "key to frame while a week runs, 200×60: 99 of 100",
+                "key press to frame during a week, 200×60: 99 of 100",
                 BenchUnit::Milliseconds,
                 16.0,
                 None,
             ),
             BenchFigure::without_target(
-                "key to frame while a week runs, 200×60: median",
+                "key press to frame during a week, 200×60: median",
                 BenchUnit::Milliseconds,
             ),
         ],

@@ -12,20 +12,20 @@ use crate::record::folder::runs::run_folder;
 use crate::server::{BoundPort, HttpOptions, RemoteServer, serve_http};
 use crate::session::{Access, Session};
 
-/// Requests of each kind per repetition.
+/// Number of requests of each kind per repetition.
 const REQUESTS: usize = 40;
 
 pub const CASES: &[BenchCase] = &[BenchCase {
     name: "http",
     figures: &[
-        BenchFigure::without_target("over HTTP at 165,000: a call", BenchUnit::Milliseconds),
+        BenchFigure::without_target("HTTP with 165,000 subscribers: tool call", BenchUnit::Milliseconds),
         BenchFigure::with_target(
-            "over HTTP at 165,000: a small query, 99 of 100",
+            "HTTP with 165,000 subscribers: small query, 99 of 100",
             BenchUnit::Milliseconds,
             50.0,
             None,
         ),
-        BenchFigure::without_target("over HTTP at 165,000: a week", BenchUnit::Milliseconds),
+        BenchFigure::without_target("HTTP with 165,000 subscribers: week", BenchUnit::Milliseconds),
     ],
     needs_new_process: false,
     is_slow: false,

@@ -27,7 +27,7 @@ pub struct PlayOptions {
 /// Conducts the experiment of a command. Results are cached under its name, so that each run is played once.
 ///
 /// # Errors
-/// An arm cannot start, a run cannot be played, the results cannot be written, or the user stopped the experiment.
+/// An arm cannot start, a run cannot be played, or the results cannot be written. Stopping the experiment is also an error.
 pub fn run_experiment(
     command: &str,
     experiment: &Experiment,
@@ -54,7 +54,7 @@ pub fn run_experiment_with_known(
     run_with_result_file(&path, experiment, &all, (options, context), add_known, every)
 }
 
-/// Conducts only the runs of an experiment with these numbers, and stores their results in a file.
+/// Conducts only the experiment's runs with the given numbers, and stores their results in a file.
 ///
 /// # Errors
 /// As [`run_experiment`].

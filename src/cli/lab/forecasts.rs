@@ -39,8 +39,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     print(&coverage_table(&runs, &horizons, bands))?;
     if let (Some(path), Some(bands)) = (&options.write, &measured) {
         let text = toml::to_string(bands).map_err(|error| Failure::failed(error.to_string()))?;
-        let head = "# Intervals of naive forecasts, in shares of what moves until then. `novamind lab forecasts --write` makes\n\
-                    # this file.\n\n";
+        let head = "# Intervals of naive forecasts, as shares of the income and costs expected until the horizon. `novamind lab \
+                    forecasts --write`\n# writes this file.\n\n";
         write_text(path, &format!("{head}{text}"))?;
     }
     Ok(())

@@ -78,11 +78,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     };
     let mut exhibit = ResultsTable::new(&results, &left_out, &idle, by).to_lab_report();
     if closed > 0 {
-        exhibit.notes.push(format!("Left out because their study hides results: {closed}."));
+        exhibit.notes.push(format!("Runs left out because their study hides results: {closed}."));
     }
     exhibit
         .notes
-        .extend(unreadable.iter().map(|why| format!("Left out because the run cannot be read: {why}.")));
+        .extend(unreadable.iter().map(|why| format!("Run left out because it cannot be read: {why}.")));
     options.output.show(&exhibit)
 }
 

@@ -39,7 +39,7 @@ pub struct Options {
 
 #[derive(Debug, Subcommand)]
 enum RunsCommand {
-    /// List the runs, the last played first; `runs` alone does the same
+    /// List the runs, the most recently played first; `runs` without a subcommand does the same
     List {
         /// List only runs of this participant
         #[arg(long, value_name = "LABEL")]

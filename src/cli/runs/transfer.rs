@@ -350,7 +350,7 @@ fn describe_import(
     under: Option<&str>,
 ) -> String {
     let (new, remark) = match imported {
-        ImportOutcome::New(_) => (true, "imported; its database is built when you first open it"),
+        ImportOutcome::New(_) => (true, "imported; the database is built when you first open the run"),
         ImportOutcome::AlreadyPresent { notes_differ: false } => {
             (false, "already exists, line for line; nothing was changed")
         }

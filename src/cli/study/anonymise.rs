@@ -82,12 +82,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| failed(&links_path, &error))?;
     let told_apart = smallest_group.map_or(String::new(), |(size, values)| {
         format!(
-            "the smallest group of sessions with the same seed and condition has {size} ({values}); --without seed,condition \
-             leaves these columns out\n"
+            "the smallest group of sessions with the same seed and condition has {size} ({values}); to leave these \
+             columns out, add --without seed,condition\n"
         )
     });
     print(&format!(
-        "the anonymized tables of {} are in {}; keep {} and {}, and publish neither\n{told_apart}",
+        "the anonymized tables of {} are in {}; keep {} and {}, but do not publish them\n{told_apart}",
         pluralize(links.len() as u32, "run"),
         options.out.display(),
         options.secret.display(),

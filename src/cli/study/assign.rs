@@ -17,7 +17,7 @@ pub struct Options {
     /// Number of participants
     #[arg(long, value_name = "N", required_unless_present = "add", conflicts_with = "add")]
     participants: Option<u32>,
-    /// Number of participants to add to the existing assignment, whose rows do not change
+    /// Number of participants to add to the existing assignment; existing rows do not change
     #[arg(long, value_name = "N")]
     add: Option<u32>,
     /// Prefix of the labels
@@ -55,8 +55,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         && !made.rows.starts_with(&there.rows)
     {
         return Err(Failure::failed(format!(
-            "the rows of {} were not drawn with seed {draw} for this protocol: give the --draw that was used, or \
-             add the rows by hand. Nothing was changed",
+            "the rows of {} were not drawn with seed {draw} for this protocol: give the seed that was used with \
+             --draw, or add the rows by hand. Nothing was changed",
             target.display()
         )));
     }
@@ -83,7 +83,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 fn randomization_seed(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
     match (options.draw, protocol.seeds.draw) {
         (Some(asked), Some(protocol_seed)) if asked != protocol_seed => Err(Failure::usage(format!(
-            "{STUDY_FILE} sets draw = {protocol_seed}: leave out --draw, or change it there"
+            "{STUDY_FILE} sets draw = {protocol_seed}: leave out --draw, or change draw in {STUDY_FILE}"
         ))),
         (asked, protocol_seed) => Ok(asked.or(protocol_seed).unwrap_or(1)),
     }

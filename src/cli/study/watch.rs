@@ -61,7 +61,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     loop {
         // The terminal stays in its normal mode, so that scrolling and ctrl-c work as usual.
         print(&format!(
-            "\x1b[H\x1b[2J{}\nctrl-c stops watching\n",
+            "\x1b[H\x1b[2J{}\npress ctrl-c to stop watching\n",
             escape_control_characters(&status_text(&study, &look(), &machines))
         ))?;
         std::thread::sleep(REFRESH_INTERVAL);
@@ -102,7 +102,7 @@ fn status_text(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> St
     let mut people: Vec<&str> = all.iter().map(|status| status.participant.as_str()).collect();
     people.dedup();
     let mut text =
-        format!("{} · {running} running · {}{places} have begun\n\n", study.protocol.name, people.len());
+        format!("{} · {running} running · {}{places} started\n\n", study.protocol.name, people.len());
     text += &format_result(&status_table(all));
     text += &format!("\n\n{}\n", visit_summary(study, all, machines));
     let mut noted: Vec<Remark> = machines.iter().flat_map(|runs| read_remarks(runs)).collect();

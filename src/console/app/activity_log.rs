@@ -103,8 +103,8 @@ impl App {
         }
     }
 
-    /// Records the end of a view: the screen was left, a week started or the clock stopped. Time during which a dialog
-    /// covers the screen counts for the screen. The dialog has a separate event.
+    /// Records the end of a view: the screen was left, a week started or the clock stopped. The view time of a screen
+    /// includes the time during which a dialog covers the screen. The dialog has a separate event.
     pub(super) fn record_view(&mut self) {
         let now = self.stopwatch.elapsed();
         let Stage::Run(run) = &mut self.stage else { return };
@@ -269,7 +269,8 @@ impl App {
         self.save_drafts_if_due(now);
     }
 
-    /// Returns the time until [`novamind_worker::message::Message::TimePassed`] is due, or `None` if nothing depends on it.
+    /// Returns the time until [`novamind_worker::message::Message::TimePassed`] is due, or `None` if nothing depends
+    /// on the time.
     pub fn time_until_wake(&self) -> Option<Duration> {
         if !self.is_played() || self.stopwatch.is_paused() {
             return None;

@@ -1,4 +1,4 @@
-//! Leaving a run: open views are recorded as left, the run is saved and closed, then the menu or the shell follows.
+//! Leaving a run: open views are recorded as left, the run is saved and closed, and then the menu opens or the program exits.
 
 use super::{App, BusyState, Order, Stage};
 use crate::context::ScreenId;

@@ -102,7 +102,7 @@ mod tests {
         for (step, now) in [("review", 100), ("review", 110), ("rationale", 150), ("review", 400)] {
             layers.enter_step(step, at(now));
         }
-        let used = layers.pop(DialogOutcome::Cancelled, at(1000)).expect("it was open");
+        let used = layers.pop(DialogOutcome::Cancelled, at(1000)).expect("an open dialog");
         let steps: Vec<(&str, u64)> =
             used.steps.iter().map(|dialog_step| (dialog_step.step.as_str(), dialog_step.for_ms)).collect();
         assert_eq!((used.what.as_str(), used.for_ms), ("next week", 900));

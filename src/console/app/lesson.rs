@@ -127,7 +127,7 @@ impl App {
             };
             let key = self.keys.label(Action::NextWeek).unwrap_or_default();
             let text = format!(
-                "{who} for an answer. Go to Inbox, where {key} offers to answer with the rules that you sent last?"
+                "{who} for an answer. Go to Inbox? There, {key} lets you answer with the rules that you sent last."
             );
             let confirm_dialog = ConfirmDialog::new("Next week", text, vec![Effect::Show(ScreenId::Inbox)]);
             return self.open_dialog(confirm_dialog.with_alternative(Action::SkipAnswers, vec![week]));

@@ -10,7 +10,7 @@ use novamind_worker::page_questions::HiddenValuesQuestion;
 use novamind_worker::question::Pending;
 use std::sync::Arc;
 
-/// State of the display of true values: a flag whether true values are shown, the requested day, and the received values.
+/// Visibility, requested day and received values of the overlay that shows true values.
 #[derive(Default)]
 pub struct HiddenValuesOverlay {
     is_on: bool,

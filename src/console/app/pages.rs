@@ -220,8 +220,8 @@ mod tests {
         app.start(Effect::ShowCurve(None));
         let ask = take_questions::<CurveQuestion>(&mut app);
         app.start(Effect::ShowText("over".to_owned(), "the curve".to_owned()));
-        answer_question::<CurveQuestion>(&mut app, &ask[0], rejected_answer("it came meanwhile"));
+        answer_question::<CurveQuestion>(&mut app, &ask[0], rejected_answer("the answer was rejected"));
         press_key(&mut app, "esc");
-        assert!(screen_text(&app).contains("it came meanwhile"));
+        assert!(screen_text(&app).contains("the answer was rejected"));
     }
 }

@@ -92,8 +92,8 @@ fn draft_retention_text(rules: &SessionRules) -> String {
     let kept = match rules.drafts {
         _ if !rules.records_activity("draft") => "its text is lost",
         DraftRecording::None => "its text is lost",
-        DraftRecording::Lengths => "the record keeps its length, not its text",
-        DraftRecording::Text => "the record keeps it as a draft",
+        DraftRecording::Lengths => "its length was recorded, but not its text",
+        DraftRecording::Text => "it was recorded as a draft",
     };
     format!("Your draft was not submitted; {kept}.")
 }

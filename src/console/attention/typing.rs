@@ -12,7 +12,7 @@ pub const CELL_SEPARATOR: &str = "\u{1f}";
 /// Minimum time between two key presses that counts as a pause.
 const MIN_PAUSE: Duration = Duration::from_secs(2);
 
-/// Source of a change of a text.
+/// Source of a change in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EditSource {
     /// A key press.
@@ -42,7 +42,7 @@ struct EditEpisode {
 }
 
 impl TypingLog {
-    /// Records a change of a text.
+    /// Records a change in a text.
     pub fn record_change(
         &mut self,
         place: &str,
@@ -145,7 +145,7 @@ mod tests {
         ] {
             typing.record_change("sql", before, after.to_owned(), edit, at(now));
         }
-        let draft = typing.finish("sql", TextEditOutcome::Left, true).expect("it was edited");
+        let draft = typing.finish("sql", TextEditOutcome::Left, true).expect("an edited text");
         assert_eq!((draft.length, draft.typed, draft.deleted, draft.pasted), (14, 2, 1, 5));
         assert_eq!((draft.pauses, draft.for_ms, draft.text.as_deref()), (1, 6000, Some("pasted, filled")));
         assert_eq!(typing.finish("sql", TextEditOutcome::Sent, true), None);

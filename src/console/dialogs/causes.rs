@@ -1,4 +1,4 @@
-//! Causes of the change of a weekly figure: the equation, and a bar for each cause.
+//! Causes of the change in a weekly figure: the equation, and a bar for each cause.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -33,7 +33,7 @@ pub struct CausesDialog {
 }
 
 impl CausesDialog {
-    /// Requests the causes of the change of a figure in a week.
+    /// Requests the causes of the change in a figure in one week.
     pub fn new(figure: Figure, quantity: WeekQuantity, week: u32) -> (CausesDialog, OutgoingQuestion) {
         let (pending, ask) = Pending::with_question(CausesQuestion { quantity, week });
         (CausesDialog { figure, quantity, week, asked: pending, answer: None, selected: 0 }, ask)

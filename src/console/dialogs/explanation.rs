@@ -116,7 +116,7 @@ impl ExplainDialog {
     /// Opens the dialog with the explanation of a screen and a list of its terms.
     pub fn for_screen(screen: ScreenId, numbers: Arc<ParameterNumbers>) -> ExplainDialog {
         let entry = screen.action().entry();
-        let help = "Select a figure or field to explain it, or choose a term of this screen.";
+        let help = "Select a figure or field to see its explanation, or choose a term of this screen.";
         let page = ExplanationPage {
             term: entry.name.to_owned(),
             title: entry.title.to_owned(),

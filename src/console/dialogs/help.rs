@@ -23,7 +23,7 @@ struct HelpSection {
     actions: Vec<Action>,
 }
 
-/// Actions that lists support and forms do not.
+/// Actions that lists support but forms do not.
 const FILTER_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
 
 impl HelpDialog {

@@ -89,7 +89,7 @@ pub trait Dialog {
         None
     }
 
-    /// Returns the text that is being edited: its place, as in the record, and its content.
+    /// Returns the place and the content of the text that is being edited. The place is in the notation of the record.
     fn edited_text(&self) -> Option<(String, String)> {
         None
     }

@@ -299,7 +299,7 @@ fn entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrar
         if is_outside_lesson(&entry.effect, company) {
             entry.doc = format!("not in this lesson: {}", entry.doc);
         } else if let Some(why) = unavailable_reason(&entry.effect, company) {
-            entry.doc = format!("not now, {why}: {}", entry.doc);
+            entry.doc = format!("unavailable ({why}): {}", entry.doc);
         }
     }
     list
@@ -450,7 +450,7 @@ mod tests {
             &QueryLibrary::bundled(),
         );
         let report = fresh.entries.iter().find(|entry| entry.title == "last week").expect("a command");
-        assert!(report.doc.starts_with("not now, no week has run yet: "), "{}", report.doc);
+        assert!(report.doc.starts_with("unavailable (no week has run yet): "), "{}", report.doc);
         for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
             let arguments = serde_json::from_str(arguments).expect("JSON");
             session.call(tool, &arguments, novamind_record::trajectory::record::Via::Form).expect(tool);

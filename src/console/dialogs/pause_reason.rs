@@ -1,4 +1,4 @@
-//! Asks for the reason of a pause, if the study requires one.
+//! Asks for the reason for a pause, if the study requires a reason.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -11,7 +11,7 @@ use novamind_tui::canvas::{Canvas, centered_rect};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 
-/// The dialog that asks for the reason of a pause.
+/// The dialog that asks for the reason for a pause.
 #[derive(Default)]
 pub struct PauseReasonDialog {
     reason: TextField,

@@ -1,4 +1,4 @@
-//! Offers drafts that were unsent when the program stopped: restore or discard them.
+//! Dialog that offers to restore or discard the drafts that were unsent when the program stopped.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;

@@ -41,7 +41,7 @@ impl SourceRowsDialog {
     fn note(&self) -> String {
         match &self.answer {
             None => String::new(),
-            Some(Err(_)) => "refused".to_owned(),
+            Some(Err(_)) => "rejected".to_owned(),
             Some(Ok(rows)) => {
                 let count = grouped_number(rows.rows.len() as f64, 0);
                 let noun = if rows.rows.len() == 1 { "row" } else { "rows" };

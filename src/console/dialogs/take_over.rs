@@ -65,7 +65,7 @@ impl Dialog for TakeOverDialog {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let text = format!(
-            "A new run starts here, on day {} before week {}, with everything done so far. The recorded run does not change.",
+            "A new run starts here, on day {} before week {}, with all actions up to this position. The recorded run does not change.",
             self.day, self.week
         );
         let lines = wrap(&text, 72);

@@ -119,7 +119,7 @@ impl Dialog for WeekReportDialog {
             canvas.register_click(row, Click::Row(0, at));
         }
         let close = context.hint(Action::Cancel);
-        // The change of the first week has no explanation, because there is no previous week.
+        // The change in the first week has no explanation, because there is no previous week.
         let why = match context.company.can_explain_causes() && context.company.weeks.len() > 1 {
             true => format!(" · {}", context.hint(Action::Why)),
             false => String::new(),
@@ -147,7 +147,7 @@ impl WeekReportDialog {
         let notices = &context.company.notices;
         let news = news_section(canvas, week_report, width, context);
         let decided = decisions_section(canvas, week_report, width, if height >= 26 { 6 } else { 2 });
-        // `fixed` includes two headings and, in tall windows, four blank lines between five sections.
+        // `fixed` includes two headings and, in tall windows, the four blank lines between the five sections.
         let airy = height >= 24;
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
         let room = height.saturating_sub(fixed);
@@ -276,8 +276,8 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> S
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// Describes a due forecast and the actual value in one or two lines. With `of_limit`, the program submitted the forecast
-/// at the time limit.
+/// Describes a due forecast and the actual value in one or two lines. `of_limit` means that the program submitted the
+/// forecast at the time limit.
 fn forecast_lines<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Section<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };

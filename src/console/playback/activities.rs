@@ -42,7 +42,7 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
             let what = match clock.event {
                 ClockEvent::Stopped => "stopped the clock",
                 ClockEvent::Started => "started the clock",
-                ClockEvent::Forgotten => "the clock was stopped when the program ended",
+                ClockEvent::Forgotten => "the program ended while the clock was stopped",
             };
             let reason = clock.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
             let stood = clock.stood_ms.map_or(String::new(), |ms| format!(" after {}", format_millis(ms)));
@@ -87,10 +87,10 @@ fn presence_summary(presence: &Presence) -> String {
         },
         PresenceEvent::Closed => match presence.cause {
             None | Some(DetachCause::Quit) => "closed".to_owned(),
-            Some(DetachCause::EndOfInput) => "closed: the input ended".to_owned(),
+            Some(DetachCause::EndOfInput) => "closed at the end of the input".to_owned(),
             Some(DetachCause::Signal) => "closed by a signal".to_owned(),
             Some(DetachCause::Hangup) => "closed with its terminal".to_owned(),
-            Some(DetachCause::Strict) => "closed by a rejection".to_owned(),
+            Some(DetachCause::Strict) => "closed after a rejection (strict mode)".to_owned(),
             Some(DetachCause::Withdrawn) => "closed: the participant withdrew".to_owned(),
         },
         PresenceEvent::Idle => format!("no input for {}", format_millis(presence.idle_ms.unwrap_or(0))),

@@ -157,7 +157,7 @@ impl StudyPage {
                 "Thank you",
                 vec![
                     text(
-                        "You have finished. Thank you for taking part. Everything is recorded; please tell the experimenter.",
+                        "Thank you for taking part. Everything has been saved. Please tell the experimenter that you have finished.",
                     ),
                     next_person,
                 ],

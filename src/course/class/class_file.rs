@@ -185,7 +185,8 @@ impl Class {
         self.students.iter().find(|student| student.label == label)
     }
 
-    /// Returns the labels of students whose handout file in the folder differs from the original. Missing files are not listed.
+    /// Returns the labels of students whose handout file in the folder differs from the original. Missing handouts are
+    /// not listed.
     pub(super) fn altered_handouts(&self, folder: &Path) -> Vec<String> {
         let is_altered = |student: &&ClassStudent| {
             let path = folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));

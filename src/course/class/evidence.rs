@@ -45,7 +45,7 @@ pub struct Evidence {
 pub struct StepEvidence {
     /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
-    /// The actual value that the student had to guess.
+    /// The actual value of the quantity that the student had to guess.
     pub outcome: Option<f64>,
     /// Results of the goals of the step; empty until the step has ended.
     pub goals: Vec<GoalEvidence>,
@@ -63,7 +63,7 @@ pub struct GoalEvidence {
 /// Re-simulates a run, compares every recorded state, and measures the goals and outcomes of its lesson events.
 ///
 /// # Errors
-/// Returns the first event that does not match, or an error if the run is missing or has another version.
+/// Returns an error that names the first event that does not match, or an error if the run is missing or has another version.
 pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evidence, RunError> {
     let (origin, trajectory) = read_origin(folder)?;
     let manifest = &origin.manifest;
@@ -74,7 +74,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
     let part = stamp.map_or(0, |stamp| (stamp.part as usize).wrapping_sub(1));
     if let Some(lesson) = lesson.filter(|lesson| part >= lesson.plan.parts.len()) {
         let message = format!(
-            "its first event names a part that the lesson does not have; it has {}",
+            "its first event names a part that does not exist; the lesson has {}",
             lesson.plan.parts.len()
         );
         return Err(RunError::InvalidRequest(message));
@@ -235,7 +235,7 @@ pub enum RunVerdict {
     Conflicting,
     /// The run used a different lesson, or a different version of the lesson.
     OtherLesson,
-    /// The run started from the handout of a different student, or its past differs from the one in the handout.
+    /// The run started from the handout of a different student, or its past differs from the past in the handout.
     OtherHandout,
     /// The run did not start from a handout of this class.
     Unknown,

@@ -102,7 +102,7 @@ impl Handout {
         let format = text.parse::<toml::Table>().ok().and_then(|table| table.get("format")?.as_integer());
         if let Some(format) = format.filter(|format| *format > i64::from(HANDOUT_FORMAT)) {
             return Err(refused(&format!(
-                "the handout has format {format}, but this program reads format {HANDOUT_FORMAT}. Use a later version"
+                "the handout has format {format}, but this program reads format {HANDOUT_FORMAT}. Use a later version of the program"
             )));
         }
         let altered = "this handout was altered or truncated: its seal does not match its content";
@@ -130,7 +130,7 @@ impl Handout {
                 )?))
             }
             (None, Some(past)) => HandoutContent::Run(past),
-            _ => return Err(refused("it must contain either a lesson or a run")),
+            _ => return Err(refused("a handout must contain either a lesson or a run")),
         };
         Ok(Handout { label: file.label, stamp, content })
     }
@@ -228,7 +228,7 @@ impl Handout {
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
                 true => Ok(()),
                 false => Err(RunError::InvalidRequest(
-                    "the run of the handout belongs to another handout".to_owned(),
+                    "the manifest in the handout has the stamp of a different handout".to_owned(),
                 )),
             });
         if written.is_err() {

@@ -1,7 +1,7 @@
 //! Classes: handouts of an instructor, and the submissions of students (docs/lessons/classes.md).
 //!
-//! Every student has a separate handout. It contains the lesson or the past of a run, the student's label, and the
-//! name of the run to create. The record of a run that started from a handout contains the stamp of the class.
+//! Every student has a separate handout. A handout contains the lesson or the past of a run, the student's label, and
+//! the name of the run to create. The record of a run that started from a handout contains the stamp of the class.
 //! Submissions from any number of machines can therefore be assigned to students.
 
 pub(crate) mod class_file;

@@ -1,7 +1,7 @@
 //! The debrief of a part of a lesson: compares the student's play with the reference play and the pitfall play.
 //!
 //! All plays start from the same state and are simulated in memory. The student's play is re-simulated as well.
-//! Decisions are compared only if its re-simulation reproduces the recorded cash of every day.
+//! Decisions are compared only if this re-simulation reproduces the recorded cash of every day.
 
 use serde::{Serialize, Serializer};
 
@@ -58,9 +58,9 @@ pub struct Debrief {
     pub cash_by_day: Vec<f64>,
     /// Cash curve of the reference play; `None` if the play cannot be simulated.
     pub reference: Option<ReferenceCurve>,
-    /// Cash curve of the bad play; `None` if the play cannot be simulated.
+    /// Cash curve of the pitfall play; `None` if the play cannot be simulated.
     pub bad_play: Option<ReferenceCurve>,
-    /// The figure by which the part is judged; `None` if it is judged by cash.
+    /// The figure by which the part is judged; `None` if the part is judged by cash.
     pub judged_by: Option<JudgedFigure>,
     /// First difference between the student's decisions and the reference play.
     pub comparison: DecisionComparison,
@@ -88,7 +88,7 @@ pub struct ReferenceCurve {
     pub cash_by_day: Vec<f64>,
 }
 
-/// The weekly figure by which a part is judged. It is the figure of the first goal in the last step that has goals.
+/// The weekly figure by which a part is judged: the figure of the first goal in the last step that has goals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JudgedFigure {
     /// The weekly figure.
@@ -97,7 +97,7 @@ pub struct JudgedFigure {
     pub actual: Vec<(u32, f64)>,
     /// Values of the reference play; `None` if the play cannot be simulated.
     pub reference: Option<Vec<(u32, f64)>>,
-    /// Values of the bad play; `None` if the play cannot be simulated.
+    /// Values of the pitfall play; `None` if the play cannot be simulated.
     pub bad_play: Option<Vec<(u32, f64)>>,
 }
 
@@ -157,7 +157,7 @@ pub struct ReferenceEffect {
     pub own: f64,
     /// Cash with the decisions of the reference play in one week, dollars.
     pub with: f64,
-    /// Both values of the figure by which the part is judged; `None` if it is judged by cash.
+    /// Values of the figure by which the part is judged, in both simulations; `None` if the part is judged by cash.
     #[serde(skip)]
     pub judged: Option<(f64, f64)>,
 }
@@ -185,7 +185,8 @@ fn serialize_hint_usage<S: Serializer>(
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
-/// Returns the student's tool calls by week. Excludes the calls of the part's start and of the lesson itself.
+/// Returns the student's tool calls by week. Excludes the calls at the start of the part and the capacity changes of
+/// the lesson.
 fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledCalls> {
     let part = standing.current_part();
     let of_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
@@ -225,7 +226,7 @@ impl FinishedPart {
     /// `not_in_a_lesson`, `lesson_not_over`.
     pub fn from_session(session: &Session) -> Result<FinishedPart, Rejection> {
         let Some(standing) = session.lesson() else {
-            let message = "this run is not part of a lesson; novamind lesson list shows the lessons";
+            let message = "this run is not part of a lesson; `novamind lesson list` lists the lessons";
             return Err(Rejection::new("not_in_a_lesson", message));
         };
         if lesson_step(session).is_some() {

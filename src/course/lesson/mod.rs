@@ -1,5 +1,5 @@
-//! What a student does in a lesson: read the lesson page, answer questions, request hints, retry steps, start parts
-//! and read the debrief.
+//! Actions of a student in a lesson: reading the lesson page, answering questions, requesting hints, retrying steps,
+//! starting parts and reading the debrief.
 
 pub(crate) mod answers;
 pub(crate) mod debrief;

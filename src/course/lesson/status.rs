@@ -24,7 +24,7 @@ pub struct LessonStatus {
     pub step_title: String,
     /// Text of the step.
     pub text: String,
-    /// Number of completed weeks and of all weeks of the step.
+    /// Number of completed weeks of the step, and total number of its weeks.
     pub weeks: (u32, u32),
     /// Number of the current try of the step, counted from 1.
     pub try_number: u32,
@@ -82,7 +82,7 @@ pub struct GoalStatus {
     pub text: String,
     /// Current value; `None` if the goal cannot be measured yet.
     pub value: Option<f64>,
-    /// Value to reach; `None` if the goal is relative to the reference play and not judged yet.
+    /// Target value; `None` if the goal is relative to the reference play and has not been judged yet.
     pub bound: Option<f64>,
     /// Whether `bound` is a maximum.
     #[serde(skip)]

@@ -1,4 +1,4 @@
-//! Writes rows that do not change before the commit and therefore need not be held back.
+//! Writes rows immediately. These rows do not change before the commit.
 
 use rusqlite::{Transaction, params};
 

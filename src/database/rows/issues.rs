@@ -16,7 +16,7 @@ pub(super) struct IssueWriter {
     days: Arc<Vec<Arc<PackedDay>>>,
     /// Value of the issue clock after each day.
     clock: Vec<u32>,
-    /// First day whose issue clock is not in the database yet.
+    /// First day for which the database does not contain the issue clock.
     clock_from: usize,
     /// For each day with new issues: number of the first issue, and the day.
     first_issues: Vec<(u32, u32)>,

@@ -39,15 +39,15 @@ pub struct ProjectionEntry {
     pub facts: Arc<Facts>,
     /// Text of each notice in the facts.
     pub notices: Vec<String>,
-    /// Description of each PMI reading that the facts publish.
+    /// Description of each PMI reading that is published in the facts.
     pub readings: Vec<String>,
     /// Text of each negotiation turn in the facts; empty for turns without text.
     pub turns: Vec<String>,
-    /// Text of each post in the facts that another author than the player wrote.
+    /// Text of each post in the facts whose author is not the player.
     pub posts: Vec<String>,
     /// Number and new text of each reworded post.
     pub rewordings: Vec<(u32, String)>,
-    /// E-mail address of each enterprise that is new or sent a message, by customer number.
+    /// E-mail address of each enterprise that is new or has sent a message, by customer number.
     pub addresses: BTreeMap<u32, String>,
     /// Settings of the new row of `config_history`, if settings changed.
     pub settings: Option<serde_json::Value>,
@@ -70,7 +70,7 @@ pub struct ForecastRow {
     pub lower: f64,
     /// Upper end of the interval, in dollars.
     pub upper: f64,
-    /// Time of submission, in seconds since 1970.
+    /// Time of submission, in seconds since the Unix epoch.
     pub submitted_at: f64,
 }
 

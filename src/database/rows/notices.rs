@@ -64,8 +64,8 @@ impl NoticeWriter {
         self.next += added;
     }
 
-    /// Stores new repeated losses. Returns the number of losses that the day repeats, or `None` if the day does not
-    /// repeat all losses.
+    /// Stores new repeated losses. Returns the number of losses that are repeated on the day, or `None` if not all
+    /// losses are repeated.
     fn count_repeats(&mut self, facts: &Facts) -> Option<u32> {
         let mut today = 0;
         for loss in facts.notices.iter().filter_map(RepeatedLoss::from_notice) {

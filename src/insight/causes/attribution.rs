@@ -12,7 +12,7 @@ use novamind_tools::Rejection;
 /// Maximum number of separately evaluated causes. It limits the number of simulations.
 const MAX_VALUED_CAUSES: usize = 6;
 
-/// An explanation of the change of a figure from one week to the next.
+/// An explanation of the change in a figure from one week to the next.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChangeExplanation {
     /// Number of the explained week.
@@ -34,13 +34,13 @@ pub struct ChangeExplanation {
 }
 
 impl ChangeExplanation {
-    /// Returns the change of the figure between the two weeks.
+    /// Returns the change in the figure between the two weeks.
     pub fn total_change(&self) -> f64 {
         self.after - self.before
     }
 }
 
-/// The contribution of one cause to the change of a figure.
+/// The contribution of one cause to the change in a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseContribution {
     /// The cause that contributed.
@@ -110,7 +110,7 @@ impl WeekResimulation {
         }))
     }
 
-    /// Returns the world inputs in the level of detail that the player may see.
+    /// Returns the world inputs at the level of detail that the player may see.
     fn input_groups(&self) -> Vec<CauseGroup> {
         let all = singleton_groups(&self.inputs);
         if self.visibility == InputVisibility::EveryInput {

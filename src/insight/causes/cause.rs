@@ -3,10 +3,10 @@
 use novamind_session::SettingChange;
 use novamind_tools::ToolId;
 
-/// A cause of the change of a weekly figure.
+/// A cause of the change in a weekly figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
-    /// Calls of one tool by the player.
+    /// The player's calls to one tool.
     Calls(ToolId),
     /// Parameter changes of a debug run.
     Parameters,
@@ -20,9 +20,9 @@ pub enum Cause {
     Competitors,
     /// Drift of expectations and budgets.
     Drift,
-    /// Changes of channel yields.
+    /// Changes in channel yields.
     Yields,
-    /// Changes of the macroeconomic index.
+    /// Changes in the macroeconomic index.
     Economy,
     /// Demand surges of the market.
     Surges,

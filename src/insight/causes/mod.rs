@@ -44,7 +44,7 @@ pub enum CauseProgress {
 /// A callback that receives the progress and can stop the analysis.
 pub type CauseProgressFn<'a> = &'a (dyn Fn(CauseProgress) -> ControlFlow<()> + Sync);
 
-/// Explains changes of weekly figures of a run. Caches the simulations for later questions.
+/// Explains changes in the weekly figures of a run. Caches the simulations for later questions.
 pub struct CauseAnalysis {
     run: RecordedRun,
     visibility: InputVisibility,

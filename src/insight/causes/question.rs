@@ -84,7 +84,7 @@ impl fmt::Display for WeekQuantity {
     }
 }
 
-/// A question why a figure changed in a week.
+/// A question about why a figure changed in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WeekQuestion {
     /// The figure to explain.
@@ -133,7 +133,7 @@ fn parse_figure(name: &str) -> Result<WeekFigure, ConditionParseError> {
     let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
     let ids: Vec<String> = WeekFigure::ALL.iter().map(|figure| figure.id()).collect();
     if words.is_empty() {
-        return problem(format!("why needs a figure: {}", ids.join(", ")));
+        return problem(format!("\"why\" needs a figure: {}", ids.join(", ")));
     }
     let called = |figure: &&WeekFigure| figure.name().eq_ignore_ascii_case(&words);
     if let Some(found) =
@@ -183,7 +183,7 @@ mod tests {
         for (text, message, column) in [
             ("cancelations", "there is no figure cancelations; did you mean cancellations", 1),
             ("chrun(S1)", "there is no figure chrun; did you mean churn", 1),
-            ("", "why needs a figure: cash_change, recurring_revenue", 1),
+            ("", "\"why\" needs a figure: cash_change, recurring_revenue", 1),
             ("zzzz", "there is no figure zzzz; the figures are cash_change", 1),
             ("usage 4x", "a whole number is expected, not 4x", 7),
             ("usage 99999999999", "a whole number is expected, not 99999999999", 7),
@@ -191,7 +191,7 @@ mod tests {
             ("churn(S12)", "S12 is not a group; did you mean S1", 7),
             ("churn(S1", "a closing bracket is missing", 9),
             ("churn()", "a group is missing", 7),
-            ("reputation 3", "reputation is a figure of a group; write for example reputation(S1)", 1),
+            ("reputation 3", "reputation is a figure of a group; write, for example, reputation(S1)", 1),
             ("payments(S1)", "payments is a figure of the whole company; write payments without a group", 1),
         ] {
             let (problem, at) = parse(text).expect_err("a problem");

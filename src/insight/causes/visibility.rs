@@ -29,7 +29,7 @@ pub(crate) fn input_visibility(manifest: &Manifest, ended: bool) -> Result<Input
         (Mode::Sandbox | Mode::Lesson, false) => Ok(InputVisibility::MarketAsOne),
         (Mode::Baseline, false) => Err(Rejection::new(
             "not_in_this_mode",
-            "why and what-if re-simulate the company, which agents cannot do: they are not available in an unfinished baseline run",
+            "an unfinished baseline run rejects \"why\" and \"whatif\", which re-simulate the company, because agents cannot re-simulate it",
         )),
     }
 }
@@ -43,7 +43,7 @@ pub(super) fn check_figure_visible(quantity: WeekQuantity, sight: InputVisibilit
         return Ok(());
     }
     let message = format!(
-        "{} is hidden in unfinished runs; why explains it in debug runs and finished runs",
+        "{} is hidden in unfinished runs; \"why\" explains this figure in debug runs and finished runs",
         quantity.name()
     );
     Err(Rejection::for_field("figure", "not_in_this_mode", message))

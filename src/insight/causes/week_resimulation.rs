@@ -202,7 +202,7 @@ fn selected_causes(candidates: &[RemovableCause], set: u32) -> impl Iterator<Ite
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, candidate)| candidate)
 }
 
-/// Returns the player's calls in the week, one candidate per tool. A setting that returned to its initial value is
+/// Returns the player's calls in the week as removable causes, one per tool. A setting that returned to its initial value is
 /// included only if the week was simulated in several steps.
 fn removable_call_causes(
     eve: &MemorySnapshot,
@@ -235,7 +235,7 @@ fn removable_call_causes(
     by_tool
 }
 
-/// Returns the parameter changes that were made or took effect in the week, as one candidate.
+/// Returns the parameter changes that were made or took effect in the week, as one removable cause.
 fn removable_parameter_cause(
     eve: &MemorySnapshot,
     moves: &[RecordedStep],

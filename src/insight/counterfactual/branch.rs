@@ -300,7 +300,7 @@ impl<'a> BranchSimulation<'a> {
     /// Sets a parameter that was not set in the run.
     fn apply_added_setting(&mut self, setting: &AddedSetting) {
         let value = json_to_value(&setting.value);
-        // The change has no event in the trajectory, so it gets a line number that no event has.
+        // The trajectory has no event for this change, so the change gets a line number that no event has.
         let change =
             |value| ParameterChange { seq: u64::MAX, key: setting.key.clone(), value, from_day: None };
         value.map(change).into_iter().for_each(|change| self.apply_parameter_change(change));

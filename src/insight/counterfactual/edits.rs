@@ -51,7 +51,7 @@ pub(crate) struct UsageBasedCapacity {
 pub(crate) struct Redraw {
     /// Last day that uses the random draws of the run.
     pub after_day: u32,
-    /// Salt of the new draws. Equal salts give equal draws.
+    /// Salt of the new draws. Equal salts produce equal draws.
     pub salt: u64,
 }
 

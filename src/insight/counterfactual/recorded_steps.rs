@@ -14,7 +14,7 @@ use novamind_tools::{ToolId, ToolKind};
 pub(crate) enum RecordedStep {
     /// A tool call that can change the company.
     Call(RecordedCall),
-    /// A change of a parameter.
+    /// A parameter change.
     Parameter(RecordedSetting),
     /// Days that were simulated in one step.
     Days(RecordedDays),
@@ -42,7 +42,7 @@ pub struct RecordedCall {
 pub enum RecordedDecision {
     /// A tool call.
     Call(RecordedCall),
-    /// A change of a parameter.
+    /// A parameter change.
     Parameter {
         /// Line number of the change in the trajectory.
         seq: u64,

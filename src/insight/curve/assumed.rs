@@ -14,7 +14,7 @@ const QUALITY_RISE_TO_BUDGET: f64 = 0.5;
 const QUALITY_RISE_STD: f64 = 0.08;
 /// Standard deviation of usage, as a share of the mean.
 const USAGE_STD_SHARE: f64 = 0.4;
-/// Multiple of the estimate that serves as upper limit if an error of 100 % or more gives no limit.
+/// Multiple of an estimate that serves as its upper limit if the error of the estimate is 100 % or more.
 const UNBOUNDED_FACTOR: f64 = 10.0;
 
 /// A choice of true means within the errors of the estimates.

@@ -47,7 +47,7 @@ pub struct CompetitorState {
     pub shared_bank: f64,
     /// For each group with targeted improvements: the group, the quality gain, and the part that competitors have not copied.
     pub group_banks: Vec<(Group, f64, f64)>,
-    /// Increase of the expectations of all groups by competitors and drift.
+    /// Increase in the expectations of all groups due to competitors and drift.
     pub common_expectation: f64,
     /// Past moves with their severity.
     pub moves: Vec<(CompetitorEvent, Severity)>,

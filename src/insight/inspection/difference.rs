@@ -28,24 +28,24 @@ pub struct DayDifference {
     pub equal_parts: Vec<&'static str>,
     /// Differing figures: name, first value, second value.
     pub figures: Vec<(String, f64, f64)>,
-    /// Number of customers who subscribe on both sides and differ.
+    /// Number of customers who are subscribers at the end of both days and differ.
     pub differing_customers: usize,
-    /// Number of customers who subscribe only on the first side, and number who subscribe only on the second.
+    /// Number of customers who are subscribers only at the end of the first day, and the same number for the second day.
     pub only_in_one: (usize, usize),
     /// The first differing customers, sorted by customer number.
     pub first_customers: Vec<CustomerDifference>,
 }
 
-/// The differences of a customer between the two sides.
+/// The differences of a customer between the ends of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CustomerDifference {
     /// Customer number.
     pub customer: u32,
-    /// Group of the customer, from the first side if the customer subscribes on that side.
+    /// Group of the customer, from the first day if the customer is a subscriber at the end of that day.
     pub group: Group,
-    /// Whether the customer subscribes on the first side, and whether on the second side.
+    /// Whether the customer is a subscriber at the end of the first day and of the second day.
     pub subscribes: (bool, bool),
-    /// Differing columns of a customer who subscribes on both sides: column, first value, second value.
+    /// Differing columns of a customer who is a subscriber at the end of both days: column, first value, second value.
     pub columns: Vec<(&'static str, String, String)>,
 }
 

@@ -13,7 +13,7 @@ pub struct GroupDriftState {
     pub group: Group,
     /// Whether the group had been discovered by the day.
     pub is_known: bool,
-    /// Increase of the group's expectations by drift and competitors, beyond the common increase.
+    /// Increase in the group's expectations due to drift and competitors, beyond the common increase.
     pub group_expectation: f64,
     /// Total shift of the group's curves: required quality, including the common increase, and budget in $ per month.
     pub expectation: Expectation,
@@ -26,9 +26,9 @@ pub struct GroupDriftState {
 pub struct DriftState {
     /// Day of the state, from 1.
     pub day: u32,
-    /// Increase of the expectations of all groups by drift and competitors.
+    /// Increase in the expectations of all groups due to drift and competitors.
     pub common_expectation: f64,
-    /// Next change of [`DriftState::common_expectation`].
+    /// Next change in [`DriftState::common_expectation`].
     pub next_common_step: f64,
     /// Day of the next drift; `None` if no drift follows before the end of the run.
     pub next_day: Option<u32>,

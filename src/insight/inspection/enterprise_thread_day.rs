@@ -20,11 +20,11 @@ pub struct EvaluatedPlan {
     pub quality: f64,
     /// Perceived quality if the player answered today, after the penalty for a late answer.
     pub quality_if_answered: f64,
-    /// Upper price limit, $ per month and seat. The enterprise accepts prices below the limit.
+    /// Upper price limit, $ per seat per month. The enterprise accepts prices below the limit.
     pub accepts_below: f64,
     /// Whether the enterprise accepts every price, because the quality exceeds the highest quality that it requires.
     pub accepts_any_price: bool,
-    /// Price that the enterprise would name in its next turn, $ per month and seat; 0 if the enterprise would not answer.
+    /// Price that the enterprise would name in its next turn, $ per seat per month; 0 if the enterprise would not answer.
     #[serde(rename = "would_name")]
     pub counter: f64,
 }
@@ -42,7 +42,7 @@ pub struct EnterpriseThreadDay {
     pub group: Group,
     /// Type of the open thread.
     pub kind: ThreadKind,
-    /// Budget including drift, $ per month and seat.
+    /// Budget including drift, $ per seat per month.
     pub budget: f64,
     /// Evaluation of each plan.
     pub plans: ByPlan<EvaluatedPlan>,
@@ -50,7 +50,7 @@ pub struct EnterpriseThreadDay {
     pub remaining_turns: u32,
     /// Relationship of the enterprise to the company, 0..=1.
     pub relationship: f64,
-    /// Change of the relationship if the player answers late today; never positive.
+    /// Change in the relationship if the player answers late today; never positive.
     pub late_penalty: f64,
     /// Day on which the enterprise will answer; `None` on the player's turn.
     pub reply_day: Option<u32>,

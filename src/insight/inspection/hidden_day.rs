@@ -73,7 +73,7 @@ pub(crate) struct GroupDayEnd {
     pub(crate) product_quality: f64,
     /// Mean budget of new customers, including drift.
     pub(crate) budget: f64,
-    /// Mean quality floor of new customers, including the increase by drift and competitors.
+    /// Mean quality floor of new customers, including the increase due to drift and competitors.
     pub(crate) quality_floor: f64,
     /// Market cap of the group; 0 means no limit.
     pub(crate) market_cap: f64,

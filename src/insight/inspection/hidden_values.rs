@@ -21,7 +21,7 @@ pub struct TrueGroupValues {
     pub expected_leads: f64,
     /// Mean budget of new customers, including drift, $ per month; for enterprises, per seat.
     pub budget: f64,
-    /// Mean quality floor of new customers, including the increase by drift and competitors.
+    /// Mean quality floor of new customers, including the increase due to drift and competitors.
     pub quality_floor: f64,
     /// Market cap of the group, in customers; 0 means no limit.
     pub market_cap: f64,
@@ -40,7 +40,7 @@ pub struct HiddenValues {
     pub group_banks: Vec<(Group, f64)>,
     /// Next competitor move; `None` if no move follows before the end of the run.
     pub next_competitor_move: Option<NextCompetitorMove>,
-    /// Increase of the expectations of all groups by competitors and drift.
+    /// Increase in the expectations of all groups due to competitors and drift.
     pub common_expectation: f64,
     /// Day of the next drift; `None` if no drift follows before the end of the run.
     pub next_drift_day: Option<u32>,

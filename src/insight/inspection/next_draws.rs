@@ -127,7 +127,7 @@ pub enum DrawEffect {
     Found(Option<Group>),
     /// Demand surge that starts on the day, if any.
     Surge(Option<Surge>),
-    /// Change of the economy index.
+    /// Change in the economy index.
     Index {
         /// Current value of the index.
         before: f64,

@@ -121,9 +121,9 @@ pub struct QualityEquation {
     pub shared_bank: f64,
     /// Quality gain of the group that competitors had not copied at the start of the day.
     pub group_bank: f64,
-    /// Increase of the expectations of all groups by drift and competitors.
+    /// Increase in the expectations of all groups due to drift and competitors.
     pub common_expectation: f64,
-    /// Increase of the group's expectations, including the common increase.
+    /// Increase in the group's expectations, including the common increase.
     pub expectation: Expectation,
 }
 

@@ -15,7 +15,7 @@ use novamind_world::reputation::{
 pub struct CancellationEffect {
     /// Number of cancellations that changed reputation. A lost enterprise counts once for each thread.
     pub count: u32,
-    /// Change of the reputation; never positive.
+    /// Change in reputation; never positive.
     pub change: f64,
 }
 
@@ -24,14 +24,14 @@ pub struct CancellationEffect {
 pub struct SubscriberContribution {
     /// Number of contributing subscribers.
     pub subscribers: u32,
-    /// Change by the subscribers' satisfaction, before the threshold.
+    /// Change due to the subscribers' satisfaction, before the threshold.
     pub requested_change: f64,
     /// Whether the change reached the threshold and was therefore applied.
     pub is_applied: bool,
 }
 
 impl SubscriberContribution {
-    /// Returns the change of reputation, or 0 if the change was below the threshold.
+    /// Returns the change in reputation, or 0 if the change was below the threshold.
     pub fn applied_change(&self) -> f64 {
         if self.is_applied { self.requested_change } else { 0.0 }
     }
@@ -64,7 +64,7 @@ impl ReputationDay {
         ReputationDay { before: ByGroup::from_fn(|group| book.get(group)), ..ReputationDay::default() }
     }
 
-    /// Adds a change of reputation by a mechanism.
+    /// Adds a change in reputation that a mechanism made.
     pub(crate) fn add_change(&mut self, write: &ReputationWrite<'_>) {
         let group = write.group;
         let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
@@ -124,7 +124,7 @@ pub struct ReputationEquation {
     pub contribution: SubscriberContribution,
     /// Spillovers from other groups, including dropped spillovers.
     pub spillovers: Vec<SpilloverEffect>,
-    /// Change by the lower and upper limit of reputation.
+    /// Change due to the lower and upper limits of reputation.
     pub bounds: f64,
     /// Reputation at the end of the day.
     pub after: f64,

@@ -13,21 +13,21 @@ use novamind_world::retention::satisfaction::{SatisfactionTerms, satisfaction_te
 pub enum SatisfactionTerm {
     /// Delivered quality before outages and overload.
     Delivered,
-    /// Loss by overload and outages.
+    /// Loss due to overload and outages.
     Service,
     /// Relationship to the company; the term can be negative.
     Relationship,
     /// Effect of the tenure of the subscription.
     Tenure,
-    /// Loss by a quota below the demand.
+    /// Loss due to a quota below the demand.
     Quota,
-    /// Loss by open issues.
+    /// Loss due to open issues.
     Issues,
-    /// Loss by in-app advertising.
+    /// Loss due to in-app advertising.
     Ads,
     /// Required quality at the subscriber's price.
     Required,
-    /// Increase of required quality by drift and competitors.
+    /// Increase in required quality due to drift and competitors.
     Expectations,
 }
 

@@ -42,13 +42,13 @@ pub enum DecisionTerm {
     Tenure,
     /// Effect of the day's outages and overload.
     Service,
-    /// Increase of the required quality by drift and competitors.
+    /// Increase in the required quality due to drift and competitors.
     Expectations,
     /// Drift of the budget.
     Budgets,
     /// Effect of the economy on the budget.
     Economy,
-    /// Changes of list prices and discounts since the last bill.
+    /// Changes in list prices and discounts since the last bill.
     Prices,
 }
 
@@ -110,8 +110,8 @@ pub struct WeighedDecision {
     pub curve: Curve,
     /// Best acceptable plan; `None` if no plan is acceptable.
     pub choice: Option<Plan>,
-    /// Terms that reverse the decision to stay or cancel when one of them is removed. If the decision is to cancel,
-    /// sorted by descending surplus.
+    /// Terms whose removal, one at a time, reverses the decision to stay or cancel. If the decision is to cancel, the
+    /// terms are sorted by descending surplus.
     pub decisive_terms: Vec<DecisiveTerm>,
 }
 

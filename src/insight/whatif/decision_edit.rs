@@ -198,8 +198,9 @@ fn check_is_decision(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> 
 }
 
 fn unknown_line_rejection(seq: u64) -> Rejection {
-    let message =
-        format!("line {seq} is not a decision in the weeks of this what-if; whatif WEEK lists the decisions");
+    let message = format!(
+        "line {seq} is not a decision in the weeks of this what-if; to list the decisions, type: whatif WEEK"
+    );
     Rejection::for_field("line", "line_unknown", message)
 }
 
@@ -249,7 +250,7 @@ fn round_to_12_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// Returns whether the tool's arguments are amounts, which can be multiplied by a factor.
+/// Returns whether the tool's arguments are amounts that can be multiplied by a factor.
 pub fn is_scalable(tool: ToolId) -> bool {
     let spec = tool.spec();
     let is_amount = |kind: &ArgumentKind| {
@@ -350,9 +351,11 @@ fn parse_set_or_call(week: Option<u32>, text: &str) -> Result<DecisionEdit, Stri
     };
     let (key, value) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
     match value.trim() {
-        "" => Err("set needs a parameter and a value, for example set group.S1.c_max_mean 60".to_owned()),
+        "" => {
+            Err("\"set\" needs a parameter and a value, for example: set group.S1.c_max_mean 60".to_owned())
+        }
         value if value.contains(" from ") => Err(format!(
-            "a what-if sets a value at the start of a week: write in 24 set {key} VALUE instead of {value}"
+            "a what-if sets a value at the start of a week: write \"in 24 set {key} VALUE\" instead of \"{value}\""
         )),
         value => {
             let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
@@ -388,7 +391,7 @@ fn parse_state_changing_tool(name: &str) -> Result<ToolId, String> {
 
 fn parse_line_number(number: &str) -> Result<u64, String> {
     let number = number.trim();
-    number.parse().map_err(|_| format!("{number} is not a line number; for example drop 57"))
+    number.parse().map_err(|_| format!("{number} is not a line number; for example: drop 57"))
 }
 
 /// Parses arguments as JSON, as `NAME=VALUE` separated by spaces, or as one value of the argument `positional`.
@@ -471,7 +474,7 @@ mod tests {
         assert_eq!(message("next_week"), "next_week does not change the company");
         assert!(message("drop it").starts_with("it is not a line number"));
         assert_eq!(message("in x set_prices B=3"), "x is not the number of a week");
-        assert!(message("set group.S1.c_max_mean").starts_with("set needs a parameter and a value"));
+        assert!(message("set group.S1.c_max_mean").starts_with("\"set\" needs a parameter and a value"));
         assert!(message("set quality.base_product_quality 5 from 300").contains("in 24 set"));
         assert!(message("in 3 set").starts_with("there is no tool set"));
         assert_eq!(message("set_prices B"), "B is not an argument; write NAME=VALUE");

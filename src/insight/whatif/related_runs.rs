@@ -31,7 +31,8 @@ pub struct BranchOrigin {
     pub run: String,
     /// Week at whose start the branch begins.
     pub week: u32,
-    /// First decision that only the branch or only its parent made; also `None` if the parent cannot be read.
+    /// First decision that only the branch or only its parent made; `None` if there is no such decision or the parent
+    /// cannot be read.
     pub first_change: Option<FirstChange>,
 }
 

@@ -79,10 +79,10 @@ fn subscribers_on(run: &RunResult, day: u32) -> f64 {
 
 fn arm_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
     let columns = vec![
-        Column::text("rivals", "rivals"),
+        Column::text("rivals", "competitors"),
         Column::number("subscribers", &format!("mean subscribers, day {day}"), Measure::Count),
         Column::interval("subscribers_interval", "95 % interval", Measure::Count),
-        Column::number("difference", "minus default", Measure::Count),
+        Column::number("difference", "difference from default", Measure::Count),
         Column::interval("difference_interval", "95 % interval of the difference", Measure::Count),
         Column::number("cash", "median final cash", Measure::Dollars),
         Column::number("bankrupt", "bankrupt", Measure::Share),
@@ -110,10 +110,10 @@ fn arm_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
 
 fn adjacent_difference_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
     let columns = vec![
-        Column::text("step", "from, to"),
+        Column::text("step", "step"),
         Column::number("lost", &format!("subscribers lost, day {day}"), Measure::Count),
         Column::interval("lost_interval", "95 % interval", Measure::Count),
-        Column::number("seeds", "seeds that lose", Measure::Count),
+        Column::number("seeds", "seeds with a loss", Measure::Count),
         Column::text("verdict", "order"),
     ];
     let mut table = LabTable::new(&format!("{}_steps", axis.name), "Steps, paired differences", columns);
@@ -154,7 +154,7 @@ fn describe_equal_runs(axis: &AblationAxis<'_>) -> String {
         .filter(|(run_result, other)| ends(run_result) == ends(other))
         .count();
     format!(
-        "{}: default and hard competitors are identical in {same} of {}.",
+        "{}: runs with default and hard competitors are identical for {same} of {}.",
         axis.caption,
         pluralize(runs(default).len() as u32, "seed")
     )
@@ -189,7 +189,7 @@ fn short_run_table(short: &[ShortRun<'_>]) -> LabTable {
         Column::number("cash", "mean cash", Measure::Dollars),
         Column::interval("cash_interval", "95 % interval", Measure::Dollars),
         Column::number("gained", "seeds above $1,000,000", Measure::Count),
-        Column::number("alike", "seeds equal with competitors off, default, hard", Measure::Count),
+        Column::number("alike", "seeds with equal runs: competitors off, default, hard", Measure::Count),
         Column::number("seeds", "seeds", Measure::Count),
     ];
     let caption = format!("{SHORT_DAYS} days: neither competitors nor drift");
@@ -218,7 +218,7 @@ fn run_table(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> Lab
     let columns = vec![
         Column::text("axis", "axis"),
         Column::text("policy", "policy"),
-        Column::text("rivals", "rivals"),
+        Column::text("rivals", "competitors"),
         Column::text("seed", "seed"),
         Column::number("days", "days of the run", Measure::Days),
         Column::number("last_day", "last day", Measure::Days),
@@ -227,7 +227,7 @@ fn run_table(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> Lab
         Column::number("subscribers_on_day", &format!("subscribers, day {day}"), Measure::Count),
         Column::number("subscribers", "subscribers at the end", Measure::Count),
         Column::number("peak", "peak subscribers", Measure::Count),
-        Column::number("peak_day", "on day", Measure::Days),
+        Column::number("peak_day", "peak day", Measure::Days),
         Column::text("state_hash", "state hash"),
     ];
     let of_axes = axes.iter().map(|ablation_axis| {

@@ -1,4 +1,5 @@
-//! Tables of configurations. One seed gives the paper's columns, and several seeds give spread and rank stability.
+//! Tables of configurations. For one seed, the tables have the paper's columns; for several seeds, they show spread
+//! and rank stability.
 
 use super::grid::PolicyGrid;
 use crate::experiment::{ExperimentResults, RunResult};
@@ -91,7 +92,7 @@ fn single_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
         Column::number("cash", "final cash", Measure::Dollars),
         Column::number("survival", "survival, days", Measure::Days),
         Column::number("peak", "peak subscribers", Measure::Count),
-        Column::number("peak_day", "on day", Measure::Days),
+        Column::number("peak_day", "peak day", Measure::Days),
     ]);
     let mut table = LabTable::new("configurations", "Highest final cash first", columns);
     for arm in &board.order {
@@ -140,7 +141,7 @@ fn stability_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
     columns.extend([
         Column::number("survival", "mean survival, days", Measure::Number(1)),
         Column::number("peak", "median peak subscribers", Measure::Count),
-        Column::number("first", "best in", Measure::Share),
+        Column::number("first", "seeds ranked first", Measure::Share),
         Column::number("place", "mean rank", Measure::Number(1)),
     ]);
     let mut table = LabTable::new("stability", "Survival, size, and rank by final cash", columns);
@@ -163,7 +164,7 @@ fn best_by_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable 
     columns.extend(axis_columns(grid));
     columns.extend([
         Column::number("equal", "ties", Measure::Count),
-        Column::number("cash", "its cash", Measure::Dollars),
+        Column::number("cash", "final cash", Measure::Dollars),
         Column::number("bankrupt", "bankrupt", Measure::Count),
     ]);
     let mut table = LabTable::new("seeds", "Best configuration of each seed", columns);
@@ -202,7 +203,7 @@ fn run_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
         Column::number("survival", "survival, days", Measure::Days),
         Column::text("bankrupt", "bankrupt"),
         Column::number("peak", "peak subscribers", Measure::Count),
-        Column::number("peak_day", "on day", Measure::Days),
+        Column::number("peak_day", "peak day", Measure::Days),
     ]);
     let mut table =
         LabTable { is_machine_readable_only: true, ..LabTable::new("runs", "Every run", columns) };

@@ -18,7 +18,8 @@ fn shared_runs_are_equal_unless_cash_is_between_floors() {
     let leaders = shared_run_leaders(points);
     let expected: Vec<usize> = (0..24).map(|at| at / 2 * 2).collect();
     assert_eq!(leaders, expected);
-    // Cash of mid / S1 / light falls below $300,000 within 350 days. Cash of mid / S1 / heavy does not do so within 50 days.
+    // With the configuration mid / S1 / light, cash falls below $300,000 within 350 days. With mid / S1 / heavy, cash
+    // stays above $300,000 for 50 days.
     let (light, heavy) = (&points[12..14], &points[16..18]);
     for (pair, days, shared) in [(light, 350, false), (heavy, 49, true)] {
         let results = play_configurations(pair, &[1], days);

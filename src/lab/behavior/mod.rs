@@ -69,12 +69,12 @@ fn note_versions(lines: &[Line]) -> Vec<NoteVersion> {
 const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
     ("survival", "", "life, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
-    ("ad spend on the best channel, as measured", "", "ads on best tried"),
+    ("ad spend on the best measured channel", "", "ads on best tried"),
     ("targeted share of development", "", "targeted dev."),
     ("forecast error of the first four weeks", "28", "4-week error, first weeks"),
-    ("calls that act, a week", "", "calls a week"),
-    ("evenness of tools", "", "evenness of tools"),
-    ("words of planning in 100", "", "planning in 100 words"),
+    ("state-changing calls a week", "", "calls a week"),
+    ("evenness of tool use", "", "evenness of tool use"),
+    ("planning words", "", "planning words per 100"),
     ("\"if\" in rationales", "", "\"if\", rationales"),
     ("\"if\" in notes", "", "\"if\", notes"),
 ];
@@ -194,7 +194,7 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
     let columns = vec![
         Column::text("tool", "tool"),
         Column::number("calls", "calls", Measure::Count),
-        Column::number("share", "of all calls", Measure::Share),
+        Column::number("share", "share of all calls", Measure::Share),
         Column::number("calls_a_week", "calls a week", Measure::Number(2)),
         Column::number("sd_a_week", "± sd", Measure::Number(2)),
     ];
@@ -211,7 +211,7 @@ fn customer_table(runs: &[BehaviorRun]) -> LabTable {
         let percent = format!("{:.0}", share * 100.0);
         Column::number(&format!("after_{percent}"), &format!("after {percent}%"), Measure::Count)
     }));
-    columns.push(Column::number("leads", "leads, all", Measure::Count));
+    columns.push(Column::number("leads", "all leads", Measure::Count));
     let row = |run: &BehaviorRun, group: &GroupHistory| {
         let last = group.active.len().saturating_sub(1) as f64;
         let then = |share: f64| group.active.get((share * last).round() as usize).copied();
@@ -248,7 +248,7 @@ fn cash_range_table(runs: &[BehaviorRun]) -> LabTable {
         Column::sparkline("curve", "cash by day"),
         Column::number("lowest", "lowest", Measure::Dollars),
         Column::number("highest", "highest", Measure::Dollars),
-        Column::number("last", "at the end", Measure::Dollars),
+        Column::number("last", "final", Measure::Dollars),
     ];
     let row = |run: &BehaviorRun| {
         let of = |fold: fn(f64, f64) -> f64| run.cash_by_day.iter().copied().reduce(fold);
@@ -327,7 +327,7 @@ fn forecast_error_survival_pairs(runs: &[BehaviorRun]) -> Vec<(f64, f64)> {
 
 fn describe_correlation(runs: &[BehaviorRun]) -> String {
     let pairs = forecast_error_survival_pairs(runs);
-    let text = "Error of the 4-week forecasts that were filed before the first four weeks, against survival";
+    let text = "Error of the 4-week forecasts filed before each of the first four weeks, against survival";
     match rank_correlation(&pairs) {
         Some(value) => format!("{text}: rank correlation {value:.2} over {} runs.", pairs.len()),
         None => {

@@ -87,13 +87,13 @@ pub const CASES: &[BenchCase] = &[
         name: "week",
         figures: &[
             BenchFigure::with_target(
-                "a week at 165,000: key to dashboard",
+                "a week at 165,000: key press to dashboard",
                 BenchUnit::Milliseconds,
                 150.0,
                 None,
             ),
             BenchFigure::with_target(
-                "a week at 165,000: key to first query answered",
+                "a week at 165,000: key press to first query result",
                 BenchUnit::Milliseconds,
                 800.0,
                 None,
@@ -127,19 +127,19 @@ pub const CASES: &[BenchCase] = &[
                 None,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber and day at 10,000",
+                "one thread, per subscriber per day at 10,000",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber and day at 40,000",
+                "one thread, per subscriber per day at 40,000",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber and day at 165,000",
+                "one thread, per subscriber per day at 165,000",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber and day at 1,000,000",
+                "one thread, per subscriber per day at 1,000,000",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
         ],

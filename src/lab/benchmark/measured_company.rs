@@ -50,7 +50,7 @@ pub struct WeekMeasurement {
 }
 
 impl WeekMeasurement {
-    /// Returns the simulation time in seconds per subscriber and day.
+    /// Returns the simulation time in seconds per subscriber per simulated day.
     pub fn per_subscriber_day(&self) -> f64 {
         self.seconds / 7.0 / self.subscribers
     }

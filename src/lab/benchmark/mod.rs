@@ -9,8 +9,8 @@
 //! intervention. A measured day therefore includes realistic leads, bills, switches, cancellations and support issues,
 //! not synthetic subscribers. The default market is too small for a million subscribers, so these cases use a larger
 //! market: with `leads.saturation_base` = b, the unused share is b - (N / cap)². In the larger market the company
-//! starts with more cash, because it grows faster than it could pay for. It is measured only after all its subscribers
-//! have been billed once.
+//! starts with more cash, because it could not otherwise pay for its faster growth. The larger company is measured
+//! only after all its subscribers have been billed once.
 //!
 //! **What a sample is.** Days are measured in weeks, as they are played. A sample includes the seven days, the
 //! figures, the state hash and the lines of the trajectory. The time is divided by seven and scaled from the actual
@@ -29,7 +29,7 @@
 //! | 6 % | usage of all subscribers |
 //! | 22 % | first pass over subscribers: support calls (a third of it draws a word for every slot of a block), satisfaction, and every seventh day posting weights |
 //! | 1 % | resolved issues |
-//! | 18 % | second pass: settle issues, renewal decisions of due subscribers, their payments |
+//! | 18 % | second pass: issue updates, renewal decisions of due subscribers, their payments |
 //! | 19 % | 3,900 new leads: traits, decisions, rows |
 //! | 5 % | bills of new subscribers and enterprises |
 //! | 1 % | closing figures |
@@ -52,7 +52,7 @@
 //! the steps of a day did not help either, on two processors of one core.
 //!
 //! The first days of a week are slower with a database than in memory, because both threads slept before the week. A
-//! company in memory is equally slow if it sleeps for a second before each week.
+//! company in memory is equally slow if the program sleeps for a second before each week.
 //!
 //! **Lower bound.** A day reads and writes about 104 bytes of each subscriber's columns (usage 21, calls and satisfaction
 //! 65, closing 8, billing days 2, the hash of the facts 8), and a seventh of the 171 bytes of a row for the hash of the
@@ -61,7 +61,7 @@
 //! cancellations, not on passes over columns.
 //!
 //! **Streams.** Every lead and every bill opens a stream. Opening a single stream took 180 ns (BLAKE3, then ChaCha8,
-//! both a chain of dependent steps). Opening eight streams at a time takes 50 ns per stream with one draw (`world::random`).
+//! each a chain of dependent steps). Opening eight streams at a time takes 50 ns per stream with one draw (`world::random`).
 
 mod cases;
 mod machine;
@@ -91,7 +91,7 @@ pub enum BenchUnit {
     Milliseconds,
     /// A time in seconds.
     Seconds,
-    /// A time in nanoseconds per subscriber and day.
+    /// A time in nanoseconds per subscriber per simulated day.
     NanosecondsPerSubscriberDay,
     /// Megabytes, 1,000,000 bytes each.
     Megabytes,

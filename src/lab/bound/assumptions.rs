@@ -125,7 +125,7 @@ impl BoundAssumptions {
             ),
             (
                 "no cash limit",
-                "spending starts on day 1 whatever cash is available".to_owned(),
+                "spending starts on day 1, regardless of the available cash".to_owned(),
             ),
             (
                 "reported share",

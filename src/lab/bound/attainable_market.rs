@@ -9,7 +9,7 @@ pub fn attainable_customers(group: Group, params: &Params) -> f64 {
     group_params.base_market_cap * f64::from(group_params.seat_count_max.unwrap_or(1))
 }
 
-/// Returns the highest price that a group supports, $ per month and customer or seat.
+/// Returns the highest price that a group supports, $ per customer or seat per month.
 pub fn highest_price(group: Group, params: &Params) -> f64 {
     params.group(group).c_max_mean
 }

@@ -39,7 +39,7 @@ impl BoundAccount {
                 super::shared_quality::SEED_COUNT
             ),
             AccountLine::Advertising => format!(
-                "the published figure is {} of this one, which fills every market within the first {} days at rising lead costs; the paper's pace is unknown",
+                "the published figure is {} of the figure here, which fills every market within the first {} days at rising lead costs; the paper's pace is unknown",
                 percent(ratio, 0),
                 self.assumptions.renewals.first().unwrap_or(&0)
             ),

@@ -59,12 +59,13 @@ fn sensitivity_table(slacks: &[SensitivityRow]) -> LabTable {
     let columns = vec![
         Column::number("slack", "slack", Measure::Number(1)),
         Column::number("targeted", "targeted development, M$", Measure::Millions),
-        Column::number("renewals", "renewals of groups", Measure::Count),
-        Column::number("satisfied", "of which nearly all renew", Measure::Count),
+        Column::number("renewals", "group renewals", Measure::Count),
+        Column::number("satisfied", "nearly full renewals", Measure::Count),
         Column::number("mean_share", "mean share that renews", Measure::Share),
         Column::number("estimate", "estimate, M$", Measure::Millions),
     ];
-    let caption = format!("Sensitivity to slack; nearly all: more than {}", percent(SATISFIED_SHARE, 0));
+    let caption =
+        format!("Sensitivity to slack; nearly full: more than {} renew", percent(SATISFIED_SHARE, 0));
     let mut table = LabTable::new("slack", caption, columns);
     table.rows = (slacks.iter())
         .map(|sensitivity_row| {

@@ -17,7 +17,7 @@ pub const SEED_COUNT: u64 = 64;
 pub struct SharedQualityPath {
     /// Quality gain for all groups.
     pub shared: Vec<f64>,
-    /// Increase of all customers' expectations by competitors.
+    /// Increase in all customers' expectations due to competitors.
     pub raised_expectations: Vec<f64>,
     /// Quality that competitors copied from a group's bank, if the targeted gain is 1 per day.
     pub copied_quality: Vec<ByGroup<f64>>,

@@ -8,13 +8,13 @@ use novamind_record::trajectory::record::RunEndReason;
 /// Columns, most important first: name of the figure, horizon and heading.
 const COLUMNS: [(&str, &str, &str); 10] = [
     ("final cash", "", "cash"),
-    ("calls that act, a week", "", "calls a week"),
+    ("state-changing calls a week", "", "calls a week"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
     ("targeted share of development", "", "targeted dev."),
     ("forecast error", "28", "4-week error"),
-    ("words of planning in 100", "", "planning in 100 words"),
-    ("queries, a week", "", "queries a week"),
-    ("evenness of tools", "", "evenness of tools"),
+    ("planning words", "", "planning words per 100"),
+    ("queries a week", "", "queries a week"),
+    ("evenness of tool use", "", "evenness of tool use"),
     ("minutes played", "", "minutes"),
     ("forecast coverage", "28", "4-week coverage"),
 ];
@@ -52,7 +52,7 @@ pub(super) fn row_per_run_report(comparison: &Comparison) -> LabReport {
     exhibit.with_note("Use --csv for cash by week and all figures, --json to add decisions.")
 }
 
-/// Maximum number of characters of a label, so that a row fits on one line.
+/// Maximum number of characters in a label; with longer labels, a row would not fit on one line.
 const LABEL_WIDTH: usize = 12;
 
 fn short_label(participant: Option<&str>) -> String {

@@ -1,4 +1,5 @@
-//! Plays two policies and tests claim by claim whether they get the same random draws (docs/laboratory/consistency.md).
+//! Plays two policies and tests claim by claim whether both policies receive the same random draws
+//! (docs/laboratory/consistency.md).
 //!
 //! Each claim is tested on two plays with the same seed. A control play with another seed shows that the claim could
 //! have failed. If the control play has the same values, equal values are not evidence.

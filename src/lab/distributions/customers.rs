@@ -88,7 +88,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "c_max",
-        description: "budget of a customer, dollars a month and seat",
+        description: "budget of a customer, dollars per seat per month",
         part: Part::Traits,
         family: DrawFamily::Groups,
         parameters: &[
@@ -147,7 +147,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "usage_demand",
-        description: "demand of a customer, units a day and seat",
+        description: "demand of a customer, units per seat per day",
         part: Part::Traits,
         family: DrawFamily::Groups,
         parameters: &[
@@ -189,7 +189,7 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "ads_return_sensitivity",
-        description: "ad revenue at full strength, dollars a day and seat",
+        description: "ad revenue at full strength, dollars per seat per day",
         part: Part::Traits,
         family: DrawFamily::Groups,
         parameters: &[

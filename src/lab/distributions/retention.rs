@@ -181,7 +181,7 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "plan_change",
-        description: "an enterprise asks for a better plan on a day on which there is one",
+        description: "an enterprise asks for a better plan on a day on which a better plan exists",
         part: Part::PlanChange,
         family: DrawFamily::Single,
         parameters: &["enterprise.plan_change_probability"],

@@ -116,7 +116,7 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
     },
     WorldDraw {
         name: "post_factor",
-        description: "uniform part of the reach of a customer's post, and the three of a viral post",
+        description: "uniform part of the reach of a customer's post, and the three uniform parts for a viral post",
         part: Part::CustomerPosts,
         family: DrawFamily::Single,
         parameters: &["social.virality_positive_range", "social.virality_neutral_range"],

@@ -167,7 +167,7 @@ impl PreparedExperiment<'_> {
         self.pending_runs(numbers).len()
     }
 
-    /// Adds a result for a run that the caller knows to be identical to another run.
+    /// Adds `run` as the result of an arm's run with the same seed. The caller must know that the two runs are identical.
     pub fn add_result(&mut self, arm: usize, run: &RunResult) {
         let seeds = &self.experiment.seeds;
         let place = seeds.iter().position(|seed| *seed == run.seed);

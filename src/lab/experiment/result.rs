@@ -85,7 +85,7 @@ pub struct DayPoint {
     pub payments: f64,
     /// Running costs of the day, dollars: capacity, compute, operations, development and advertising.
     pub running_costs: f64,
-    /// Other changes of cash since the previous day, dollars: purchases, lead costs and ad revenue.
+    /// Other changes in cash since the previous day, dollars: purchases, lead costs and ad revenue.
     pub other: f64,
     /// Usage of the day, units.
     pub usage: u64,

@@ -121,7 +121,7 @@ pub struct ResultsRow {
     pub source: PlayerKind,
     /// Number of runs of the player.
     pub runs: u32,
-    /// Number of bankruptcies; `None` if not published.
+    /// Number of bankruptcies; `None` if the number is not published.
     pub bankruptcies: Option<u32>,
     /// Final cash of the best run, dollars.
     pub best_cash: f64,
@@ -310,7 +310,7 @@ fn table_notes() -> Vec<String> {
     vec![
         "The best run has the most final cash; if all runs went bankrupt, it has the longest life. The spread of lives is the population standard deviation."
             .to_owned(),
-        "Calls a week: for own runs, accepted calls that changed something, averaged over runs; published figures are turns of an agent, which can contain several calls."
+        "Calls a week: for own runs, accepted state-changing calls, averaged over runs; for published runs, turns of an agent, which can contain several calls."
             .to_owned(),
         format!(
             "{IDLE_ROW}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. Beats: how many of the {} published best runs ended with less cash.",

@@ -12,7 +12,7 @@ impl ResultsTable {
             Column::text("name", "who"),
             Column::text("source", "source"),
             Column::number("bankrupt", "bankrupt", Measure::Count),
-            Column::number("runs", "of runs", Measure::Count),
+            Column::number("runs", "runs", Measure::Count),
             Column::number("best_cash", "best run, cash", Measure::Dollars),
             Column::number("max_survival_days", "longest life, days", Measure::Days),
             Column::number("mean_survival_days", "mean life, days", Measure::Number(1)),

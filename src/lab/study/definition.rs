@@ -321,7 +321,8 @@ fn varied_factors(source: &StudySource<'_>, study_file: &StudyFile) -> Result<Va
     let is_set =
         |key: &String| all.iter().any(|level| level.overrides.iter().any(|(parameter, _)| parameter == key));
     if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
-        let problem = "a set of overrides also sets it: vary it either there or in the grid";
+        let problem =
+            "a set of overrides also sets this parameter: set the parameter either there or in the grid";
         return Err(source.override_error("grid", key, problem));
     }
     for (key, values) in grid {

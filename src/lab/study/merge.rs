@@ -63,7 +63,7 @@ impl ShardSet {
                 problems.push(format!("{place} belongs to the study {}, not to {}", head.study, study.study));
             } else if head.digest != study.digest {
                 problems.push(format!(
-                    "{place} belongs to another version of {} than {}: policies, parameters, seeds or program differ",
+                    "{place} belongs to another version of {} than {} does: policies, parameters, seeds or program differ",
                     study.study,
                     first.display()
                 ));

@@ -55,10 +55,10 @@ impl Interpreter {
                 let set = self.session.inspect().set_breakpoint(parse_condition(rest, column)?);
                 set.map(|breakpoint| {
                     let next = match self.session.ended() {
-                        None => "run DAYS stops there".to_owned(),
+                        None => "to simulate until then, type: run DAYS".to_owned(),
                         Some(_) => {
                             format!(
-                                "since {} shows since when the condition is true or false",
+                                "to see since when the condition is true or false, type: since {}",
                                 breakpoint.number
                             )
                         }

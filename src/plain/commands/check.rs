@@ -106,8 +106,8 @@ fn not_a_tool_error(word: &str, column: usize) -> ParseError {
         return unknown_command(word, column);
     }
     let text = format!(
-        "check takes the call of a tool, but {word} is a command; changes lists the settings, and check set_prices B=30 \
-         is an example of a call"
+        "check takes a tool call, for example: check set_prices B=30. {word} is a command. To list the changed \
+         settings, type: changes"
     );
     ParseError { text, column }
 }

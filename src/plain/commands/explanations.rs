@@ -19,11 +19,15 @@ pub(super) fn explain(command: &str, words: &str, numbers: &ParameterNumbers) ->
     }
     match novamind_glossary::find_subject(words) {
         Ok(found) => explain_subject("explain", found, numbers),
-        Err(near) if near.is_empty() => {
-            CommandResponse::syntax_error(format!("unknown term {words}; glossary lists every term"), column)
-        }
+        Err(near) if near.is_empty() => CommandResponse::syntax_error(
+            format!("unknown term {words}; type glossary to list all terms"),
+            column,
+        ),
         Err(near) => CommandResponse::syntax_error(
-            format!("unknown term {words}; did you mean {}? glossary lists every term", near.join(" or ")),
+            format!(
+                "unknown term {words}; did you mean {}? type glossary to list all terms",
+                near.join(" or ")
+            ),
             column,
         ),
     }
@@ -62,7 +66,7 @@ pub(super) fn glossary(word: &str, session: &Session) -> CommandResponse {
     let found: Vec<&Term> = terms().iter().filter(holds).collect();
     if found.is_empty() {
         return CommandResponse::syntax_error(
-            format!("no term contains {word}; glossary lists all terms"),
+            format!("no term contains {word}; type glossary to list all terms"),
             10,
         );
     }
@@ -186,7 +190,7 @@ mod tests {
         for (words, part, column) in [
             ("", "needs a term", 9),
             ("runwey", "did you mean runway", 9),
-            ("qqqqqqqqqqqq", "glossary lists every term", 9),
+            ("qqqqqqqqqqqq", "type glossary to list all terms", 9),
         ] {
             match explain("explain", words, &ParameterNumbers::bundled()) {
                 CommandResponse::SyntaxError { problem, column: at, .. } => {

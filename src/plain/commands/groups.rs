@@ -1,5 +1,5 @@
-//! Executes `fit [GROUP]`, which compares plans with the requirements of groups, and `leads`, which shows sources and
-//! costs of leads. Also formats the insights of a group as ranges.
+//! Executes `fit [GROUP]`, which compares plans with the requirements of groups, and `leads [GROUP]`, which shows the
+//! sources and costs of leads. Also formats the insights of a group as ranges.
 
 use serde_json::{Value, json};
 
@@ -89,7 +89,7 @@ fn select_groups<'a>(
 }
 
 /// Returns the result of a tool with ranges and dates instead of single estimates, and with the true means of R&D
-/// projects. Returns `None` if the result contains neither.
+/// projects. Returns `None` if the result contains neither estimates nor R&D projects.
 pub(super) fn answer_with_ranges(session: &Session, answer: &novamind_tools::Answer) -> Option<Value> {
     match answer {
         novamind_tools::Answer::GetGroupInsights(insights) => {
@@ -170,7 +170,7 @@ fn cost_to_json(pair: &LeadCost) -> Value {
 fn cost_line(pair: &LeadCost) -> String {
     let each = |value: Option<f64>| value.map_or("–".to_owned(), dollars_and_cents);
     let words = |spell: &AdWindow| {
-        format!("{} a lead, {} a first bill", each(spell.cost_per_lead()), each(spell.cost_per_bill()))
+        format!("{} per lead, {} per first bill", each(spell.cost_per_lead()), each(spell.cost_per_bill()))
     };
     let before = pair.cheapest.map_or(String::new(), |spell| {
         format!("; cheapest in weeks {} to {}: {}", spell.weeks.0, spell.weeks.1, words(&spell))

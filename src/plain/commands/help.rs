@@ -22,13 +22,14 @@ const FIT_HELP: &str = "\
 fit                       show every known group
 fit GROUP                 show one group, for example fit S1
 For each plan: price, quality and quota next to the budget, required quality and usage of the group. The estimates are
-ranges with their dates; research_group narrows them. Certain mismatches are named.";
+ranges with their dates; research_group narrows them. Mismatches that are certain despite the ranges are named.";
 
 const LEADS_HELP: &str = "\
-leads                     show leads by group in the last week and the last four, paid and by word of mouth, and conversions
+leads                     show leads by group in the last week and the last four weeks, paid and by word of mouth, with
+                          conversions
 leads GROUP               show one group, for example leads S1
-Then, by channel and group, the cost per lead and per first bill in the last four weeks, compared with the cheapest four
-weeks before.";
+The costs per lead and per first bill in the last four weeks follow, by channel and group, with the
+cheapest earlier four weeks for comparison.";
 
 const CURVE_HELP: &str = "\
 curve GROUP               show the quality that 10, 50 and 90 % of the leads of a group require at a price, the
@@ -89,7 +90,7 @@ fn command_help(name: &str, led: bool) -> Option<String> {
 
 /// Command and help line that only participants of a study get.
 const WITHDRAW: (&str, &str) =
-    ("withdraw", "withdraw                 erase everything you did in this study; asks once more");
+    ("withdraw", "withdraw                 erase everything you did in this study, after a confirmation");
 /// Commands that are rejected in runs of participants of a study.
 const NOT_FOR_PARTICIPANTS: [&str; 11] =
     ["branch", "step", "xray", "lens", "diff", "set", "break", "run", "since", "find", "who"];
@@ -112,8 +113,9 @@ pub(super) fn help(
         let tools: Vec<&str> = callable_names().collect();
         let text = format!(
             "{}\n\nEvery tool is also a command: {}\nFor example: set_prices A=16 B=34 C=70\n\
-             The call of agents for a week: next_week {{\"rationale\": \"WHY\", \"predictions\": {{\"cash_1wk\": \
-             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (help next shows the full form)\n\
+             To simulate a week with the tool call of agents, type: next_week {{\"rationale\": \"WHY\", \
+             \"predictions\": {{\"cash_1wk\": \
+             {{\"point\": 950000, \"lower\": 900000, \"upper\": 990000}}, …}}}} (for the full form, type: help next)\n\
              Type help NAME for help on a command or tool, and explain TERM for the meaning of a term.",
             lines.join("\n"),
             tools.join(", ")
@@ -139,7 +141,7 @@ pub(super) fn help(
     }
     let names = commands(led).map(|(name, _)| name).chain(callable_names());
     let names = names.chain(novamind_database::tables().iter().map(|table| table.name.as_str()));
-    let where_to_look = "help lists the commands, glossary the terms";
+    let where_to_look = "type help to list the commands, or glossary to list the terms";
     Err(argument_error(
         arguments,
         &not_found_message("nothing", name, similar_names(name, names), where_to_look),
@@ -171,7 +173,7 @@ fn callable_names() -> impl Iterator<Item = &'static str> {
         .map(|spec| spec.name())
 }
 
-/// Returns an error message with similar names and the command that lists all names.
+/// Returns an error message with similar names. `list` explains how to list all names.
 pub(super) fn not_found_message(what: &str, name: &str, near: Vec<&str>, list: &str) -> String {
     match near.is_empty() {
         true => format!("there is {what} called {name}; {list}"),
@@ -199,9 +201,12 @@ mod tests {
     fn unknown_names_point_to_the_list() {
         let numbers = ParameterNumbers::bundled();
         for (outcome, list) in [
-            (help(Some("zzzzzzz"), &[], &numbers, false), "help lists the commands"),
-            (overview::tools_command(Some("foo"), &[], &numbers), "tools lists all tools"),
-            (overview::tables_command(Some("leger"), &[]), "did you mean ledger? tables lists all tables"),
+            (help(Some("zzzzzzz"), &[], &numbers, false), "type help to list the commands"),
+            (overview::tools_command(Some("foo"), &[], &numbers), "type tools to list all tools"),
+            (
+                overview::tables_command(Some("leger"), &[]),
+                "did you mean ledger? type tables to list all tables",
+            ),
         ] {
             let problem = outcome.expect_err(list);
             assert!(problem.text.ends_with(list) || problem.text.contains(list), "{problem:?}");

@@ -20,15 +20,16 @@ const MAX_LISTED_THREADS: usize = 20;
 const URGENT_DAYS: u32 = 2;
 
 pub(super) const HELP: &str = "\
-inbox                     list the number of waiting threads in each group, and the 20 with the earliest deadlines, larger ones first
+inbox                     show the number of waiting threads in each group, and list the 20 with the earliest deadlines,
+                          larger enterprises first
 inbox all                 list every waiting thread
 inbox where CONDITION     list threads that meet a condition in the grammar of rules, for example
                           inbox where group = E2 and seats >= 500
-inbox all where CONDITION list all threads that meet a condition, without the limit of 20
+inbox all where CONDITION list all threads that meet a condition, even more than 20
 inbox NUMBER              show the newest thread of an enterprise, turn by turn, for example inbox 5641
 thread NUMBER             show the thread with that number, waiting or ended
 Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
-send_enterprise_deal and reject_enterprise_deal answer a thread; rules answers many.";
+Use send_enterprise_deal or reject_enterprise_deal to answer a thread, and rules to answer many threads.";
 
 /// The threads that an `inbox` command lists.
 #[derive(Default)]
@@ -50,8 +51,8 @@ impl Interpreter {
             }
             _ => Err(argument_error(
                 arguments,
-                "inbox takes all, the number of an enterprise, or where and a condition, for example inbox where seats >= \
-                 500; help inbox explains more",
+                "inbox takes all, the number of an enterprise, or where and a condition, for example: inbox where \
+                 seats >= 500. For help, type: help inbox",
             )),
         }
     }
@@ -160,20 +161,21 @@ fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &Ent
         return Vec::new();
     }
     let mut lines = vec![match number < waiting.len() {
-        true => format!("the {number} with the earliest deadlines, larger ones first:"),
-        false => "earliest deadline first:".to_owned(),
+        true => format!("the {number} threads with the earliest deadlines, larger enterprises first:"),
+        false => "threads by deadline, earliest first:".to_owned(),
     }];
     lines.extend(waiting.iter().take(number).map(|thread| describe_thread(thread, names)));
     if number < waiting.len() {
         let more = grouped_number((waiting.len() - number) as f64, 0);
         lines.push(match wanted.filter {
-            Some(_) => format!("{more} more: inbox all where … lists all threads"),
+            Some(_) => format!("{more} more; to list all matching threads, type: inbox all where …"),
             None => format!(
-                "{more} more: list all with inbox all, or some with inbox where CONDITION, for example inbox where seats >= 500"
+                "{more} more; to list all, type: inbox all; to select some, type: inbox where CONDITION, for \
+                 example inbox where seats >= 500"
             ),
         });
     }
-    lines.push("inbox NUMBER shows the thread of one enterprise".to_owned());
+    lines.push("to show the thread of one enterprise, type: inbox NUMBER".to_owned());
     lines
 }
 
@@ -256,8 +258,8 @@ mod tests {
             lines[2].contains("asks the price of plan A, no offer yet, needs a quota of 5,000 units a day")
         );
         assert!(
-            lines[21].starts_with("662 more: list all with inbox all")
-                && lines[22].starts_with("inbox NUMBER")
+            lines[21].starts_with("662 more; to list all, type: inbox all")
+                && lines[22].ends_with("type: inbox NUMBER")
         );
         let all = thread_lines(&waiting, &ThreadSelection { all: true, filter: None }, &names);
         assert_eq!(all.len(), 1 + 682 + 1);

@@ -119,7 +119,7 @@ impl Interpreter {
 fn not_a_lesson_rejection() -> Rejection {
     Rejection::new(
         "not_in_a_lesson",
-        "this run is not part of a lesson; novamind lesson list shows the lessons",
+        "this run is not part of a lesson; `novamind lesson list` lists the lessons",
     )
 }
 

@@ -223,7 +223,7 @@ pub(super) fn tools_command(
                     "no tool",
                     name,
                     novamind_tools::catalogue::similar_tools(name),
-                    "tools lists all tools",
+                    "type tools to list all tools",
                 ),
             )
         })?;
@@ -254,7 +254,12 @@ pub(super) fn tables_command(
         let names = novamind_database::tables().iter().map(|table| table.name.as_str());
         argument_error(
             arguments,
-            &not_found_message("no table", name, similar_names(name, names), "tables lists all tables"),
+            &not_found_message(
+                "no table",
+                name,
+                similar_names(name, names),
+                "type tables to list all tables",
+            ),
         )
     })?;
     Ok(CommandResponse::success("tables", table.describe(), json!(table)))

@@ -20,7 +20,7 @@ impl Interpreter {
         let lines: Vec<String> = queries.iter().map(line).collect();
         let one = |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.description });
         let data: Vec<Value> = queries.iter().map(one).collect();
-        let text = format!("{}\nqueries NAME runs a query", lines.join("\n"));
+        let text = format!("{}\nTo run a query, type: queries NAME", lines.join("\n"));
         CommandResponse::success("queries", text, json!({ "queries": data }))
     }
 
@@ -33,7 +33,7 @@ impl Interpreter {
         let Some(query) = self.library.find(name) else {
             let near = self.library.similar_names(name);
             let help = if near.is_empty() {
-                "queries lists all queries".to_owned()
+                "type queries to list all queries".to_owned()
             } else {
                 format!("did you mean {}?", near.join(" or "))
             };

@@ -22,7 +22,7 @@ impl Interpreter {
         match what {
             None | Some("week") => Ok(self.week_report()),
             Some("run") => Ok(self.run_report()),
-            Some(_) => Err(argument_error(arguments, "report takes week or run: report week, report run")),
+            Some(_) => Err(argument_error(arguments, "report takes week or run, for example: report week")),
         }
     }
 
@@ -31,7 +31,7 @@ impl Interpreter {
             Some(report) => CommandResponse::success("report", describe_week(&report), week_to_json(&report)),
             None => CommandResponse::rejected(
                 "report",
-                Rejection::new("no_week_yet", "no week has run yet; next simulates a week"),
+                Rejection::new("no_week_yet", "no week has run yet. To simulate a week, type: next"),
             ),
         }
     }

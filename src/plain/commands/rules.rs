@@ -16,13 +16,13 @@ const MAX_LISTED_THREADS: usize = 20;
 
 pub const HELP: &str = "\
 rules RULES         preview the answer to each waiting thread; nothing is sent
-rules send RULES    send the answers with one call of send_enterprise_deal and one call of reject_enterprise_deal
+rules send RULES    send the answers with one call to send_enterprise_deal and one call to reject_enterprise_deal
 A rule is an action with conditions. Semicolons separate rules; the first rule that matches a thread answers it.
   offer where group = E2 and asked is null: B 85
   offer where asked_plan = B and seats >= 500: B asked*1.05, C list*0.9
   accept asked >= 18
   reject rest
-accept offers what the company asked. A price is in dollars, or asked, list or last_offer, optionally with a factor.
+accept offers what the enterprise asked for. A price is in dollars, or asked, list or last_offer, optionally with a factor.
 Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far, turn, days_left, needed_quota, customer.
 Operators: = != < <= > >=, in (…), is null, is not null; and joins conditions. rest matches all other threads.";
 
@@ -101,7 +101,7 @@ fn preview_response(batch: &RuleBatch, names: &EnterpriseNames) -> CommandRespon
     if meant.len() > MAX_LISTED_THREADS {
         lines.push(format!("and {} more", grouped_number((meant.len() - MAX_LISTED_THREADS) as f64, 0)));
     }
-    lines.push("nothing was sent; to send, type rules send …".to_owned());
+    lines.push("nothing was sent. To send the replies, type: rules send …".to_owned());
     let threads: Vec<Value> = batch.threads.iter().map(|ruled| ruled.to_json(names)).collect();
     let data = json!({ "rules": batch.totals_to_json(), "threads": threads });
     CommandResponse::success("rules", lines.join("\n"), data)

@@ -32,7 +32,9 @@ impl Interpreter {
         let command_response =
             self.show_thread(&format!("{TURNS_SQL} WHERE thread_id = {thread} ORDER BY message_id"));
         Ok(command_response.unwrap_or_else(|| {
-            let text = format!("there is no thread {thread}; inbox NUMBER takes the number of an enterprise");
+            let text = format!(
+                "there is no thread {thread}. To use the number of an enterprise, type: inbox NUMBER"
+            );
             CommandResponse::rejected("thread", Rejection::new("thread_not_found", text))
         }))
     }
@@ -44,7 +46,8 @@ impl Interpreter {
              ORDER BY message_id"
         );
         self.show_thread(&newest).unwrap_or_else(|| {
-            let text = format!("enterprise {customer} has no thread; inbox lists the waiting threads");
+            let text =
+                format!("enterprise {customer} has no thread. To list the waiting threads, type: inbox");
             CommandResponse::rejected("inbox", Rejection::new("thread_not_found", text))
         })
     }
@@ -107,7 +110,7 @@ fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     parts.push(match text_at(row, 6) {
         "subscribed" => {
             format!(
-                "subscribes to plan {} at {} a seat",
+                "subscribes to plan {} at {} per seat",
                 text_at(row, 7),
                 dollars_and_cents(number_at(row, 8))
             )

@@ -153,7 +153,7 @@ impl Interpreter {
     fn adopt(&mut self, question: &WhatIfQuestion, column: usize) -> Result<CommandResponse, ParseError> {
         if question.futures.is_some() || question.until.is_some() {
             let text =
-                "adopt cannot be combined with until or futures: the branch is played to the day of this run"
+                "adopt cannot be combined with until or futures, because the branch is always played to the day of this run"
                     .to_owned();
             return Err(ParseError { text, column });
         }
@@ -260,7 +260,7 @@ impl Interpreter {
     }
 }
 
-/// Returns a row for each decision: line, week, tool or key, arguments or value, and whether the decision was rejected.
+/// Returns a row for each decision, with line, week, tool or key, arguments or value, and status.
 fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> {
     let row = |recorded_decision: &RecordedDecision| {
         let (what, arguments) = match recorded_decision {
@@ -278,8 +278,8 @@ fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> 
     decisions.iter().map(row).collect()
 }
 
-/// Converts the text of a question file to a question. The first line contains the words before the colon, each later
-/// line an alternative.
+/// Converts the text of a question file to a question. The first line contains the words before the colon. Each later
+/// line contains an alternative.
 fn convert_question_file(text: &str) -> String {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().unwrap_or_default().trim_end_matches(':');

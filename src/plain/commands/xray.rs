@@ -30,12 +30,12 @@ xray satisfaction GROUP [DAY]    the terms that changed the mean satisfaction of
 xray reputation GROUP [DAY]      the terms that changed the reputation of a group: churn, its subscribers, other groups, bounds
 xray spillover [DAY]             the spillover of reputation between groups, and the part that was dropped
 xray rivals [DAY]                what competitors could copy, what they did, and their next decision
-xray drift [DAY]                 the drift of expectations and budgets so far, and its next day
+xray drift [DAY]                 the past drift of expectations and budgets, and the drift of the next day
 xray streams PART [N]            the first N draws of a part on the next day, and their results
 xray sql [DAY] SELECT …          queries the database and the tables hidden.groups, hidden.customers, hidden.threads,
                                  hidden.competitors, hidden.drift, hidden.pmi and hidden.factors, for example
                                  xray sql SELECT day, reputation FROM hidden.groups WHERE group_id = 'S1'
-                                 hidden.customers shows DAY; all other tables have every day
+                                 hidden.customers contains only DAY; all other tables contain every day
 For debug runs and finished runs. Each inspection is recorded. DAY is any simulated day, by default the last one.";
 
 impl Interpreter {

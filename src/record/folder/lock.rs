@@ -22,16 +22,16 @@ pub fn is_served(folder: &Path) -> bool {
     folder.join(SERVER_FILE).exists() && is_locked(folder)
 }
 
-/// The lock of a run, released when it is dropped. The operating system releases it when the process ends.
+/// The lock of a run, which is released on drop. If the process ends first, the operating system releases the lock.
 ///
-/// Closing the file is not enough: a child process has a copy of the file from its creation until it starts its program, and a
-/// file stays locked until all copies are closed.
+/// Closing the file is not enough: a new child process has a copy of the open file until the child starts its program,
+/// and a file stays locked until all copies are closed.
 #[derive(Debug)]
 pub struct RunLock(File);
 
 impl Drop for RunLock {
     fn drop(&mut self) {
-        // If this fails, closing the file releases the lock.
+        // If unlocking fails, closing the file releases the lock.
         let _ = self.0.unlock();
     }
 }

@@ -37,7 +37,7 @@ pub struct Manifest {
     pub mechanics: u32,
     /// Id of the run: eight hexadecimal digits.
     pub id: String,
-    /// Moment of creation, RFC 3339.
+    /// Time of creation, RFC 3339.
     pub created: String,
     /// Seed of all random draws.
     pub seed: u64,
@@ -110,7 +110,7 @@ impl Manifest {
         let manifest: Manifest = toml::from_str(&text).map_err(|error| RunError::Damaged {
             line: error.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1),
             problem: error.message().to_owned(),
-            remedy: "The trajectory was not touched; restore run.toml from a copy to open the run".to_owned(),
+            remedy: "The trajectory was not changed; restore run.toml from a copy to open the run".to_owned(),
             path,
         })?;
         manifest.check_compatible()
@@ -374,6 +374,6 @@ mod tests {
         assert!(error.contains(&format!("format {}", FORMAT + 1)), "{error}");
         std::fs::write(folder.path().join("run.toml"), "format = 1\nversion = ").expect("a file");
         let error = Manifest::read(folder.path()).expect_err("damaged").to_string();
-        assert!(error.contains("line 2") && error.contains("trajectory was not touched"), "{error}");
+        assert!(error.contains("line 2") && error.contains("trajectory was not changed"), "{error}");
     }
 }

@@ -39,7 +39,7 @@ pub fn read_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     for line in BufReader::new(file).split(b'\n') {
         let line = line.map_err(RunError::io(&path))?;
         let text = String::from_utf8_lossy(&line);
-        // Most lines are tool calls; parse only lines that may close a week or the run.
+        // Most lines are tool calls, so parse only lines that may close a week or the run.
         if closing.iter().any(|kind| text.contains(kind))
             && let Some(line) = Line::parse_unchecked(text.as_bytes())
         {

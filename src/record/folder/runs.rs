@@ -21,9 +21,9 @@ use crate::trajectory::{Line, Record};
 pub struct RunSummary {
     /// Id of the run.
     pub id: String,
-    /// Moment of creation, RFC 3339.
+    /// Time of creation, RFC 3339.
     pub created: String,
-    /// Moment at which the last line was recorded, RFC 3339.
+    /// Time at which the last line was recorded, RFC 3339.
     pub played: String,
     /// Mode of the run; `None` if the run cannot be read.
     pub mode: Option<Mode>,
@@ -222,7 +222,8 @@ fn unreadable_summary(id: String, problem: String) -> RunSummary {
     }
 }
 
-/// Returns the last lines of a trajectory, including its last week. Reads backwards from the end, because runs can be long.
+/// Returns the last lines of a trajectory, including its last week. Reads backwards from the end, because runs can be
+/// long.
 ///
 /// # Errors
 /// The file cannot be read, or contains no readable line.
@@ -253,7 +254,8 @@ fn read_tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
     Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
 }
 
-/// Finds a run to play and returns its folder. `id` is a run id, a unique prefix, or `latest`: the newest unfinished run.
+/// Finds a run to play and returns its folder. `id` is a run id, a unique prefix, or `latest`: the newest unfinished
+/// run.
 ///
 /// # Errors
 /// No run matches, or several runs match.
@@ -283,7 +285,7 @@ fn find_matching_run(
     for folder in folders {
         list.extend(list_runs(&folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
     }
-    // The sort is stable: for equal moments, the run in the common folder comes first.
+    // The sort is stable: for equal times, the run in the common folder comes first.
     list.sort_by(|(_, one), (_, other)| other.played.cmp(&one.played));
     if id == "latest" {
         if list.is_empty() {

@@ -1,4 +1,5 @@
-//! Check whether a lesson is over. Until then, hidden state stays hidden, because the next part can have the same random draws.
+//! Check whether a lesson is over. Hidden state is not shown before the lesson is over, because the next part can have
+//! the same random draws.
 
 use std::path::Path;
 

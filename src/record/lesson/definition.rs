@@ -45,7 +45,7 @@ pub struct LessonAccess {
     pub tools: Option<Vec<ToolId>>,
     /// Screens that the student can open besides the Overview; `None` for all screens.
     pub screens: Option<Vec<String>>,
-    /// Who enters the forecasts before a week.
+    /// Whether the student or the lesson enters the forecasts before a week.
     pub forecasts: ForecastRequirement,
     /// Whether the student has to write a rationale before a week.
     pub rationale: RationaleRequirement,
@@ -401,7 +401,7 @@ impl TryFrom<PitfallFile> for Pitfall {
     }
 }
 
-/// Scheduled calls with which students' runs are compared.
+/// A play with scheduled calls, with which students' runs are compared.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReferencePlay {
@@ -499,7 +499,7 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
 pub struct ScheduledCalls {
     /// Part in which the calls are executed, from 0.
     pub part: usize,
-    /// First week of the calls, from 0: the number of weeks simulated before.
+    /// First week in which the calls are executed, counted from 0.
     pub week: u32,
     /// Weeks between repetitions of the calls.
     pub every: Option<u32>,

@@ -9,7 +9,7 @@ use novamind_tools::{Language, ToolId, find};
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum LessonCall {
-    /// Call of a tool with JSON arguments.
+    /// A call to a tool with JSON arguments.
     Tool(ToolId, Value),
     /// Text of the rules that answer every waiting enterprise.
     Rules(String),

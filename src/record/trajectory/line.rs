@@ -20,7 +20,7 @@ pub struct Line {
     pub seq: u64,
     /// Day of the run on which the line was written.
     pub day: u32,
-    /// Moment at which the line was written, RFC 3339.
+    /// Time at which the line was written, RFC 3339.
     pub at: String,
     /// Event that the line records.
     pub record: Record,
@@ -47,14 +47,14 @@ struct Frame<'a> {
 const FRAME_FIELDS: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
 
 impl Line {
-    /// Parses and checks a line. Lines of the first builds have no sums. The first line of a run declares whether its
-    /// lines have sums.
+    /// Parses and checks a line. Lines of the first builds have no checksums. The first line of a run declares whether
+    /// its lines have checksums.
     pub(super) fn parse(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
         let unreadable = |error: serde_json::Error| format!("this is not a line of a trajectory ({error})");
         let frame: Frame<'_> = serde_json::from_slice(text).map_err(unreadable)?;
         let summed = summed && (seq > 0 || frame.line_sums);
         if check_sum(text).map_or(summed, |fits| !fits) {
-            return Err("the line does not match its sum: it was changed".to_owned());
+            return Err("the line does not match its checksum: it was changed".to_owned());
         }
         if frame.seq != Some(seq) {
             return Err(format!("the line should have number {seq}: lines are missing or out of order"));
@@ -63,7 +63,7 @@ impl Line {
             return Err(CHAIN_BROKEN_MESSAGE.to_owned());
         }
         let (Some(kind), Some(at), Some(day)) = (frame.kind, frame.at, frame.day) else {
-            return Err("the line has no kind, moment or day".to_owned());
+            return Err("the line has no kind, time or day".to_owned());
         };
         let record = Record::parse(&kind, text)
             .map_err(|error| format!("the {kind} line cannot be read ({error})"))?;
@@ -75,7 +75,7 @@ impl Line {
         Line::parse(text, 0, &line_hash(b""), true).ok()
     }
 
-    /// Parses a line without checking its position and sum. Returns `None` if the line cannot be parsed.
+    /// Parses a line without checking its position and checksum. Returns `None` if the line cannot be parsed.
     pub fn parse_unchecked(text: &[u8]) -> Option<Line> {
         let frame: Frame<'_> = serde_json::from_slice(text).ok()?;
         let (seq, day, at) = (frame.seq.unwrap_or(0), frame.day?, frame.at.unwrap_or_default());
@@ -98,12 +98,12 @@ impl Line {
         matches!(&self.record, Record::Start(start) if start.line_sums)
     }
 
-    /// Returns the moment of the line in seconds since 1970, or 0 if the moment cannot be parsed.
+    /// Returns the time of the line in seconds since the Unix epoch, or 0 if its timestamp is invalid.
     pub fn at_seconds(&self) -> f64 {
         parse_seconds(&self.at)
     }
 
-    /// Returns the moment of the line in nanoseconds since 1970, or 0 if the moment cannot be parsed.
+    /// Returns the time of the line in nanoseconds since the Unix epoch, or 0 if its timestamp is invalid.
     pub fn at_nanoseconds(&self) -> i64 {
         parse_nanoseconds(&self.at)
     }
@@ -138,7 +138,7 @@ pub fn first_line_hash(path: &Path) -> Option<String> {
 const SUM_PREFIX: &[u8] = b",\"sum\":\"";
 const SUM_DIGITS: usize = 16;
 
-/// Adds a last field to a line: the sum of its other bytes.
+/// Appends the field `sum` to a line: the checksum of all other bytes.
 pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     let sum = line_hash(&line);
     line.pop();
@@ -148,7 +148,7 @@ pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     line
 }
 
-/// Returns whether the sum of a line is correct, or `None` if the line has no sum.
+/// Returns whether the checksum of a line is correct, or `None` if the line has no checksum.
 fn check_sum(line: &[u8]) -> Option<bool> {
     let (bytes, tail) = line.split_at_checked(line.len().checked_sub(SUM_PREFIX.len() + SUM_DIGITS + 2)?)?;
     let sum = tail.strip_prefix(SUM_PREFIX)?.strip_suffix(b"\"}")?;

@@ -80,7 +80,7 @@ fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// Compares only lengths, because on other systems an open file can neither be moved nor removed.
+/// Compares only lengths, because an open file can be neither moved nor removed on systems other than Unix.
 #[cfg(not(unix))]
 fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     one.len() == other.len()

@@ -43,7 +43,7 @@ pub fn policy_rationale(name: &str) -> String {
 }
 
 /// Returns the name of the policy that decided all weeks in `lines`, according to their rationales. Returns `None` if
-/// there are no weeks, or if one of them was decided otherwise.
+/// there are no weeks, or if a week was not decided by this policy.
 pub fn find_policy(lines: &[Line]) -> Option<&str> {
     let mut weeks = lines.iter().filter_map(|line| match &line.record {
         Record::Advance(week) => Some(week),
@@ -78,7 +78,8 @@ impl Trajectory {
         Trajectory::from_bytes(path, &read_regular_file(path).map_err(RunError::io(path))?)
     }
 
-    /// Returns the last `end` line, or `None` if the run is unfinished. In format 1, other lines can follow the `end` line.
+    /// Returns the last `end` line, or `None` if the run is unfinished. In format 1, other lines can follow the `end`
+    /// line.
     pub fn end_line(&self) -> Option<&Line> {
         find_end(&self.lines)
     }
@@ -126,7 +127,7 @@ impl Trajectory {
         self.lines.last().map_or_else(before, |line| line.hash.clone())
     }
 
-    /// Returns whether every line must have a sum; true before the first line.
+    /// Returns whether every line must have a checksum; true before the first line.
     fn has_sums(&self) -> bool {
         self.continued_position.is_some() || self.lines.first().is_none_or(Line::declares_sums)
     }
@@ -163,7 +164,7 @@ pub fn damaged_line_error(path: &Path) -> impl Fn((usize, String)) -> RunError +
     }
 }
 
-/// Message for a line that has a correct sum but a different hash than the previous line.
+/// Message for a line with a correct checksum whose `prev` field is not the hash of the previous line.
 pub const CHAIN_BROKEN_MESSAGE: &str =
     "the line does not have the hash of the previous line: one of these two lines was changed";
 

@@ -16,7 +16,8 @@ pub(super) struct SyncedFile {
     synced: u64,
     /// Accepted bytes after the synced prefix.
     unsynced: Vec<u8>,
-    /// Whether the content after `synced` is unknown. If so, `unsynced` must be rewritten before more bytes are accepted.
+    /// Whether the content after `synced` is unknown. If so, `unsynced` must be rewritten before more bytes are
+    /// accepted.
     needs_rewrite: bool,
 }
 
@@ -58,8 +59,8 @@ impl SyncedFile {
     /// Appends bytes, and syncs the file if `durability` requires it.
     ///
     /// # Errors
-    /// The file cannot be written. Then the file does not contain the new bytes, or is rewritten without these bytes
-    /// before the next append.
+    /// The file cannot be written. In this case, the file does not contain the new bytes, or is rewritten without
+    /// these bytes before the next append.
     pub fn append(&mut self, bytes: &[u8], durability: Durability) -> io::Result<()> {
         if self.needs_rewrite {
             self.rewrite_unsynced()?;
@@ -81,7 +82,8 @@ impl SyncedFile {
         })
     }
 
-    /// Syncs the accepted bytes. After a failed sync, rewrites the bytes since the last successful sync and syncs once more.
+    /// Syncs the accepted bytes. After a failed sync, rewrites the bytes since the last successful sync and syncs once
+    /// more.
     ///
     /// # Errors
     /// The file cannot be written or synced.

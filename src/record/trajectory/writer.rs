@@ -36,7 +36,7 @@ pub struct TrajectoryWriter {
     backlog: Vec<u8>,
     next_seq: u64,
     last_hash: String,
-    /// Moment of the last line.
+    /// Time at which the last line was written, RFC 3339.
     last_at: String,
     /// Why new lines cannot be saved; `None` if they can be saved.
     loss_reason: Option<String>,
@@ -111,12 +111,12 @@ impl TrajectoryWriter {
         ProjectionPosition { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
     }
 
-    /// Returns the moment of the last line, or an empty string before the first line.
+    /// Returns the time of the last line, or an empty string before the first line.
     pub fn last_at(&self) -> &str {
         &self.last_at
     }
 
-    /// Appends a line and returns the moment at which it was written.
+    /// Appends a line and returns the time at which it was written.
     ///
     /// # Errors
     /// The line cannot be written. In this case, the file is unchanged.

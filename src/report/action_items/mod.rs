@@ -94,7 +94,7 @@ pub enum ActionTarget {
 pub struct ActionItem {
     /// Kind of this problem.
     pub problem: Problem,
-    /// Sentences that describe the problem of the problem with amounts.
+    /// Sentences that describe the problem, with amounts.
     pub text: String,
     /// Sentences that propose a solution; `None` if nothing is proposed.
     pub proposal: Option<String>,

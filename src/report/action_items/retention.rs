@@ -15,7 +15,7 @@ const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
 const BILLING_CYCLE_WEEKS: usize = 4;
 /// Minimum ratio of a churn wave to the usual churn.
 const WAVE_FACTOR: f64 = 2.0;
-/// Number of days in which every subscriber is billed once. Subscribers decide when they are billed.
+/// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
 /// Settings that influence whether a subscriber cancels on a billing day.
 const SETTINGS_JUDGED_AT_BILLING: [ToolId; 5] = [
@@ -120,7 +120,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
 }
 
 /// Returns the day and changes of the last decision that could explain cancellations: some subscribers received their
-/// first bill after it in the last week.
+/// first bill after the decision in the last week.
 fn last_judged_change<'a>(situation: &'a DiagnosisContext<'_>) -> Option<(u32, Vec<&'a SettingChange>)> {
     let recent = |decided: &&Decisions| decided.day + BILLING_DAYS + 7 > situation.observation.day;
     situation.decisions.iter().rev().take_while(recent).find_map(|decided| {

@@ -16,7 +16,7 @@ const MIN_WEEKLY_LEADS: u32 = 20;
 const LOW_CONVERSION: f64 = 0.1;
 /// Minimum share of the estimated usage that a sufficient quota covers.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
-/// Age in days from which an estimate is outdated.
+/// Age at which an estimate counts as outdated, days.
 const OUTDATED_STUDY_DAYS: u32 = 28;
 /// Proposed budget to test a channel, dollars a day.
 const TRIAL_AD_SPEND: f64 = 50.0;
@@ -49,7 +49,7 @@ pub(super) fn missing_offers(situation: &DiagnosisContext<'_>) -> Option<ActionI
         more => (format!("Plans {}", more.join(", ")), "have"),
     };
     let consequence =
-        if all { "Subscribers get nothing for their money" } else { "Subscribers get nothing on it" };
+        if all { "Subscribers get nothing for their money" } else { "Subscribers of this plan get nothing" };
     Some(ActionItem {
         problem: Problem::NoQuota,
         text: format!("{plans} {verb} a price and a quota of 0 units a day. {consequence}."),
@@ -243,8 +243,8 @@ impl<'a> GroupOffers<'a> {
         self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.estimates.budget)
     }
 
-    /// Returns the affordable plan with the fewest deficits. Among equals, the plan with the highest delivered quality
-    /// is preferred.
+    /// Returns the affordable plan with the fewest deficits. If several plans have the fewest deficits, the plan with
+    /// the highest delivered quality is returned.
     fn best_plan(&self) -> Option<Plan> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
         let lacks = |plan: &Plan| {
@@ -454,8 +454,8 @@ fn propose_better_model(
     ))
 }
 
-/// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group if
-/// its cost does not exceed the money at risk.
+/// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group, and
+/// mentions if its cost exceeds the money at risk.
 fn propose_better_quality(
     situation: &DiagnosisContext<'_>,
     group: Group,
@@ -468,7 +468,7 @@ fn propose_better_quality(
     }
     let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
     const PROPOSED_DEVELOPMENT_SPEND: f64 = 5_000.0;
-    // Proposes nothing if the group already receives this budget: the higher quality then only takes time.
+    // Proposes nothing if the group already receives this budget, because the quality then rises without a change.
     let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
     if spend.get(&group).is_some_and(|spend| *spend >= PROPOSED_DEVELOPMENT_SPEND) {
         return None;

@@ -12,9 +12,9 @@ use novamind_tools::ToolId;
 
 /// Number of coming weeks for which capacity must be sufficient.
 const CAPACITY_HORIZON_WEEKS: f64 = 2.0;
-/// Highest share of days with an outage that is not reported.
+/// Share of days with an outage above which outages are reported.
 const MAX_OUTAGE_SHARE: f64 = 0.01;
-/// Highest share of subscribers waiting for support that is not reported.
+/// Share of subscribers waiting for support above which a backlog is reported.
 const MAX_BACKLOG_SHARE: f64 = 0.02;
 /// Number of days in which the proposed operations clear the backlog.
 const BACKLOG_CLEARANCE_DAYS: f64 = 7.0;
@@ -45,8 +45,7 @@ pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     (weeks < CAPACITY_HORIZON_WEEKS).then(|| ActionItem {
         problem: Problem::Capacity,
         text: format!(
-            "The busiest day of the week used {} units, {} of the {} of capacity tier {} and {} more than the busiest day \
-             a week before. At that growth, the tier is full in {full}.",
+            "The busiest day of the week used {} units, {} of the {} units of capacity tier {}, and {} more than the busiest day of the week before. At that growth, the tier is full in {full}.",
             format_whole(busiest),
             percent(busiest / now.units, 0),
             format_whole(now.units),
@@ -67,7 +66,7 @@ fn overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &Capacity
     ActionItem {
         problem: Problem::Overload,
         text: format!(
-            "The busiest day used {} units, {} above the {} of capacity tier {}.",
+            "The busiest day used {} units, {} above the {} units of capacity tier {}.",
             format_whole(busiest),
             percent(busiest / now.units - 1.0, 1),
             format_whole(now.units),
@@ -111,12 +110,16 @@ pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     Some(ActionItem {
         problem: Problem::Outages,
         text: format!(
-            "Outages took {} last week. With operations at {} a day, {} of days have one.",
+            "Outages took {} last week. With operations at {} a day, {} of days have an outage.",
             pluralize(week.downtime_minutes, "minute"),
             format_money(operations),
             percent(now, 1)
         ),
-        proposal: Some(format!("{} a day reduce this to {}.", format_money(more), percent(share(more), 1))),
+        proposal: Some(format!(
+            "{} a day reduce this share to {}.",
+            format_money(more),
+            percent(share(more), 1)
+        )),
         target: ActionTarget::Call(ToolId::SetDailySpend, json!({ "operations": json_number(more) })),
         at_risk,
         is_urgent: true,

@@ -255,7 +255,7 @@ fn overload_item_names_a_sufficient_tier_and_its_price() {
     let need = assert_first_problem(
         &session,
         Problem::Overload,
-        &["above the 50,000 of capacity tier 0", " a day, $"],
+        &["above the 50,000 units of capacity tier 0", " a day, $"],
     );
     let busiest = session.weeks().last().expect("a week").busiest_day as f64;
     let ActionTarget::Call(ToolId::SetCapacityTier, arguments) = &need.target else { panic!("{need:?}") };
@@ -279,11 +279,11 @@ fn outages_are_reported_with_the_operations_spend_that_reduces_them() {
         }
         advance_weeks(&mut session, 1);
     }
-    let words = "With operations at $0 a day, 3.0% of days have one";
+    let words = "With operations at $0 a day, 3.0% of days have an outage";
     let need = assert_first_problem(
         &session,
         Problem::Outages,
-        &["Outages took", words, "$350 a day reduce this to 1.5%"],
+        &["Outages took", words, "$350 a day reduce this share to 1.5%"],
     );
     let ActionTarget::Call(ToolId::SetDailySpend, arguments) = &need.target else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");

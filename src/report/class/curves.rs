@@ -31,9 +31,9 @@ pub fn student_curves<'a>(
 
 /// A scatter plot of a figure by a decision.
 pub struct Scatter<'a> {
-    /// Name of the decision on the horizontal axis: its mean over the weeks in which the student decided.
+    /// Name of the decision whose mean over the decided weeks is on the horizontal axis.
     pub decision: String,
-    /// Name of the figure on the vertical axis: its value in the last week.
+    /// Name of the figure whose value in the last week is on the vertical axis.
     pub figure: String,
     /// One point for each student.
     pub points: Vec<StudentPoints<'a>>,

@@ -1,5 +1,5 @@
-//! Results of a class as a self-contained HTML page for a projector, without scripts. The user highlights a student by
-//! radio buttons, with the mouse or the arrow keys.
+//! Results of a class as a self-contained HTML page for a projector, without scripts. The user highlights a student
+//! with radio buttons, by mouse or arrow keys.
 
 use std::fmt::Write;
 

@@ -120,7 +120,8 @@ impl ClassView<'_> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
 
-    /// Returns the ratio of a goal's value to the reference play on the same seed. Steps and goals are numbered from
+    /// Returns the ratio of a goal's value to its value in the reference play on the same seed. Steps and goals are
+    /// numbered from
     /// 0.
     fn goal_share(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
         let value = |evidence: &Evidence| evidence.steps.get(step)?.goals.get(goal)?.value;
@@ -135,7 +136,8 @@ impl ClassView<'_> {
         all.into_iter().find(|good| (good.part, good.seed) == (of.part, of.seed))
     }
 
-    /// Returns the score of a run: its last goal, or cash without goals, relative to the reference play on the same seed.
+    /// Returns the score of a run relative to the reference play on the same seed. The score is based on the last
+    /// goal, or on cash if the part has no goals.
     fn score_share(&self, run: &ClassRun) -> Option<f64> {
         let part = self.part_of_run(run)?;
         match ranked_goal(part) {
@@ -156,7 +158,7 @@ impl ClassView<'_> {
         let of_part = |part: &LessonPart| match ranked_goal(part) {
             Some((step, goal)) => {
                 let goal = &part.steps[step].goals[goal];
-                // A statement has no name, so that the text of its goal stands for it.
+                // An SQL statement has no name, so the text of the goal is shown instead.
                 goal.measurement.describe().unwrap_or_else(|| lesson.fill_figures(&goal.text))
             }
             None => "final cash".to_owned(),

@@ -72,10 +72,10 @@ pub fn describe_collection(view: &ClassView<'_>) -> String {
     let mut text = headline(view) + "\n";
     if collection.superseded > 0 {
         let records = pluralize(collection.superseded, "record");
-        text += &format!("{records} found as duplicates or in an earlier state: the latest counts\n");
+        text += &format!("{records} skipped: duplicates or earlier states of collected runs\n");
     }
     if collection.others > 0 {
-        text += &format!("{} of a different origin ignored\n", pluralize(collection.others, "run"));
+        text += &format!("{} from outside the class ignored\n", pluralize(collection.others, "run"));
     }
     for finding in &collection.findings {
         text += &format!("! {}\n", escape_control_characters(&describe_finding(finding)));

@@ -47,7 +47,7 @@ pub fn describe_stop(run: &BreakpointRun, day: u32, breakpoints: usize) -> Vec<S
             if run.still_true.iter().all(|true_breakpoint| true_breakpoint.first_value_day.is_some()) =>
         {
             vec![format!(
-                "{ran}; the breakpoint did not become true: it was true at its figure's first value"
+                "{ran}; the breakpoint did not become true: it was already true when its figure had its first value"
             )]
         }
         (true, 1) => vec![format!("{ran}; the breakpoint did not become true: it was true before")],
@@ -64,10 +64,10 @@ fn describe_still_true(true_breakpoint: &StillTrueBreakpoint, day: u32) -> Strin
     let until = match (true_breakpoint.last_true_day == day, true_breakpoint.first_value_day) {
         (true, None) => "true on all these days and on the day before".to_owned(),
         (false, None) => format!("true until day {}", true_breakpoint.last_true_day),
-        (true, Some(began)) => format!("true from day {began}, its figure's first value"),
+        (true, Some(began)) => format!("true from day {began}, when its figure had its first value"),
         (false, Some(began)) => {
             format!(
-                "true from day {began}, its figure's first value, until day {}",
+                "true from day {began}, when its figure had its first value, until day {}",
                 true_breakpoint.last_true_day
             )
         }
@@ -79,7 +79,7 @@ fn describe_still_true(true_breakpoint: &StillTrueBreakpoint, day: u32) -> Strin
     )
 }
 
-/// Describes the day since which a condition is true or false, with both sides of the comparison before and after that day.
+/// Describes whether a condition is true and since which day. Shows both sides of the comparison before and after that day.
 pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<String> {
     let ConditionHistory { condition, today, last_true, last_false } = condition_history;
     let is = if today.is_true { "true" } else { "false" };
@@ -111,14 +111,14 @@ pub fn describe_condition_days(
         often => format!("{condition} became true on {often} of {days}"),
     };
     let line = |state: &ConditionState| {
-        let began = if state.is_first_value { " · its first value" } else { "" };
+        let began = if state.is_first_value { " · first value of the figure" } else { "" };
         format!("  day {:<4} {}{began}", state.day, describe_comparison(condition, state))
     };
     clean_up_numbers(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
 
 /// Formats both sides of a comparison: `churn(S1) over 7 = 0.0523 > 0.05 (day before 0.0481)`. A false comparison is
-/// shown with the opposite sign.
+/// shown with the opposite operator.
 fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String {
     let value = |value: Option<f64>, others: &[f64]| {
         value.map_or("no value".to_owned(), |number| format_distinct(number, others))

@@ -30,7 +30,7 @@ pub enum InspectionCommand {
     Parameters,
     /// `set KEY`: the value of a parameter.
     Parameter(String),
-    /// `set KEY VALUE [from DAY]`: a change of a parameter.
+    /// `set KEY VALUE [from DAY]`: a change to a parameter.
     Set(String, Value, Option<u32>),
 }
 
@@ -58,7 +58,7 @@ impl InspectionCommand {
     /// Parses a command line, which starts with one of [`InspectionCommand::COMMAND_NAMES`].
     ///
     /// # Errors
-    /// Returns the problem and its column.
+    /// Returns an error with the problem and its column.
     pub fn parse(line: &str) -> Result<InspectionCommand, ParseError> {
         let mut reader = LineParser::new(line);
         reader.skip_whitespace();
@@ -89,7 +89,7 @@ impl InspectionCommand {
     /// Parses the arguments of `find`, which start at `column`.
     ///
     /// # Errors
-    /// Returns the problem and its column.
+    /// Returns an error with the problem and its column.
     pub fn parse_find(rest: &str, column: usize) -> Result<InspectionCommand, ParseError> {
         rest.parse().map(InspectionCommand::Find).map_err(|problem| at_line_column(problem, column))
     }
@@ -97,7 +97,7 @@ impl InspectionCommand {
     /// Parses the arguments of `who`.
     ///
     /// # Errors
-    /// Returns the problem and its column.
+    /// Returns an error with the problem and its column.
     pub fn parse_who(rest: &str, column: usize) -> Result<InspectionCommand, ParseError> {
         let read = WriteTarget::parse_with_day(rest);
         read.map(|(target, day)| InspectionCommand::Who(target, day))
@@ -107,7 +107,7 @@ impl InspectionCommand {
     /// Parses the arguments of `diff`.
     ///
     /// # Errors
-    /// Returns the problem and its column.
+    /// Returns an error with the problem and its column.
     pub fn parse_diff(arguments: &[Argument]) -> Result<InspectionCommand, ParseError> {
         let days: Vec<u32> = arguments.iter().map(Argument::as_u32).collect::<Result<_, _>>()?;
         match days[..] {
@@ -119,7 +119,7 @@ impl InspectionCommand {
     /// Parses the arguments of `set`.
     ///
     /// # Errors
-    /// Returns the problem and its column.
+    /// Returns an error with the problem and its column.
     pub fn parse_set(arguments: &[Argument]) -> Result<InspectionCommand, ParseError> {
         let usage = || ParseError::at_first_argument(arguments, SET_USAGE);
         let (key, value, rest) = match arguments {

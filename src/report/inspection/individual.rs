@@ -50,7 +50,7 @@ fn headline(view: &IndividualView) -> String {
     let day = individual_day.day;
     match (individual_day.outcome, choice) {
         (SubscriberOutcome::Cancels(EndCause::Involuntary), _) => format!(
-            "cancelled on day {day}: the payment failed, with a chance of {:.2} % on that day",
+            "cancelled on day {day}: the payment failed (probability on that day: {:.2} %)",
             individual_day.payment_failure * 100.0
         ),
         (SubscriberOutcome::Cancels(_), _) => {

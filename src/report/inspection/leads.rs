@@ -8,7 +8,8 @@ pub fn factor_line_index(factor: LeadFactor) -> usize {
     2 + factor as usize
 }
 
-/// Describes the lead equation of the last day, the range of each factor over all days, and λ with the factors in `held` fixed.
+/// Describes the lead equation of the last day and the range of each factor over all days. Also shows λ with the
+/// factors in `held` fixed.
 pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
     let Some(lead_equation) = days.last() else { return Vec::new() };
     let mut lines = vec![format!("leads of {} on day {}", lead_equation.group, lead_equation.day)];
@@ -37,7 +38,7 @@ pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)])
         ));
     }
     lines.push(format!(
-        "  p {:.2}: the share of draws that are at least as far from λ as {}",
+        "  p {:.2}: the share of draws at least as far from λ as {}",
         lead_equation.p_value(),
         lead_equation.actual_leads
     ));

@@ -2,7 +2,7 @@
 
 use novamind_base::formatting::grouped_number;
 
-/// Number of digits before the decimal point from which a number is written in powers of ten.
+/// Minimum number of digits before the decimal point with which a number is written in powers of ten.
 const MAX_INTEGER_DIGITS: usize = 16;
 
 /// Normalizes the numbers in lines of text.

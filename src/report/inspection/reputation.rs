@@ -58,7 +58,7 @@ fn describe_contribution(
         }
         SubscriberContribution { subscribers, requested_change: called, .. } => {
             format!(
-                "satisfaction of its {subscribers}: {called:+.8} is below {}: dropped",
+                "satisfaction of its {subscribers}: {called:+.8}, dropped because it is below {}",
                 format_small(least.subscriber_contribution)
             )
         }

@@ -9,7 +9,7 @@ use novamind_session::identifiers::Group;
 /// Marks of a heat map, from the smallest to the largest spillover.
 pub const HEAT_MARKS: [&str; 4] = ["░", "▒", "▓", "█"];
 
-/// The spillovers of a day. Rows are source groups, columns are target groups.
+/// The spillovers of a day. Rows are source groups, and columns are target groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpilloverMap {
     /// Heading of the map, with the day.

@@ -69,7 +69,7 @@ fn describe_effect(follows: &DrawEffect) -> String {
         }
         DrawEffect::FailedPayments { rate, customers } => describe_failed_payments(*rate, customers),
         DrawEffect::OutageAbove(chance) => {
-            format!("an outage if its chance is above {:.2} %", chance * 100.0)
+            format!("an outage if the outage chance exceeds {:.2} %", chance * 100.0)
         }
         DrawEffect::Noise(noise) => format!("noise {noise:+.6} in shared quality"),
         DrawEffect::Project { tier, days, gain } => {

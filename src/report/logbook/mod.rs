@@ -119,7 +119,7 @@ pub struct NotesSummary {
     pub wording: Option<WordCounts>,
 }
 
-/// A simulated week, or days that were simulated one by one, with the actions before.
+/// A simulated week, or days that were simulated one by one, with the preceding actions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WeekRecord {
     /// Number of the week, from 1.

@@ -1,4 +1,5 @@
-//! Gross margins in sentences for screen readers. The current model tier is described first, the other tiers in one line.
+//! Gross margins in sentences for screen readers. The current model tier is described first. The other tiers follow in
+//! one line.
 
 use super::{
     DraftPlanTerms, MarginSetting, NO_USAGE_MESSAGE, PlanSales, PlanUsage, differs_by_a_cent, margin,
@@ -48,7 +49,7 @@ fn plan_sentences(
         set.tier,
         on_own(
             &|unit_cost| plan_usage.margin(unit_cost),
-            &format!("the {} a seat and month paid now", dollars_and_cents(paid))
+            &format!("the price of {} per seat per month paid now", dollars_and_cents(paid))
         )
     );
     if is_at_list {
@@ -69,10 +70,10 @@ fn plan_sentences(
     let others = models.iter().filter(|(tier, _)| *tier != set.tier);
     let others: Vec<(u8, f64)> =
         others.filter_map(|(tier, unit_cost)| Some((*tier, margin_at(*unit_cost)?))).collect();
-    let basis = if is_at_list { "at that list price" } else { "of the price paid now" };
+    let basis = if is_at_list { "as a share of that list price" } else { "as a share of the price paid now" };
     lines.extend(
         other_models_sentence(&others)
-            .map(|words| format!("plan {plan} on other model tiers, {basis}: {words}")),
+            .map(|words| format!("margin of plan {plan} on other model tiers, {basis}: {words}")),
     );
     lines
 }
@@ -147,7 +148,10 @@ mod tests {
         assert!(line.ends_with(&list), "{line} without {list}");
         let text = lines.join("\n");
         assert!(!text.contains(['[', '<']) && !text.contains("  "), "{text}");
-        assert!(text.contains("plan B on other model tiers, at that list price: tier 1 "), "{text}");
+        assert!(
+            text.contains("margin of plan B on other model tiers, as a share of that list price: tier 1 "),
+            "{text}"
+        );
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Location of a line in a study: run, time, week, and whether the line is after the end of the run.
+//! Location of a line in a study: run, time, week, and position relative to the end of the run.
 
 use super::column::{Column, columns};
 use super::rounded;

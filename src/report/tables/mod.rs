@@ -107,7 +107,7 @@ impl StudyTables {
         self.append_rows("visits", &visits::columns(), visits);
     }
 
-    /// Adds a row for a run that could not be read. It contains only the run's name and the problem.
+    /// Adds a row for a run that could not be read. The row contains only the run's name and the problem.
     pub fn add_unreadable_run(&mut self, run: &str, problem: &str) {
         let cell = |column: Column<Logbook>| match &*column.heading.name {
             "run" => run.to_owned(),

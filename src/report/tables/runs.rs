@@ -150,7 +150,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "acting_calls", "count", "accepted calls that changed the run; excludes read-only calls" => run.measures.tools.calls;
         "acting_calls_per_week", "per week", "accepted calls that changed the run, per simulated week" => rounded(run.measures.tools.per_week);
         "tools_used", "count", "number of different tools in accepted calls that changed the run" => run.measures.tools.tools.len();
-        "tool_evenness", "share", "evenness of these calls over the tools: entropy of the tools' shares divided by \
+        "tool_evenness", "share", "evenness of tool use in accepted calls that changed the run: entropy of the tools' shares divided by \
          its maximum; empty with fewer than two tools" => run.measures.tools.evenness;
         "tools", "tool=count", "accepted calls by tool, including read-only calls" => format_tool_counts(&run.total);
         "screens", "screen=seconds", "active time on each screen (console only)" => format_screen_seconds(&run.total);

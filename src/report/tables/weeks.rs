@@ -50,7 +50,7 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "week", "number", "number of the week, from 1" => row.week.week;
         "decision_day", "day", "decision day" => row.week.decision_day;
         "day", "day", "last day of the week" => row.week.day;
-        "days_run", "days", "simulated days: 7 except in a shortened last week, a bankruptcy, or steps of a debug run"
+        "days_run", "days", "simulated days: 7, or fewer in a shortened last week, the week of a bankruptcy or a step of a debug run"
             => row.week.days_run;
         "inherited", "0 or 1", "1: copied from the parent run, not played in this run"
             => row.week.inherited;

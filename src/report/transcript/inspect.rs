@@ -112,7 +112,8 @@ struct MessageStep {
 }
 
 impl MessageStep {
-    /// Reads a step of an exported trajectory. Identifiers are unique across runs, because Inspect's tables drop duplicates.
+    /// Converts a step of an exported trajectory to messages. Their IDs are unique across runs, because Inspect's
+    /// tables drop duplicates.
     fn from_json(step: &Value, manifest: &Manifest) -> MessageStep {
         let role = match step["source"].as_str() {
             Some("agent") => "assistant",

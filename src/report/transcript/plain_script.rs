@@ -1,4 +1,4 @@
-//! Export to a plain-mode script, which repeats the decisions of the run with `novamind play --plain --strict`.
+//! Export to a plain-mode script that repeats the decisions of the run with `novamind play --plain --strict`.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use super::{Transcript, TranscriptAction, TranscriptStep, forecasts_as_json};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::CalledTool;
 
-/// Returns the plain-mode script. The command that runs the script is in its first lines.
+/// Returns the plain-mode script. Its first lines contain the command that runs the script.
 pub fn to_plain_script(run: &Transcript) -> String {
     let manifest = &run.manifest;
     let head = format!(
@@ -30,7 +30,7 @@ pub fn to_plain_script(run: &Transcript) -> String {
 pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> {
     let is_judged = run.manifest.voice.as_ref().is_some_and(|model| model.judge);
     is_judged.then_some(
-        "A language model judged its posts. This script uses the built-in judge, so the last state can differ.",
+        "A language model judged the posts of the run. This script uses the built-in judge, so the last state can differ.",
     )
 }
 

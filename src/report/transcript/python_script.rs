@@ -1,4 +1,4 @@
-//! Export to a Python program, which repeats the decisions of the run through the client library on a served run.
+//! Export to a Python program that repeats the decisions of the run on a served run, through the client library.
 
 use serde_json::{Value, json};
 

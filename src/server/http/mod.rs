@@ -75,7 +75,7 @@ impl BoundPort {
 /// requests, and `on_defect` with reports of internal errors.
 ///
 /// # Errors
-/// The token file cannot be read, or the end of the record cannot be written.
+/// The token file cannot be read, or the last line of the record cannot be written.
 pub fn serve_http(
     session: Session,
     bound_port: BoundPort,

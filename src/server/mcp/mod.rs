@@ -35,7 +35,7 @@ const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every t
 /// Serves a run on standard input and output until the input ends. Calls `on_defect` with reports of internal errors.
 ///
 /// # Errors
-/// The end of the record cannot be written, or standard input and output cannot be used.
+/// The last line of the record cannot be written, or standard input and output cannot be used.
 pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> {
     let numbers = session.numbers();
     let folder = session.folder().map(PathBuf::from);

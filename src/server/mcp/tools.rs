@@ -38,8 +38,8 @@ fn tool_annotations(spec: &ToolSpec) -> ToolAnnotations {
         .open_world(false)
 }
 
-/// Converts a response to the result of a tool call. A rejection becomes a tool error, which the model reads, and not
-/// a protocol error.
+/// Converts a response to the result of a tool call. A rejection becomes a tool error that the model can read, not a
+/// protocol error.
 pub fn to_call_result(answer: ApiResponse) -> CallToolResult {
     if answer.is_success() {
         CallToolResult::structured(answer.body)

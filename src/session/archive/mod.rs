@@ -2,7 +2,7 @@
 //!
 //! An archive is a tar file, compressed with gzip if its name ends in `.gz` or `.tgz`. It contains one folder, named
 //! after the run, with these files:
-//! | file | |
+//! | file | content |
 //! |---|---|
 //! | `seal.toml` | length and BLAKE3 hash of every file, last line of the trajectory, and a checksum of the seal |
 //! | `seal.sig` | the signature of the seal, if a lab signed it |
@@ -83,7 +83,8 @@ fn archive_error(archive: &Path, problem: impl AsRef<str>) -> RunError {
     }
 }
 
-/// Escapes control characters in a text from an untrusted file and truncates the text, so that it can be printed on one line.
+/// Escapes control characters in a text from an untrusted file and truncates the text, so that it can be printed on one
+/// line.
 fn escape_untrusted(text: &str) -> String {
     const MAX_CHARACTERS: usize = 400;
     let mut line = String::new();

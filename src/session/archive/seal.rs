@@ -81,7 +81,7 @@ impl Seal {
     }
 }
 
-/// The side of a copy operation that failed.
+/// An error of a copy operation, by the end that failed: source or destination.
 #[derive(Debug)]
 pub enum CopyError {
     /// The source cannot be read.

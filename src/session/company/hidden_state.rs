@@ -77,12 +77,12 @@ impl<'a> HiddenState<'a> {
         self.world.market.reputation.get(group)
     }
 
-    /// Returns the multiplier that the economy applies to a group in a dimension.
+    /// Returns the multiplier that the economy applies to a dimension of a group.
     pub fn macro_multiplier(&self, group: Group, dimension: Dimension) -> f64 {
         self.world.market.economy.multiplier(group, dimension, self.params)
     }
 
-    /// Returns the yield of a channel for a group: leads per day for 1,000 dollars per day.
+    /// Returns the yield of a channel for a group: leads per day at a spending of 1,000 dollars per day.
     pub fn channel_yield(&self, channel: Channel, group: Group) -> f64 {
         self.world.market.yields[channel][group]
     }
@@ -111,8 +111,8 @@ impl<'a> HiddenState<'a> {
         self.world.customers.groups[group].blocks.iter()
     }
 
-    /// Returns the judgements of a post of the player, one per group that was known at that time. The result is empty
-    /// if the post is not judged yet. Posts are numbered from 1.
+    /// Returns the judgements of a post of the player, one per group that was known on the day of the post. The result
+    /// is empty if the post is not judged yet. Posts are numbered from 1.
     pub fn judgements(&self, own_post: u32) -> &'a [Judgement] {
         let at = (own_post as usize).checked_sub(1);
         at.and_then(|at| self.judgements.get(at)).map_or(&[], Vec::as_slice)

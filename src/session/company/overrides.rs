@@ -1,4 +1,4 @@
-//! Parameter changes during a debug run, including scheduled ones, and values derived from the parameters in force.
+//! Immediate and scheduled parameter changes during a debug run, and values derived from the parameters in force.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
@@ -83,7 +83,8 @@ impl Overrides {
     /// fail on its day.
     ///
     /// # Errors
-    /// The value is not allowed, or contradicts another value now or on a later day. After an error, nothing has changed.
+    /// The value is not allowed, or contradicts another value now or on a later day. After an error, nothing has
+    /// changed.
     pub fn add_change(
         &mut self,
         now: &Arc<Params>,

@@ -13,7 +13,8 @@ impl NewRun {
     /// other modes are not restricted.
     ///
     /// # Errors
-    /// [`RunError::InvalidRequest`] with the next step, or the scenario cannot be read.
+    /// [`RunError::InvalidRequest`] with the next step if the run does not meet these conditions; another error if the
+    /// scenario cannot be read.
     pub fn check_baseline(&self, configuration: &Configuration) -> Result<(), RunError> {
         if self.mode != Mode::Baseline || self.study.is_some() {
             return Ok(());
@@ -42,7 +43,7 @@ impl NewRun {
         )))
     }
 
-    /// Returns descriptions of the scenario, days and cash of the run, as far as they differ from the terms of baseline runs.
+    /// Describes each term of the run (scenario, days, cash) that differs from the terms of baseline runs.
     ///
     /// # Errors
     /// The scenario cannot be read.

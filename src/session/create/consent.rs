@@ -12,8 +12,8 @@ use novamind_record::folder::runs::all_run_folders;
 /// Returns the consent for a new baseline run. The participant gives consent now, or gave it for an earlier run.
 ///
 /// # Errors
-/// [`RunError::ConsentNeeded`] with the consent text if the participant has not agreed to it. Other errors if the file
-/// cannot be read.
+/// [`RunError::ConsentNeeded`] with the consent text if the participant has not agreed to it. Other errors if the
+/// consent file cannot be read.
 pub fn resolve_consent(
     new: &NewRun,
     participant: Option<&str>,

@@ -161,7 +161,7 @@ pub struct Attendance {
     spans: Vec<TimeSpan>,
     /// Time of the last line, nanoseconds since the first line.
     end_ns: i64,
-    /// Wall-clock time of the last line, nanoseconds since 1970.
+    /// Wall-clock time of the last line, nanoseconds since the Unix epoch.
     last_time_ns: Option<i64>,
     connection: ConnectionState,
     is_paused: bool,
@@ -184,7 +184,7 @@ impl Attendance {
         attendance
     }
 
-    /// Adds the next line. `moment` is the time at which it was written, in nanoseconds since 1970.
+    /// Adds the next line. `moment` is the time at which the line was written, in nanoseconds since the Unix epoch.
     pub fn add_line(&mut self, moment: i64, record: &Record) {
         let passed = moment - self.last_time_ns.unwrap_or(moment);
         if passed < 0 {
@@ -244,7 +244,7 @@ impl Attendance {
         &self.spans
     }
 
-    /// Returns the time between two moments, by kind.
+    /// Returns the time spent from `from` to `to`, by kind. Both arguments are in nanoseconds since the first line.
     pub fn spent_between(&self, from: i64, to: i64) -> TimeSpent {
         let mut spent = TimeSpent::default();
         let first = self.spans.partition_point(|time| time.to <= from);
@@ -254,8 +254,8 @@ impl Attendance {
         spent
     }
 
-    /// Returns the time spent in the scope of a limit up to `moment`, in nanoseconds since 1970. Time without key
-    /// presses counts as active until the program records the idle time.
+    /// Returns the time spent in the scope of a limit up to `moment`, in nanoseconds since the Unix epoch. Time without
+    /// key presses counts as active until the program records the idle time.
     pub fn spent_until(&self, scope: LimitScope, moment: i64) -> TimeSpent {
         let from = match scope {
             LimitScope::Week => self.week_start_ns,
@@ -364,7 +364,8 @@ fn presence_event(record: &Record) -> Option<PresenceEvent> {
     }
 }
 
-/// Returns whether only a present user can cause this event. Weeks do not count, because a time limit can submit a week.
+/// Returns whether only a present user can cause this event. Weeks do not count, because a time limit can submit a
+/// week.
 fn is_user_action(record: &Record) -> bool {
     match record {
         Record::Call(_) | Record::Query(_) | Record::Note(_) | Record::Memo(_) => true,

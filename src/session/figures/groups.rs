@@ -153,7 +153,7 @@ pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     (count > 0).then(|| (satisfaction / count as f64, relationship / count as f64))
 }
 
-/// Returns the figures of a group, including hidden ones. `counted` contains the sums over the days before.
+/// Returns the figures of a group, including hidden figures. `counted` contains the sums over the days of the period.
 pub fn measure_group(group: Group, counted: &GroupWeek, world: &World) -> GroupFigures {
     let (satisfaction, relationship) = mean_satisfaction(world, group).unzip();
     let group_customers = &world.customers.groups[group];

@@ -14,13 +14,13 @@ use novamind_world::events::Category;
 
 /// Number of weeks up to which a company is young.
 const YOUNG_WEEKS: usize = 4;
-/// Income is growing if it exceeds the income of four weeks before by this factor. Income is shrinking if it is below
-/// the inverse.
+/// Ratio of current income to the income four weeks before above which income counts as growing. Below the inverse
+/// ratio, income counts as shrinking.
 const GROWTH_FACTOR: f64 = 1.3;
 /// Number of past errors per horizon that affect the width of an interval.
 const MAX_REMEMBERED_ERRORS: usize = 8;
-/// Factor by which past errors widen an interval. The width is multiplied by this factor times the root mean square of
-/// past errors (in intervals), if the product is above 1.
+/// Weight of past errors in the width of an interval. The width is multiplied by this weight times the root mean
+/// square of past errors (in intervals), if the product is above 1.
 const ERROR_WIDENING_FACTOR: f64 = 1.5;
 /// Maximum past error that is considered, in intervals.
 const MAX_ERROR_INTERVALS: f64 = 10.0;

@@ -103,7 +103,7 @@ impl InspectionPermit {
     /// Opens a database connection that has empty hidden tables.
     ///
     /// # Errors
-    /// The rejection `not_in_this_mode`, or the run has no database.
+    /// `not_in_this_mode`; `sql_error` if the run has no database or the database cannot be read.
     pub fn open_hidden_tables(run: &mut Session) -> Result<QueryConnection, Rejection> {
         run.check_inspection()?;
         run.up_to_date_database()?.open_scoped_connection(Scope::Hidden)

@@ -84,7 +84,7 @@ impl ModelClient {
         if let (Err(problem), false) = (&answer, self.is_failing) {
             self.notice = Some(format!(
                 "the language model {} at {} failed ({problem}). The built-in voice is used instead. This notice is \
-                 shown again only after the model has worked",
+                 shown again only after the model has responded successfully",
                 self.settings.model,
                 self.settings.host()
             ));

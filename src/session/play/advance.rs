@@ -29,13 +29,14 @@ pub(crate) struct WeekSubmission<'a> {
     pub(crate) predictions: &'a Value,
     /// Whether each forecast is a naive forecast, completely or partly.
     pub(crate) filled_naively: [bool; 4],
-    /// The day on which the run must be; null to skip this check.
+    /// Day on which the caller expects the run to be; null to skip the check.
     pub(crate) expected_day: &'a Value,
     pub(crate) request: Option<RequestId>,
 }
 
 impl Session {
-    /// Submits a rationale and forecasts, then simulates the days until the next decision day, the last day or bankruptcy.
+    /// Submits a rationale and forecasts, then simulates the days until the next decision day, the last day or
+    /// bankruptcy.
     ///
     /// # Errors
     /// `run_over`, `too_many_leads`, the rejections of next_week, `not_saved`. After an error, nothing has changed.
@@ -195,8 +196,8 @@ impl Session {
         Ok(())
     }
 
-    /// Simulates and closes the week of an `advance` line. The simulation stops before a day that would exceed the
-    /// limit of leads.
+    /// Simulates and closes the week of an `advance` line. The simulation stops before a day that would exceed the lead
+    /// limit.
     pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> WeekResult {
         let (from, until) = (self.simulation.world.day, self.company().next_decision_day());
         let last_day = self.run_days_while(&has_lead_capacity, until, progress);
@@ -283,7 +284,8 @@ impl Session {
         if unclosed.is_none() {
             self.reword_posts_after(from);
         }
-        // The run ends even if the line of its last week is not saved: both lines stay in memory until the disk is writable.
+        // The run ends even if the line of its last week is not saved: both lines stay in memory until the disk is
+        // writable.
         let problem = match self.pending_end_reason() {
             Some(ended) => self.close_run(ended),
             None => unclosed,
@@ -431,7 +433,7 @@ fn has_lead_capacity(simulation: &Simulation) -> bool {
     simulation.check_lead_capacity().is_ok()
 }
 
-/// Returns the arguments of a week as recorded for a rejected week.
+/// Returns the arguments that are recorded for a rejected week.
 pub(crate) fn week_arguments(rationale: &Value, predictions: &Value, expected_day: &Value) -> Value {
     let mut args = json!({ "rationale": rationale, "predictions": predictions });
     if !expected_day.is_null() {

@@ -19,7 +19,7 @@ pub struct WeekRequest<'a> {
     pub rationale: &'a Value,
     /// Forecasts of cash for four horizons.
     pub predictions: &'a Value,
-    /// The day on which the run must be; null to skip this check.
+    /// Day on which the caller expects the run to be; null to skip the check.
     pub expected_day: &'a Value,
     /// Id of the request; null if the request has no id.
     pub id: &'a Value,

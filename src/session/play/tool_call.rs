@@ -28,7 +28,7 @@ pub struct Preview {
     pub tool: ToolId,
     /// Immediate cost of the call, dollars.
     pub cost_now: f64,
-    /// Change of the running costs, dollars per day.
+    /// Change in running costs, dollars per day.
     pub cost_per_day: f64,
     /// First day on which the call has an effect; `None` if the call changes nothing.
     pub effect_day: Option<u32>,

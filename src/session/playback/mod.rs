@@ -33,7 +33,7 @@ struct WeekBoundary {
 pub struct Playback {
     origin: Origin,
     trajectory: Trajectory,
-    /// Number of lines that can be applied: all lines before a line that does not reproduce.
+    /// Number of lines that can be applied: all lines before the first line that does not reproduce the recorded state.
     valid_lines: usize,
     boundaries: Vec<WeekBoundary>,
     session: Session,
@@ -45,7 +45,8 @@ impl Playback {
     /// Opens the run in a folder, or a trajectory file, and starts the playback at the first line.
     ///
     /// # Errors
-    /// The run is missing, damaged or recorded with another version. The error names the file and the data that is safe.
+    /// The run is missing, damaged or recorded with another version. The error names the file and the data that is
+    /// safe.
     pub fn open(path: &Path) -> Result<Playback, RunError> {
         let (origin, trajectory) = read_origin(path)?;
         let session = origin.initial_session()?;
@@ -89,7 +90,8 @@ impl Playback {
         &mut self.session
     }
 
-    /// Moves the playback to a target. Seeking back uses a new session, so that the seek can be stopped without an effect.
+    /// Moves the playback to a target. Seeking back uses a new session, so that the seek can be stopped without an
+    /// effect.
     ///
     /// # Errors
     /// A line does not reproduce the recorded state. After such an error, the playback ends before this line.
@@ -301,7 +303,8 @@ impl Playback {
         self.boundaries.iter().find(|stop| stop.day == day).map(|stop| stop.cash)
     }
 
-    /// Returns the notes at this position. Lines of format 1 do not contain notes, so only the last notes of the run are known.
+    /// Returns the notes at this position. Lines of format 1 do not contain notes, so only the last notes of the run
+    /// are known.
     pub fn notes(&self) -> Option<String> {
         let lines = self.trajectory.lines[..self.applied].iter().rev();
         let kept = lines.map(|line| &line.record).find(|record| record.notes_digest().is_some())?;
@@ -360,7 +363,8 @@ fn standalone_rejection() -> Rejection {
     Rejection::new("not_possible", message)
 }
 
-/// Applies lines after the first `applied` lines. Returns the number of applied lines, and whether all lines were applied.
+/// Applies the lines after the first `applied` lines. Returns the number of applied lines, and either `Continue` after
+/// the last line, `Break` if `progress` stopped the seek, or the index and error of an invalid line.
 fn apply_lines(
     session: &mut Session,
     path: &Path,

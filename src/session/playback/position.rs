@@ -49,7 +49,7 @@ pub struct PlaybackPosition {
     pub is_at_end: bool,
     /// Decisions before the next week, or before the last week at the end of the run.
     pub chapter: Chapter,
-    /// Reason why the run cannot be branched at this position, if so.
+    /// Reason why the run cannot be branched at this position; `None` if it can be branched.
     pub branch_rejection: Option<String>,
 }
 

@@ -22,7 +22,7 @@ fn open_and_read_remarks(folder: &Path, text: Option<&str>) -> String {
     assert_eq!((listed.len(), &listed[0].id, listed[0].seed), (1, &id, 7));
     assert_eq!((listed[0].problem.as_ref(), listed[0].participant.as_ref()), (None, None));
     assert_eq!(find_run(runs, "latest").expect("a run"), folder);
-    assert!(verify(folder).is_ok(), "it verifies unchanged");
+    assert!(verify(folder).is_ok(), "the unchanged run verifies");
     assert_eq!(std::fs::read_to_string(&path).ok().as_deref(), text, "reading changes nothing");
     let reader = Session::open(folder, Access::Read, false).expect("it opens");
     assert!(reader.remarks().join(" ").contains("the first line of the trajectory is used"));

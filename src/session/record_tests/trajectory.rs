@@ -99,7 +99,8 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
     #[cfg(unix)]
     {
         std::fs::hard_link(&path, folder.join("another-name")).expect("a link");
-        let error = writer.append(9, &memo_record(), Durability::Synced).expect_err("it has another name");
+        let error =
+            writer.append(9, &memo_record(), Durability::Synced).expect_err("the file has another name");
         let words = error.to_string();
         assert!(words.contains("no longer on disk") && words.contains("linked"), "{words}");
         assert_eq!(std::fs::read(kept(error)).expect("a copy"), whole);

@@ -8,7 +8,7 @@ use novamind_record::trajectory::{Record, Trajectory};
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SessionClock {
-    /// Moment at which the clock was stopped, in seconds since 1970; `None` while the clock is running.
+    /// Time at which the clock was stopped, in seconds since the Unix epoch; `None` while the clock is running.
     pub(super) stopped_at: Option<f64>,
     /// Whether a time limit has stopped the clock and the clock was not started since.
     pub(super) is_stopped_by_limit: bool,
@@ -34,7 +34,7 @@ impl SessionClock {
         clock
     }
 
-    /// Updates the state with a line. `at` is the time at which it was written, in seconds since 1970.
+    /// Updates the state with a line. `at` is the time at which the line was written, in seconds since the Unix epoch.
     pub(crate) fn apply(&mut self, record: &Record, at: f64) {
         match record {
             Record::Branch(_) => *self = SessionClock::default(),

@@ -130,7 +130,8 @@ impl<'a> CompanyView<'a> {
         &self.simulation.world.customers.numbers
     }
 
-    /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for abandoned runs.
+    /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for
+    /// abandoned runs.
     pub(crate) fn score(&self) -> Option<f64> {
         match self.history.ended {
             Some(RunEndReason::Horizon) => Some(self.simulation.world.finance.cash),
@@ -208,7 +209,7 @@ impl<'a> CompanyView<'a> {
         self.capacity_tier_by_rule(UsageCapacityRule::StepByStep)
     }
 
-    /// Returns the channel with most leads per dollar for a group at the start of the run. Returns `None` for
+    /// Returns the channel with the most leads per dollar for a group at the start of the run. Returns `None` for
     /// unfinished runs, because this channel is hidden from players.
     pub fn true_best_channel(&self, group: Group) -> Option<Channel> {
         self.history.ended.map(|_| best_starting_channel(group, &self.simulation.params))

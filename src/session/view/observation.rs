@@ -106,9 +106,9 @@ pub struct WaitingThread {
     pub turn: u32,
     /// Number of offers that the player sent in the thread.
     pub offers_so_far: u32,
-    /// The player's last offer: plans with prices, dollars per month and seat.
+    /// The player's last offer: plans with prices, dollars per seat per month.
     pub last_offer: Vec<(Plan, f64)>,
-    /// Last price that the enterprise named, dollars per month and seat.
+    /// Last price that the enterprise named, dollars per seat per month.
     pub asked: Option<f64>,
     /// Days until the deadline of the thread.
     pub days_left: u32,

@@ -40,7 +40,7 @@ pub struct ModelTier {
     pub multiplier: f64,
 }
 
-/// Limits and prices that the tools of a run have.
+/// Limits and prices that apply to the tools of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToolLimits {
     /// Maximum length of a post, in characters.

@@ -5,8 +5,8 @@ use novamind_record::trajectory::{Line, Record};
 
 /// Largest correction of a running clock that is not reported, seconds.
 const MAX_CORRECTION_SECONDS: f64 = 2.0;
-/// Largest drift between the two clocks that is not reported, seconds per second. It is the highest rate at which the
-/// Linux kernel slews a clock.
+/// Largest drift between the two clocks that is not reported, seconds per second: the highest rate at which the Linux
+/// kernel slews a clock.
 const MAX_DRIFT: f64 = 500e-6;
 
 /// Returns the lines before which the wall clock was changed, each with an explanation. The wall clock must not go
@@ -41,7 +41,7 @@ fn clock_disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) ->
     let way = if ahead < 0.0 { "behind" } else { "ahead of" };
     let cause = match ahead < 0.0 {
         true => "it was set back or slowed",
-        false => "it was set forward, or the machine slept while its monotonic clock stood still",
+        false => "it was set forward, or the monotonic clock stopped while the machine was suspended",
     };
     Some(format!(
         "the wall clock moved {:.0} seconds {way} the monotonic clock since line {}: {cause}",

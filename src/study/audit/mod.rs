@@ -45,7 +45,7 @@ pub struct AuditReport {
     pub visits: VisitSummary,
 }
 
-/// Audits the runs of a study in the folders of runs of its machines, or in copies of these folders.
+/// Audits the runs of a study. `machines` contains the runs folders of its machines, or copies of these folders.
 ///
 /// # Errors
 /// Returns an error if the public key of the lab cannot be read.
@@ -113,8 +113,7 @@ fn nothing_examined_finding(
     }
     let folders: Vec<String> = machines.iter().map(|folder| folder.display().to_string()).collect();
     let words = format!(
-        "no run with the protocol digest {} is in {}. Check the folders and the protocol. Of archives, only the \
-         signature is checked",
+        "no run with the protocol digest {} is in {}. Check the folders and the protocol. The audit checks only the signatures of archives",
         study.short_digest(),
         folders.join(", ")
     );

@@ -5,8 +5,8 @@ use serde_json::Value;
 use super::super::ToolId;
 use super::parsing::{ElementError, parse_deal_customer};
 
-/// Replaces the enterprises in the arguments of a call by their counterparts in another run. Removes elements whose
-/// enterprise has no counterpart. Returns `None` if no element remains. Elements without an enterprise and calls of
+/// Replaces the enterprises in the arguments of a call with their counterparts in another run. Removes elements whose
+/// enterprise has no counterpart. Returns `None` if no element remains. Elements without an enterprise and calls to
 /// other tools do not change.
 pub fn remap_customers(
     tool: ToolId,

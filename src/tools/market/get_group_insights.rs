@@ -82,7 +82,7 @@ pub struct GroupInsights {
     pub noise: String,
     /// Estimated means of the group's parameters.
     pub estimates: Estimates,
-    /// Leads per subscriber and day that the group brings to known groups, and that known groups bring to the group.
+    /// Leads per subscriber per day that the group brings to known groups, and that known groups bring to the group.
     pub network_influence: Influence,
     /// Weight of the group's reputation for known groups, and of their reputations for the group.
     pub reputation_influence: Influence,
@@ -95,7 +95,7 @@ pub struct Estimates {
     pub willingness_to_pay: f64,
     /// Mean usage in units per day, for enterprises per seat.
     pub usage_volume: f64,
-    /// Lowest quality that a customer accepts.
+    /// Mean of the lowest quality that a customer accepts.
     pub quality_floor_q_min: f64,
     /// Aversion to long contracts.
     pub contract_lockin_aversion: f64,
@@ -106,7 +106,7 @@ pub struct Estimates {
     /// Number of seats of the smallest and the largest enterprise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seat_range: Option<[u64; 2]>,
-    /// Number of turns that an enterprise accepts.
+    /// Mean number of turns after which an enterprise stops negotiating.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decision_rounds: Option<u64>,
     /// Mean number of days until an enterprise replies.

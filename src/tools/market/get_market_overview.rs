@@ -75,7 +75,7 @@ pub struct Macroeconomy {
     pub pmi_value: f64,
     /// Trend of the PMI.
     pub pmi_trend: Trend,
-    /// Change of the PMI since the previous publication.
+    /// Change in the PMI since the previous publication.
     pub pmi_change: f64,
     /// Phase of the economic cycle.
     pub cycle_phase: Phase,

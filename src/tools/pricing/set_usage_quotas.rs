@@ -53,7 +53,7 @@ static SPEC: ToolSpec = ToolSpec {
 /// Quotas in force after a call.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UsageQuotas {
-    /// Quotas in units per day and customer, by plan.
+    /// Quotas in units per customer per day, by plan.
     pub quotas: IndexMap<Plan, SentNumber>,
 }
 

@@ -345,8 +345,8 @@ fn grid_line(width: u16) -> String {
     (0..width).map(|at| if at % 4 == 3 { '┈' } else { ' ' }).collect()
 }
 
-/// Returns zero as a required axis value if the values are near zero. Otherwise, an axis that includes zero would
-/// flatten the curve.
+/// Returns zero as a required axis value if the values are near zero. For other values, an axis that includes zero
+/// would flatten the curve.
 pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64] {
     let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
     let least = values.fold(f64::INFINITY, f64::min);

@@ -46,7 +46,7 @@ pub struct ReaderGroup {
     pub subscribers: u32,
     /// Mean satisfaction of the subscribers, or 0 if there are none.
     pub satisfaction: f64,
-    /// Change of the group's quality bonus over four weeks.
+    /// Change in the group's quality bonus over four weeks.
     pub progress: f64,
 }
 
@@ -98,7 +98,7 @@ impl JudgeContext {
         let (today, before) = (chronicle.today(), chronicle.oldest());
         let (issue_rate, issue_age, short) = service_problems(world, params);
         let latencies: Vec<f64> = chronicle.newest_first(WEEK).filter_map(|page| page.p95_ms).collect();
-        // A plan that was not on sale four weeks ago has price 0, and no price is lower.
+        // A plan that was not on sale four weeks ago had price 0 then, so it never counts as cheaper.
         let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
         let mut judge_context = JudgeContext {
             groups: ByGroup::from_fn(|group| reader_group(group, world)),

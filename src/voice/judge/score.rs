@@ -246,7 +246,8 @@ impl GroupJudge<'_> {
         fitting.map(|claim| claim.name.to_owned()).collect()
     }
 
-    /// Returns the share of the penalty for a false claim: less for a group without subscribers.
+    /// Returns the share of the penalty for false claims that applies, 0..=1. The share is smaller for a group without
+    /// subscribers.
     fn false_claim_penalty(&self, contradicted: &[String]) -> f64 {
         let readers = self.case.circumstances.groups[self.group].subscribers;
         match (contradicted.is_empty(), readers > 0) {

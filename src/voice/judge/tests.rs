@@ -355,7 +355,7 @@ fn events_count_fully_for_a_week_and_half_in_the_next() {
         let found = timing(&apology, LiveEvent::Outage, age);
         assert!((found - expected).abs() < 1e-12, "day {age}: got {found}, expected {expected}");
     }
-    // A cheerful post that ignores an outage is penalized for 7 days; one that ignores a price increase, for 14 days.
+    // A cheerful post is penalized if it ignores an outage of the last 7 days or a price increase of the last 14 days.
     let cheerful = Example { submission: post("New feature launch: brainstorm boards are here."), ..of("g") };
     for age in 0..=14 {
         assert_eq!(timing(&cheerful, LiveEvent::Outage, age) < 0.0, age <= 7, "outage of day {age}");

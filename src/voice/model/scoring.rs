@@ -45,7 +45,7 @@ impl ModelScore {
     /// Checks that the score is valid.
     ///
     /// # Errors
-    /// The reason why the score is invalid.
+    /// Returns the reason why the score is invalid.
     pub fn check(&self) -> Result<(), String> {
         if !(-1.0..=1.0).contains(&self.score) {
             return Err(format!("the score of {} is not between -1 and 1", self.group));
@@ -87,7 +87,7 @@ pub fn prompt(post: &PostToScore<'_>) -> ModelPrompt {
 /// Parses a response into one score per group, in the order of `groups`.
 ///
 /// # Errors
-/// The problem that makes the whole response unusable.
+/// Returns the problem that makes the whole response unusable.
 pub fn parse_response(answer: &str, groups: &[Group]) -> Result<Vec<ModelScore>, String> {
     let values = parse_array(answer)?;
     if values.len() != groups.len() {

@@ -76,7 +76,7 @@ impl ModelSettings {
     /// Parses a settings file.
     ///
     /// # Errors
-    /// The first invalid setting, with its line and key.
+    /// Returns an error for the first invalid setting, with its line and key.
     pub fn parse(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
         let settings: ModelSettings =
             toml::from_str(text).map_err(|error| ParameterError::from_toml(source, text, &error))?;
@@ -87,7 +87,7 @@ impl ModelSettings {
     /// Checks all values.
     ///
     /// # Errors
-    /// Key of the first invalid setting and the reason why it is invalid.
+    /// Returns the key of the first invalid setting and the reason why the setting is invalid.
     pub fn check(&self) -> Result<(), (&'static str, String)> {
         self.check_endpoint().map_err(|problem| ("endpoint", problem))?;
         let letters = self.model.chars().count();

@@ -52,7 +52,7 @@ pub fn prompt(posts: &[BuiltInPost<'_>]) -> ModelPrompt {
 /// Parses a response into one text per post.
 ///
 /// # Errors
-/// The problem that makes the whole response unusable.
+/// Returns the problem that makes the whole response unusable.
 pub fn parse_response(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<String>, String> {
     let values = parse_array(answer)?;
     if values.len() != posts.len() {
@@ -73,7 +73,7 @@ pub fn parse_response(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<Str
 /// Checks that a text can be shown in the feed.
 ///
 /// # Errors
-/// The reason why the text cannot be shown.
+/// Returns the reason why the text cannot be shown.
 pub fn check(text: &str) -> Result<(), String> {
     check_text(text, MAX_POST_CHARACTERS)
 }

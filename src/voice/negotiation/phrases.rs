@@ -164,7 +164,7 @@ pub(super) const DOWNGRADE: Phrases = Phrases {
     ],
 };
 
-/// Closing sentences of long negotiations, for all decision styles.
+/// Closing sentences for messages in long negotiations, for all decision styles.
 pub(super) const LATE_ENDINGS: [&str; 6] = [
     "We have been writing back and forth for a while and would like to come to an end.",
     "Our patience with this round of letters is not endless.",

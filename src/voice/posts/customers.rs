@@ -15,7 +15,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
     Grammar::parse_all(&sources).expect("the bundled grammars are valid")
 });
 
-/// Days after which an author is no longer a new customer.
+/// Number of days for which an author counts as a new customer.
 const SETTLED_AFTER_DAYS: u32 = 30;
 const VETERAN_AFTER_DAYS: u32 = 120;
 /// One author out of this many casual authors writes without capital letters.

@@ -1,4 +1,4 @@
-//! Active subscribers in columns, split into blocks by running customer number.
+//! Active subscribers in columns, split into blocks by the customers' sequence numbers within their group.
 //!
 //! A block contains the active customers `first ..= first + CUSTOMERS_PER_BLOCK - 1` of one group, in ascending order
 //! of their numbers. A sweep processes each block on one thread. Each customer has a fixed position in the random
@@ -114,7 +114,7 @@ columns! {
     block Block,
     /// The row of one active subscriber.
     row Subscriber {
-        /// Running number of the customer within the group, from 1.
+        /// Sequence number of the customer within the group, from 1.
         n: u32,
         /// Customer number of the subscriber.
         customer: u32,
@@ -138,19 +138,19 @@ columns! {
         q_min: f64,
         /// Maximum quality including individual drift.
         q_max: f64,
-        /// Mean demand, units per day and seat.
+        /// Mean demand, units per seat per day.
         usage_demand: f64,
         /// Quality loss from in-app advertising at full strength.
         ads_quality_sensitivity: f64,
-        /// Ad revenue at full strength, dollars per day and seat.
+        /// Ad revenue at full strength, dollars per seat per day.
         ads_return_sensitivity: f64,
         /// Number of seats, with a fraction: seats of enterprises drift, and only whole seats count.
         seats: f64,
-        /// Price before discounts, dollars per month and seat.
+        /// Price before discounts, dollars per seat per month.
         listed_price: f64,
-        /// Current discount, dollars per month and seat.
+        /// Current discount, dollars per seat per month.
         promotion: f64,
-        /// Current effective price, dollars per month and seat.
+        /// Current effective price, dollars per seat per month.
         effective_price: f64,
         /// Budget that was stored with the last bill, dollars per month.
         effective_c_max: f64,
@@ -198,7 +198,7 @@ impl Block {
         self.open_issue_days.iter().filter(|days| **days > 0).count() as u32
     }
 
-    /// Returns the position of the customer with running number `n`.
+    /// Returns the position of the customer with sequence number `n`.
     pub fn position(&self, n: u32) -> Option<usize> {
         self.n.binary_search(&n).ok()
     }
@@ -233,7 +233,7 @@ impl Block {
     }
 }
 
-/// Returns the position of a customer's random word in the stream of its block. `n` is the running number of the customer.
+/// Returns the position of a customer's random word in the stream of its block. `n` is the sequence number of the customer.
 #[inline]
 pub fn word_position_in_block(n: u32) -> usize {
     ((n - 1) % CUSTOMERS_PER_BLOCK) as usize

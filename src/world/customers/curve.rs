@@ -10,7 +10,7 @@ pub struct Curve {
     pub steepness_left: f64,
     /// Steepness of the upper half, 0.5..=7.
     pub steepness_right: f64,
-    /// Budget, dollars per month, for enterprises also per seat.
+    /// Budget, dollars per month; for enterprises, per seat.
     pub c_max: f64,
     /// Quality required at a price near 0.
     pub q_min: f64,

@@ -1,6 +1,6 @@
 //! Mapping between customer numbers and groups.
 //!
-//! Customers of all groups are numbered in order of arrival. Random draws depend on the group and the running number
+//! Customers of all groups are numbered in order of arrival. Random draws depend on the group and the sequence number
 //! within the group. If two runs with the same seed have different numbers of leads, they therefore contain the same
 //! customers under different customer numbers.
 
@@ -22,7 +22,7 @@ pub struct ArrivalRun {
     pub group: Group,
     /// Customer number of the first customer.
     pub first_customer: u32,
-    /// Running number of the first customer within the group.
+    /// Sequence number of the first customer within the group.
     pub first_n: u32,
     /// Number of customers in the arrival run.
     pub count: u32,
@@ -34,7 +34,7 @@ canonical! {
 }
 
 impl ArrivalRun {
-    /// Returns the running number and the customer number of every customer.
+    /// Returns the sequence number and the customer number of every customer.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         (self.first_n..self.first_n + self.count).zip(self.first_customer..)
     }
@@ -58,7 +58,7 @@ impl CustomerNumbers {
         }
     }
 
-    /// Returns the group and the running number of a customer, or `None` if the number was never assigned.
+    /// Returns the group and the sequence number of a customer, or `None` if the number was never assigned.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
         let (run, offset) = self.locate(customer)?;
         Some((run.group, run.first_n + offset))
@@ -69,7 +69,7 @@ impl CustomerNumbers {
         self.locate(customer).map(|(run, _)| run.day)
     }
 
-    /// Returns the number of the customer with running number `n` in a group, or `None` if the customer has not arrived.
+    /// Returns the number of the customer with sequence number `n` in a group, or `None` if the customer has not arrived.
     pub fn customer_number(&self, group: Group, n: u32) -> Option<u32> {
         let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
         let run = self.given.iter().rev().find(holds)?;

@@ -40,9 +40,9 @@ const MIN_LARGE_SPLIT_BLOCKS: usize = 24;
 pub struct Customers {
     /// Customers of each group.
     pub groups: ByGroup<GroupCustomers>,
-    /// Number that the next customer will get.
+    /// Number of the next customer.
     pub next_customer: u32,
-    /// Number that the next subscription will get.
+    /// Number of the next subscription.
     pub next_subscription: u32,
     /// Mapping between customer numbers, groups and days of arrival.
     pub numbers: CustomerNumbers,
@@ -53,7 +53,7 @@ pub struct Customers {
 pub struct GroupCustomers {
     /// Number of customers generated since day 0.
     pub created: u32,
-    /// Blocks of active customers. Block k contains the running numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
+    /// Blocks of active customers. Block k contains the sequence numbers k * BLOCK + 1 ..= (k + 1) * BLOCK.
     pub blocks: Vec<Block>,
 }
 
@@ -79,7 +79,7 @@ impl GroupCustomers {
         self.blocks.iter().map(|block| block.len() as u32).sum()
     }
 
-    /// Returns the block for a running number. Creates the block if necessary.
+    /// Returns the block for a sequence number. Creates the block if necessary.
     fn block_for(&mut self, n: u32) -> &mut Block {
         let block = block_number(n);
         if self.blocks.len() <= block {
@@ -94,7 +94,7 @@ impl GroupCustomers {
         block
     }
 
-    /// Appends active subscribers. Their running numbers must be ascending and larger than all existing running numbers.
+    /// Appends active subscribers. Their sequence numbers must be ascending and larger than all existing sequence numbers.
     pub fn append_subscribers(&mut self, rows: &[Subscriber]) {
         for rows in rows.chunk_by(|one, next| block_number(one.n) == block_number(next.n)) {
             let block = self.block_for(rows[0].n);
@@ -103,7 +103,7 @@ impl GroupCustomers {
         }
     }
 
-    /// Inserts an active subscriber in the order of running numbers.
+    /// Inserts an active subscriber in the order of sequence numbers.
     pub fn activate(&mut self, row: Subscriber) {
         let block = self.block_for(row.n);
         match block.n.binary_search(&row.n) {
@@ -113,19 +113,19 @@ impl GroupCustomers {
         }
     }
 
-    /// Returns the block and position of the active subscriber with this running number.
+    /// Returns the block and position of the active subscriber with this sequence number.
     pub fn subscriber_position(&self, n: u32) -> Option<(usize, usize)> {
         let block = block_number(n);
         let at = self.blocks.get(block)?.position(n)?;
         Some((block, at))
     }
 
-    /// Returns the active subscriber with this running number.
+    /// Returns the active subscriber with this sequence number.
     pub fn subscriber(&self, n: u32) -> Option<Subscriber> {
         self.subscriber_position(n).map(|(block, at)| self.blocks[block].row(at))
     }
 
-    /// Removes the active subscriber with this running number and returns its row.
+    /// Removes the active subscriber with this sequence number and returns its row.
     pub fn deactivate(&mut self, n: u32) -> Option<Subscriber> {
         let (block, at) = self.subscriber_position(n)?;
         let row = self.blocks[block].row(at);
@@ -135,7 +135,7 @@ impl GroupCustomers {
 }
 
 impl Customers {
-    /// Returns the number of active subscriptions of each group. An enterprise counts once, whatever its seats.
+    /// Returns the number of active subscriptions of each group. An enterprise counts once, regardless of its number of seats.
     pub fn active_by_group(&self) -> ByGroup<u32> {
         ByGroup::from_fn(|group| self.groups[group].active_count())
     }
@@ -156,7 +156,7 @@ impl Customers {
         run
     }
 
-    /// Returns the group and the running number of a customer, or `None` if the number was never assigned.
+    /// Returns the group and the sequence number of a customer, or `None` if the number was never assigned.
     pub fn find(&self, customer: u32) -> Option<(Group, u32)> {
         self.numbers.find(customer)
     }

@@ -1,4 +1,4 @@
-//! Traits of a new customer, drawn from the random stream of its group and running number
+//! Traits of a new customer, drawn from the random stream of its group and sequence number
 //! (docs/mechanics/customers/generation.md).
 //!
 //! The n-th customer of a group has the same traits in every run with the same seed, before drift is added. The
@@ -16,11 +16,11 @@ use crate::random::{Part, Stream, Streams};
 pub struct Traits {
     /// Participation curve of the customer.
     pub curve: Curve,
-    /// Mean demand, units per day, for enterprises also per seat.
+    /// Mean demand, units per day; for enterprises, per seat.
     pub usage_demand: f64,
     /// Quality loss from in-app advertising at full strength.
     pub ads_quality_sensitivity: f64,
-    /// Ad revenue at full strength, dollars per day and seat.
+    /// Ad revenue at full strength, dollars per seat per day.
     pub ads_return_sensitivity: f64,
     /// Number of seats; 1 for individuals.
     pub seats: f64,

@@ -23,7 +23,7 @@ pub trait DayObserver: Send + Sync {
     /// Called before the satisfaction of a block is updated.
     fn before_satisfaction(&self, _group: Group, _block: &Block, _day: &DayContext<'_>) {}
 
-    /// Called before the subscribers of a block decide, after issues are settled and satisfaction is updated.
+    /// Called before the subscribers of a block decide, after satisfaction and issues are updated.
     fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
 
     /// Called before the negotiations of the day, in which enterprises reply, open threads and are lost.
@@ -53,7 +53,7 @@ pub trait DayObserver: Send + Sync {
     ) {
     }
 
-    /// Called after a tool call between two days, with the facts that it recorded.
+    /// Called after a tool call between two days, with the facts that the call recorded.
     fn on_call_applied(&self, _facts: &Facts) {}
 
     /// Called after a mechanism changed a reputation: cancellations of a block, a lost enterprise, a group's

@@ -11,7 +11,7 @@ use crate::params::{MacroBeta, ServicePenalty};
 use crate::quota::Quota;
 use crate::test_kit::subscriber;
 
-/// Applies varied settings with which customers of several groups arrive, stay, open issues and cancel.
+/// Applies varied settings under which customers of several groups arrive, stay, open issues and cancel.
 pub(super) fn busy_settings(world: &mut World) {
     let core = &mut world.settings.core;
     core.prices = ByPlan([9.0, 16.0, 31.0]);

@@ -19,13 +19,13 @@ pub struct LostEnterprise {
     pub customer: u32,
     /// Group of the enterprise.
     pub group: Group,
-    /// Running number of the enterprise within its group.
+    /// Sequence number of the enterprise within its group.
     pub n: u32,
     /// Number of whole seats of the enterprise.
     pub seats: u32,
     /// Days since the subscription started; `None` if the subscription ended earlier.
     pub days_subscribed: Option<u32>,
-    /// Kind of the thread, which is the reason why it was opened.
+    /// Kind of the thread: the reason why the thread was opened.
     pub kind: ThreadKind,
     /// Side whose silence ended the thread.
     pub failure: ThreadFailure,

@@ -16,7 +16,7 @@ pub struct EnterpriseCustomer {
     pub customer: u32,
     /// Group of the enterprise.
     pub group: Group,
-    /// Running number of the enterprise within its group.
+    /// Sequence number of the enterprise within its group.
     pub n: u32,
     /// Subscription number of the enterprise.
     pub subscription: u32,

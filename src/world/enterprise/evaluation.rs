@@ -12,7 +12,7 @@ use novamind_base::formatting::round_to;
 pub enum OfferResponse {
     /// Accepts the offering at this position.
     Accept(usize),
-    /// Asks a price for the plan of the offering at this position, dollars per month and seat.
+    /// Asks a price for the plan of the offering at this position, dollars per seat per month.
     Counter(usize, f64),
     /// Never replies again.
     Silence,

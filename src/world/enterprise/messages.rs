@@ -47,7 +47,7 @@ pub fn reply_delay(mean: f64, std: f64, z: f64, sales: &Sales) -> u32 {
     (mean + std * z).round_ties_even().max(f64::from(sales.reply_delay_min_days)) as u32
 }
 
-/// Returns the change of the relationship if the player answers after `days` days. The change is never positive.
+/// Returns the change in the relationship if the player answers after `days` days. The change is never positive.
 pub fn late_penalty(days: u32, sales: &Sales) -> f64 {
     sales.late_reply_relationship_delta_per_day * f64::from(days.saturating_sub(sales.late_reply_free_days))
 }

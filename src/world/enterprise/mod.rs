@@ -39,9 +39,9 @@ use crate::reputation::{OnReputationWrite, ReputationBook};
 /// State of the negotiations with enterprises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Enterprise {
-    /// Number that the next thread will get.
+    /// Number of the next thread.
     pub next_thread: u32,
-    /// Number that the next turn will get. Turns of all threads are numbered together.
+    /// Number of the next turn. Turns of all threads are numbered together.
     pub next_message: u32,
     /// Threads that are open or can still trigger, in ascending order of thread number.
     pub threads: Vec<Thread>,

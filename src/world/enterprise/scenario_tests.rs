@@ -225,7 +225,7 @@ fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
     kit.send_offer(&[(Plan::B, 59.0)]);
     kit.send_offer(&[(Plan::B, 20.0)]);
     run_days(&mut kit, 1..=3);
-    // At turn 2 of 2 the enterprise never replies, whatever the offer. The reply to the first message is due too, and
+    // At turn 2 of 2 the enterprise never replies, regardless of the offer. The reply to the first message is due too, and
     // the enterprise does not send it.
     assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
 }

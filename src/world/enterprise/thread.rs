@@ -4,7 +4,8 @@ use crate::canonical::canonical;
 use crate::events::{Offering, Sender, ThreadKind};
 use crate::identifiers::Group;
 
-/// A negotiation with one enterprise. A closed thread is removed immediately, a dead thread when it can no longer trigger.
+/// A negotiation with one enterprise. A closed thread is removed immediately. A dead thread is removed when it can no
+/// longer trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thread {
     /// Number of the thread, from 1.
@@ -34,7 +35,7 @@ pub struct Turn {
     pub day: u32,
     /// Offerings that the player sent in this turn.
     pub offerings: Vec<Offering>,
-    /// Asked price of the enterprise, dollars per month and seat.
+    /// Asked price of the enterprise, dollars per seat per month.
     pub asked: Option<f64>,
     /// Day on which the enterprise replies to this turn.
     pub reply_day: Option<u32>,

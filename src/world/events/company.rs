@@ -85,7 +85,7 @@ pub enum Notice {
         /// Days since the last turn of the thread.
         days: u32,
     },
-    /// Repeated report of a lost lead, every day, because the lead's thread still triggers.
+    /// Daily repeated report of a lost lead whose thread still triggers.
     LeadLossRepeated {
         /// Days since the active turn of the lead's thread.
         days: u32,
@@ -117,7 +117,7 @@ pub enum Notice {
     },
     /// Deal with an enterprise.
     DealWon {
-        /// Agreed price, dollars per month and seat.
+        /// Agreed price, dollars per seat per month.
         price: f64,
     },
     /// Completion of an R&D project.

@@ -85,7 +85,7 @@ impl Source {
 pub struct ChannelLeads {
     /// The paid channel.
     pub channel: Channel,
-    /// The group that was advertised to.
+    /// The group that the ads targeted.
     pub group: Group,
     /// Number of leads of the group that arrived through the channel.
     pub leads: u32,
@@ -100,7 +100,7 @@ pub struct Arrival {
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,
-    /// Running number of the customer within the group.
+    /// Sequence number of the customer within the group.
     pub n: u32,
     /// The way in which the customer found the company.
     pub source: Source,
@@ -165,11 +165,11 @@ pub struct TermsChanged {
     pub customer: u32,
     /// Plan of the subscription.
     pub plan: Plan,
-    /// Price before discounts, dollars per month and seat.
+    /// Price before discounts, dollars per seat per month.
     pub listed_price: f64,
-    /// Discount, dollars per month and seat.
+    /// Discount, dollars per seat per month.
     pub promotion: f64,
-    /// Effective price, dollars per month and seat.
+    /// Effective price, dollars per seat per month.
     pub effective_price: f64,
     /// Number of whole seats.
     pub seats: u32,

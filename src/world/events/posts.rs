@@ -66,7 +66,7 @@ pub struct PostAuthor {
     pub customer: u32,
     /// Group of the customer.
     pub group: Group,
-    /// Running number of the customer within the group.
+    /// Sequence number of the customer within the group.
     pub n: u32,
     /// Profile attributes of the customer.
     pub persona: PersonaPicks,
@@ -96,9 +96,9 @@ pub enum PostSubject {
         name: u8,
         /// Number of the author's point of view.
         perspective: u8,
-        /// Severity of the event that the press estimates.
+        /// Severity that the press estimates for the event.
         severity: Severity,
-        /// Gain in the competitor's quality that the press estimates.
+        /// Gain in quality that the press estimates for the event.
         estimate: f64,
     },
     /// A comment on a post of the player.
@@ -165,7 +165,7 @@ pub struct Opinion {
     pub days_subscribed: u32,
     /// Plan of the customer; `None` for a lost enterprise.
     pub plan: Option<Plan>,
-    /// Current price, dollars per month and seat.
+    /// Current price, dollars per seat per month.
     pub price: f64,
     /// Number of whole seats.
     pub seats: u32,
@@ -190,7 +190,7 @@ pub enum PostCause {
     Improved,
     /// The customer's satisfaction fell.
     Declined,
-    /// The customer has no particular reason.
+    /// No particular reason applies.
     General,
     /// The customer cancelled because no plan was worth its price.
     Cancelled,
@@ -198,7 +198,7 @@ pub enum PostCause {
     Lost {
         /// Kind of the negotiation's thread.
         thread: ThreadKind,
-        /// Whether the player did not answer. Otherwise, the enterprise did not reply.
+        /// True if the player did not answer; false if the enterprise did not reply.
         unanswered: bool,
     },
 }

@@ -77,7 +77,7 @@ impl Sender {
 pub struct Offering {
     /// The offered plan.
     pub plan: Plan,
-    /// Price, dollars per month and seat.
+    /// Price, dollars per seat per month.
     pub price: f64,
 }
 
@@ -182,7 +182,7 @@ pub struct DealClosed {
     pub activated: bool,
     /// Plan of the deal.
     pub plan: Plan,
-    /// Price of the deal, dollars per month and seat.
+    /// Price of the deal, dollars per seat per month.
     pub price: f64,
     /// Number of the player's turns in the thread.
     pub agent_turns: u32,

@@ -209,7 +209,7 @@ impl LeadEvaluation {
     }
 }
 
-/// Evaluates the lead with running number `n` of an individual group on the day of arrival.
+/// Evaluates the lead with sequence number `n` of an individual group on the day of arrival.
 pub fn evaluate_individual(
     arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
@@ -309,8 +309,8 @@ fn record_arrivals(leads_by_run: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCo
     }
 }
 
-/// Records the leads of every funded pair of known group and channel with a yield. Channels are in channel
-/// order, groups in the order in which the player listed them.
+/// Records the leads of every funded pair of known group and channel with a yield. Channels are in channel order;
+/// groups are in the order in which the player listed them.
 fn record_channels(
     arrivals: &ArrivalContext<'_>,
     leads_by_run: &[(ArrivalRun, Vec<Lead>)],
@@ -330,7 +330,7 @@ fn record_channels(
     }
 }
 
-/// Returns the individual leads, each with its group, running number and customer number.
+/// Returns the individual leads, each with its group, sequence number and customer number.
 fn individual_leads(leads_by_run: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
     leads_by_run
         .iter()

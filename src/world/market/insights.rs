@@ -44,11 +44,11 @@ pub enum EstimatedField {
     GrowthRate,
     /// Mean aversion to long contracts.
     LockinAversion,
-    /// Minimum seats of an enterprise.
+    /// Minimum number of seats of an enterprise.
     SeatMinimum,
-    /// Maximum seats of an enterprise.
+    /// Maximum number of seats of an enterprise.
     SeatMaximum,
-    /// Maximum turns of an enterprise.
+    /// Mean number of turns after which an enterprise stops negotiating.
     DecisionRounds,
     /// Reply delay of an enterprise in days.
     ResponseDays,
@@ -56,7 +56,7 @@ pub enum EstimatedField {
     ReferralTo(Group),
     /// Leads that another group brings to this group.
     ReferralFrom(Group),
-    /// Leads that the group brings to itself. Never shown, but the released simulator makes this draw.
+    /// Leads that the group brings to itself. Never shown; drawn only because the released simulator also draws this error.
     ReferralToItself,
     /// Weight of the group's reputation for another group.
     ReputationTo(Group),
@@ -111,9 +111,9 @@ pub struct Insights {
     pub lockin_aversion: f64,
     /// Estimates that exist only for groups of enterprises.
     pub enterprise: Option<EnterpriseInsights>,
-    /// Leads per day and subscriber that the group brings to other groups, in descending order.
+    /// Leads per subscriber per day that the group brings to other groups, in descending order.
     pub referrals_to: Vec<(Group, f64)>,
-    /// Leads per day and subscriber that other groups bring to the group, in descending order.
+    /// Leads per subscriber per day that other groups bring to the group, in descending order.
     pub referrals_from: Vec<(Group, f64)>,
     /// Weights of the group's reputation for other groups, in descending order.
     pub reputation_to: Vec<(Group, f64)>,
@@ -128,7 +128,7 @@ pub struct EnterpriseInsights {
     pub min_seats: u64,
     /// Maximum number of seats of an enterprise, at least `min_seats`.
     pub max_seats: u64,
-    /// Maximum turns of an enterprise, at least 1.
+    /// Mean number of turns after which an enterprise stops negotiating, at least 1.
     pub decision_rounds: u64,
     /// Reply delay of an enterprise in days, at least 1.
     pub response_days: f64,

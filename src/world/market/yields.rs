@@ -1,4 +1,4 @@
-//! Monthly random changes of channel yields (docs/mechanics/market/leads.md).
+//! Monthly random changes in channel yields (docs/mechanics/market/leads.md).
 
 use crate::identifiers::{ByChannel, ByGroup, Channel, Group};
 use crate::params::{Leads, Params};

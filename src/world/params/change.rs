@@ -28,7 +28,7 @@ impl Params {
     /// Returns the value of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
-    /// If no parameter has this name. The error lists similar names.
+    /// Returns an error that lists similar names if no parameter has this name.
     pub fn value(&self, key: &str) -> Result<Value, ParameterError> {
         let tables = self.to_tables();
         value_at(&tables, key).cloned().ok_or_else(|| {
@@ -45,7 +45,8 @@ impl Params {
     /// Returns a copy in which a parameter, a list or a table of parameters has a new value.
     ///
     /// # Errors
-    /// The errors of [`Params::load`] for a single override, or if the parameter takes effect only at the start of a run.
+    /// Returns an error for the same reasons as [`Params::load`] with a single override, or if the parameter takes
+    /// effect only at the start of a run.
     pub fn with(&self, key: &str, value: Value) -> Result<Params, ParameterError> {
         self.value(key)?;
         let nested = key

@@ -53,7 +53,7 @@ parameters! {
         pub q_min_min: f64 where 0.0..=1e6,
         /// Minimum width of the quality band.
         pub q_range_min: f64 where 0.0..=1e6,
-        /// Minimum demand, units per day and seat.
+        /// Minimum demand, units per seat per day.
         pub usage_demand_min: f64 where 0.0..=1e6,
         /// Minimum mean reply delay of an enterprise, in days.
         pub reply_delay_mean_min: f64 where 0.0..=1e6,
@@ -122,7 +122,7 @@ parameters! {
         pub ads_quality_sensitivity_mean: f64,
         /// Standard deviation of the quality loss from ads.
         pub ads_quality_sensitivity_std: f64 where 0.0..=1e9,
-        /// Mean ad revenue at full strength, dollars per day and seat.
+        /// Mean ad revenue at full strength, dollars per seat per day.
         pub ads_return_sensitivity_mean: f64,
         /// Standard deviation of the ad revenue.
         pub ads_return_sensitivity_std: f64 where 0.0..=1e9,
@@ -132,10 +132,10 @@ parameters! {
         pub involuntary_churn_std: f64 where 0.0..=1e9,
         /// Share of a competitor event's gain by which this group's expectations rise additionally.
         pub competitor_reactivity_q_bias: f64,
-        /// Minimum seats of an enterprise.
+        /// Minimum number of seats of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub seat_count_min: Option<u32> where 1.0..=1e6,
-        /// Maximum seats of an enterprise.
+        /// Maximum number of seats of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub seat_count_max: Option<u32> where 1.0..=1e6,
         /// Mean reply delay of an enterprise, in days.
@@ -150,11 +150,11 @@ parameters! {
         /// Standard deviation of the maximum number of turns.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub max_negotiation_turns_std: Option<f64> where 0.0..=1e9,
-        /// Sensitivities to the economy. A dimension that is absent does not react.
+        /// Sensitivities to the economy. The group does not react in a dimension that is absent.
         pub macro_beta: MacroBeta,
         /// Drift of the whole group, per day.
         pub group_drift_per_day: GroupDrift,
-        /// Drift of each subscriber, per day. A value whose rate is absent is not clamped either.
+        /// Drift of each subscriber, per day. A value whose rate is absent neither drifts nor is clamped.
         pub individual_drift_per_day: IndividualDrift,
     }
 }

@@ -29,7 +29,7 @@ parameters! {
         pub min_target_level: u8 where 1.0..=5.0,
         /// Highest target level of a study.
         pub max_target_level: u8 where 1.0..=5.0,
-        /// Largest word-of-mouth rate that is not reported, leads per day and subscriber.
+        /// Largest word-of-mouth rate that is not reported, leads per subscriber per day.
         pub network_display_min: f64 where 0.0..=1e6,
         /// Largest reputation weight that is not reported.
         pub reputation_display_min: f64 where 0.0..=1e6,

@@ -9,7 +9,7 @@ parameters! {
         pub enterprise_initial_offer_factor_mean: f64,
         /// Standard deviation of the first asked price, as a share of the highest acceptable price.
         pub enterprise_initial_offer_factor_std: f64,
-        /// Days without an answer of the player after which an enterprise is lost.
+        /// Days without an answer from the player after which an enterprise is lost.
         pub agent_response_timeout_days: u32 where 1.0..=100_000.0,
         /// Maximum number of offerings per message.
         pub enterprise_max_offerings_per_turn: u32 where 1.0..=1_000.0,
@@ -27,15 +27,15 @@ parameters! {
         pub counter_offer_decimals: u32 where 0.0..=12.0,
         /// Days within which the player can answer without a penalty.
         pub late_reply_free_days: u32 where 0.0..=100_000.0,
-        /// Change of the relationship per additional day; negative.
+        /// Change in the relationship per additional day; negative.
         pub late_reply_relationship_delta_per_day: f64,
-        /// Change of the relationship after a new deal.
+        /// Change in the relationship after a new deal.
         pub deal_relationship_delta: f64,
-        /// Change of the relationship if an enterprise stops replying; negative.
+        /// Change in the relationship if an enterprise stops replying; negative.
         pub ghost_relationship_delta: f64,
-        /// Change of the relationship if an enterprise stops replying in a renegotiation.
+        /// Change in the relationship if an enterprise stops replying in a renegotiation.
         pub renegotiation_ghost_relationship_delta: f64,
-        /// Change of the relationship if the player did not answer before the deadline.
+        /// Change in the relationship if the player did not answer before the deadline.
         pub timeout_relationship_delta: f64,
         /// Lower bound of a relationship.
         pub relationship_min: f64 where 0.0..=1.0,

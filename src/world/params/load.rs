@@ -107,7 +107,7 @@ impl Params {
     /// Merges base sources and overrides. Together, the base sources contain every key once. Overrides are applied in order.
     ///
     /// # Errors
-    /// The first error that is found: invalid TOML, a table in two base sources, an unknown or missing key, a wrong
+    /// Returns the first error that is found: invalid TOML, a table in two base sources, an unknown or missing key, a wrong
     /// type, a value out of range, or contradictory values.
     pub fn load(base: &[ParameterSource], overrides: &[ParameterSource]) -> Result<Params, ParameterError> {
         let mut merged = Table::new();
@@ -130,7 +130,7 @@ impl Params {
 /// Creates parameters from complete tables and checks their values.
 ///
 /// # Errors
-/// Key of the first invalid value, and the reason why it is invalid.
+/// Returns the key of the first invalid value, and the reason why the value is invalid.
 pub(super) fn from_tables(tables: Table) -> Result<Params, (String, String)> {
     let with_names = |(key, problem): (String, String)| (replace_indexes_with_names(&tables, &key), problem);
     let whole = Value::Table(tables.clone());
@@ -174,8 +174,8 @@ fn plain_message(message: &str) -> String {
 /// other values.
 ///
 /// # Errors
-/// Key and reason, if a key does not exist in `below` or if a single value would replace a table or list. An override
-/// never adds a parameter.
+/// Returns the key and the reason if a key does not exist in `below`, or if a single value would replace a table or
+/// list. An override never adds a parameter.
 pub fn apply_override(below: &mut Table, above: Table) -> Result<(), (String, String)> {
     merge_table(below, above).map_err(|OverrideError { key, kind }| {
         let problem = match kind {

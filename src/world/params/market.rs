@@ -27,13 +27,13 @@ parameters! {
 
     /// Parameters of leads and channel yields (docs/mechanics/market/leads.md).
     pub struct Leads {
-        /// Dollars per lead, whether or not the lead signs up.
+        /// Acquisition cost per lead in dollars, whether or not the lead signs up.
         pub lead_acquisition_cost: f64 where 0.0..=1e9,
         /// Dollars to which channel yields refer: a yield is the number of leads per this amount.
         pub ad_spend_unit: f64 where POSITIVE..=1e12,
         /// Saturation factor of a market without subscribers.
         pub saturation_base: f64,
-        /// Exponent of the subscribers' share of the market.
+        /// Exponent of the subscribers' share of the market in the saturation factor.
         pub saturation_exponent: f64,
         /// Minimum saturation factor.
         pub saturation_floor: f64,
@@ -43,13 +43,13 @@ parameters! {
         pub monthly_channel_noise_fraction: f64 where 0.0..=100.0,
         /// Minimum channel yield.
         pub monthly_channel_value_min: f64,
-        /// Days between two changes of the channel yields.
+        /// Days between two changes in the channel yields.
         pub monthly_channel_noise_interval_days: u32 where 1.0..=100_000.0,
     }
 
     /// Parameters of reputation (docs/mechanics/market/reputation.md).
     pub struct Reputation {
-        /// Reputation per day, customer and point of satisfaction.
+        /// Reputation that each customer adds per day for each point of satisfaction.
         pub base_rep_per_customer: f64,
         /// Weight of negative satisfaction relative to positive satisfaction.
         pub negative_satisfaction_multiplier: f64,
@@ -119,7 +119,7 @@ parameters! {
         pub competitor_segment_drain_u_max: f64 where 0.0..=1.0,
         /// Minimum of the shared and the targeted quality banks.
         pub bank_min: f64,
-        /// Number of days after an event on which the press writes about the event.
+        /// Number of days after an event during which the press writes about the event.
         pub competitor_event_post_days: u32 where 0.0..=10_000.0,
         /// Number of press posts per day about an event.
         pub competitor_event_posts_per_day: u32 where 0.0..=1_000.0,
@@ -231,7 +231,7 @@ parameters! {
         pub macro_social_post_count_max: u32 where 0.0..=1_000.0,
         /// Number of points of view for posts about the economy.
         pub post_perspective_count: u32 where 1.0..=255.0,
-        /// Minimum views of a post about the economy.
+        /// Minimum number of views of a post about the economy.
         pub macro_post_views_base: f64,
         /// Likes per view of a post about the economy.
         pub macro_post_likes_ratio: f64,

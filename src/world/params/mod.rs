@@ -148,7 +148,7 @@ impl Params {
         })
     }
 
-    /// Returns the word-of-mouth rate from a source group to a target group, in leads per day and subscription.
+    /// Returns the word-of-mouth rate from a source group to a target group, in leads per subscription per day.
     pub fn referral_rate(&self, source: Group, target: Group) -> f64 {
         self.referral_leads_per_subscriber_day[source.id()][target.index()]
     }

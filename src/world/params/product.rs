@@ -13,7 +13,7 @@ parameters! {
         pub relationship_neutral_point: f64,
         /// Scale of the distance from the neutral relationship.
         pub relationship_scale: f64,
-        /// Value as which a relationship of exactly 0 is read.
+        /// Value that replaces a relationship of exactly 0.
         pub fallback_relationship: f64,
         /// Factor of the tenure bonus, which is multiplied by ln(1 + days / `stickiness_days_scale`).
         pub stickiness_log_scale: f64,

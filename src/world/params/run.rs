@@ -65,13 +65,13 @@ parameters! {
         pub post_max_chars: u32 where 0.0..=1e9,
         /// Number of posts that `get_social_posts` returns if the call has no limit.
         pub get_social_posts_default_limit: u32 where 0.0..=1e9,
-        /// Maximum rows of a query result.
+        /// Maximum number of rows of a query result.
         pub query_row_limit: u32 where 0.0..=1e9,
         /// Time limit of a query, in seconds.
         pub query_timeout_seconds: u32 where 0.0..=1e9,
-        /// Maximum characters of a daily calculation that the dashboard shows.
+        /// Maximum number of characters of a daily calculation that the dashboard shows.
         pub dashboard_calculation_max_chars: u32 where 0.0..=1e9,
-        /// Maximum characters of the player's post that the dashboard shows.
+        /// Maximum number of characters of the player's post that the dashboard shows.
         pub dashboard_post_preview_chars: u32 where 0.0..=1e9,
         /// Horizons of the weekly cash forecasts, in days.
         pub prediction_horizons_days: Vec<u32> where 1.0..=100_000.0,

@@ -5,7 +5,7 @@ use super::check::parameters;
 parameters! {
     /// Parameters of customers' posts.
     pub struct SocialParams {
-        /// Maximum customer posts per posting day.
+        /// Maximum number of customer posts per posting day.
         pub max_posts_per_day: u32 where 0.0..=1_000.0,
         /// Growth of the post weight with absolute satisfaction.
         pub weight_abs_satisfaction_coef: f64,
@@ -45,21 +45,21 @@ parameters! {
         pub sentiment_band_neutral_min: f64,
         /// Lower bound of the fourth satisfaction band.
         pub sentiment_band_negative_min: f64,
-        /// Minimum likes of an enterprise's post.
+        /// Minimum number of likes of an enterprise's post.
         pub enterprise_likes_low: u32,
-        /// Maximum likes of an enterprise's post plus one.
+        /// Maximum number of likes of an enterprise's post plus one.
         pub enterprise_likes_high_exclusive: u32 where 1.0..=1e6,
-        /// Minimum shares of an enterprise's post.
+        /// Minimum number of shares of an enterprise's post.
         pub enterprise_shares_low: u32,
-        /// Maximum shares of an enterprise's post plus one.
+        /// Maximum number of shares of an enterprise's post plus one.
         pub enterprise_shares_high_exclusive: u32 where 1.0..=1e6,
-        /// Minimum likes of an individual's post.
+        /// Minimum number of likes of an individual's post.
         pub individual_likes_low: u32,
-        /// Maximum likes of an individual's post plus one.
+        /// Maximum number of likes of an individual's post plus one.
         pub individual_likes_high_exclusive: u32 where 1.0..=1e6,
-        /// Minimum shares of an individual's post.
+        /// Minimum number of shares of an individual's post.
         pub individual_shares_low: u32,
-        /// Maximum shares of an individual's post plus one.
+        /// Maximum number of shares of an individual's post plus one.
         pub individual_shares_high_exclusive: u32 where 1.0..=1e6,
         /// Base engagement factor of negative posts, to which a uniform draw is added.
         pub virality_negative_base: f64,
@@ -117,13 +117,13 @@ parameters! {
         pub notification_sentiment_threshold: f64,
         /// Number of groups that the inbox names, at most 3.
         pub notification_top_groups: u32 where 0.0..=3.0,
-        /// Minimum likes of a comment.
+        /// Minimum number of likes of a comment.
         pub reply_likes_low: u32,
-        /// Maximum likes of a comment plus one.
+        /// Maximum number of likes of a comment plus one.
         pub reply_likes_high_exclusive: u32 where 1.0..=1e6,
-        /// Minimum shares of a comment.
+        /// Minimum number of shares of a comment.
         pub reply_shares_low: u32,
-        /// Maximum shares of a comment plus one.
+        /// Maximum number of shares of a comment plus one.
         pub reply_shares_high_exclusive: u32 where 1.0..=1e6,
         /// Smallest absolute reaction that changes leads.
         pub multiplier_viral_threshold: f64,

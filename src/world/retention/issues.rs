@@ -2,7 +2,7 @@
 //! (`docs/mechanics/retention/issues.md`).
 //!
 //! All decisions depend on the values at the start of the day. The sweeps of [`crate::day`] find issues before the
-//! satisfaction update and settle issues after it. Between the two sweeps, the operations budget is allocated.
+//! satisfaction update, and resolve, age and open issues after it. Between the two sweeps, the operations budget is allocated.
 
 use super::support_pools::ResolutionRound;
 use crate::canonical::canonical;
@@ -67,7 +67,7 @@ pub fn relationship_after_waiting(relationship: f64, issues: &Issues, quality: &
 /// The counter that numbers issues.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct IssueCounter {
-    /// Number that the next issue will get.
+    /// Number of the next issue.
     pub next_issue: u32,
 }
 
@@ -166,7 +166,7 @@ pub fn allocate_resolutions(
     }
 }
 
-/// Results of settling the issues of a block.
+/// Results of an update of a block's issues.
 #[derive(Debug, PartialEq, Eq)]
 pub struct SettledIssues {
     /// Whether any issue was open at the start of the day.

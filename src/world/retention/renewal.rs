@@ -48,7 +48,7 @@ pub struct CancelledIndividual {
     pub customer: u32,
     /// Group of the individual.
     pub group: Group,
-    /// Running number of the individual within the group.
+    /// Sequence number of the individual within the group.
     pub n: u32,
     /// Satisfaction after today's update.
     pub satisfaction: f64,

@@ -28,7 +28,7 @@ pub fn sum_by_group(by_block: Vec<(Group, ReputationContribution)>) -> ByGroup<R
     moods
 }
 
-/// The terms from which one subscriber's satisfaction is updated.
+/// The terms of the daily satisfaction update of one subscriber.
 #[derive(Debug, Clone, Copy)]
 pub struct SatisfactionTerms {
     /// Terms of the subscriber's perceived quality.

@@ -1,4 +1,4 @@
-//! Plain mode is killed at random moments: every action that the program confirmed with `ok` is recorded.
+//! Plain mode is killed at random times: every action that the program confirmed with `ok` is recorded.
 //!
 //! A test run has 12 kills, and `.ci/full` has 200. `tests/program/terminal` kills the console.
 
@@ -46,7 +46,7 @@ fn random_script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     lines
 }
 
-/// Plays until a random moment, kills the program, and returns its output up to this moment.
+/// Plays for a random time, kills the program, and returns its output up to the kill.
 fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value> {
     let mut pipe = child.stdin.take().expect("a pipe");
     // The program may end before all input is written.

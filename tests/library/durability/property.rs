@@ -44,7 +44,8 @@ fn check_invariants(session: &mut Session, seed: u64) {
     let odd =
         "SELECT COUNT(*) FROM service_day WHERE error_rate < 0 OR error_rate > 1 OR total_usage_units < 0";
     assert_eq!(query_number(session, odd), 0.0, "game {seed}");
-    // Noise with a standard deviation of 50 ms can make latency negative, but latency must be within eight standard deviations.
+    // Noise with a standard deviation of 50 ms can make latency negative, but latency must be within eight standard
+    // deviations of its mean.
     let latency = "SELECT COUNT(*) FROM service_day WHERE p95_ms IS NULL OR ABS(p95_ms - 180 \
                    - 800 * MAX(0, 1.0 * total_usage_units / capacity_units - 1)) > 400";
     assert_eq!(query_number(session, latency), 0.0, "game {seed}");

@@ -22,9 +22,9 @@ pub enum RandomAction {
     Call(&'static str, Value),
     /// Undo of the last setting.
     Undo,
-    /// A SQL query.
+    /// An SQL query.
     Query(&'static str),
-    /// A change of the notes.
+    /// A change to the notes.
     Memo(String),
     /// A view of a screen.
     View(&'static str),

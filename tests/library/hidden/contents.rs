@@ -108,7 +108,7 @@ fn hidden_tables_match_the_state_of_each_day() {
     let mut session = run_in(folder.path(), Mode::Debug, 200);
     open_many_markets(&mut session);
     let mut watched = WatchedTables::default();
-    // Queries in several weeks, because the tables are extended by each query.
+    // Queries the tables in several weeks, because each query extends the tables.
     for (week, asks) in (1..=20).zip([true, false, false, true, false, false, false].into_iter().cycle()) {
         watched_week(&mut session, &mut watched);
         if !asks && week != 20 {

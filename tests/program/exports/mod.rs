@@ -441,7 +441,7 @@ fn reports_summarize_sessions_and_compare_runs() {
     let object: Value = serde_json::from_str(&object).expect("JSON");
     let figures = object["comparison"]["figures"].as_array().expect("figures");
     let figure = |name: &str| figures.iter().find(|row| row["figure"] == name).expect(name)["values"].clone();
-    let share = figure("ad spend on the best channel, as measured");
+    let share = figure("ad spend on the best measured channel");
     assert_eq!(share[0], share[1], "the same decisions");
     let truly = figure("ad spend on the truly best channel");
     assert!(truly[0].is_null() && truly[1].is_number(), "only a run that is over tells: {truly}");

@@ -113,7 +113,7 @@ fn has_type(value: &Value, name: &str) -> bool {
     }
 }
 
-/// Checks a text against a pattern of the schema. All patterns are a number of hexadecimal digits.
+/// Checks a text against a pattern of the schema. Every pattern requires a fixed number of hexadecimal digits.
 fn is_hexadecimal(text: &str, pattern: &str) -> bool {
     let count = pattern.strip_prefix("^[0-9a-f]{").and_then(|rest| rest.strip_suffix("}$"));
     let count: usize =

@@ -12,7 +12,7 @@ const BLOCKS: usize = 2048;
 /// Number of bytes by which a padded SQL statement lengthens its line of the trajectory.
 const PADDING: usize = 490_000;
 
-/// Plays with a file size limit, which acts like a full disk.
+/// Plays with a file size limit, which simulates a full disk.
 fn play_with_file_limit(home: &Home, options: &str, lines: &str) -> ProgramOutput {
     let program = env!("CARGO_BIN_EXE_novamind");
     let script = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec '{program}' play --plain --json {options}");

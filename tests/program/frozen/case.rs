@@ -12,8 +12,8 @@ use super::root;
 pub struct Case {
     /// Name of the file that contains the expected output.
     pub name: String,
-    /// Arguments of the program, separated by spaces. `'…'` keeps spaces. `{NAME}` is the id of the recorded run
-    /// `format2-NAME`, `{home}` the working directory.
+    /// Arguments of the program, separated by spaces. `'…'` keeps spaces. `{NAME}` is the ID of the recorded run
+    /// `format2-NAME`, and `{home}` is the working directory.
     pub run: String,
     /// Standard input.
     #[serde(default)]

@@ -57,7 +57,7 @@ impl CommandHelp {
             }
             let words: Vec<&str> = line.split_whitespace().collect();
             match (section, words.first()) {
-                // Names of commands are indented by two spaces, their descriptions by more.
+                // Names of commands are indented by two spaces, and their descriptions by more than two.
                 ("Commands:", Some(name)) if line.starts_with("  ") && !line.starts_with("   ") => {
                     help.commands.push((*name).to_owned());
                 }

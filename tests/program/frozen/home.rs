@@ -15,7 +15,7 @@ use crate::support::home::{Home, ProgramOutput, run_with_input};
 /// A home with the recorded runs of format 2, their study and classes, and a damaged copy.
 pub struct FrozenHome {
     pub home: Home,
-    /// Ids of the recorded runs by the name of their folder, without `format2-`.
+    /// IDs of the recorded runs by the name of their folder, without `format2-`.
     ids: BTreeMap<String, String>,
     pub masks: Masks,
 }
@@ -49,7 +49,7 @@ impl FrozenHome {
         FrozenHome { home, ids, masks }
     }
 
-    /// Returns the id of the recorded run `format2-NAME`.
+    /// Returns the ID of the recorded run `format2-NAME`.
     pub fn id(&self, name: &str) -> &str {
         &self.ids[name]
     }
@@ -98,7 +98,7 @@ impl FrozenHome {
     /// Appends the contents of a file, a folder or an archive to `output`.
     fn write_file(&mut self, path: &Path, output: &mut String) {
         if path.is_dir() {
-            // New runs have random ids, so files are sorted by their masked names.
+            // New runs have random IDs, so files are sorted by their masked names.
             let mut inner = sorted_paths(path);
             inner.sort_by_key(|path| self.masks.apply(&path.display().to_string()));
             for path in inner {
@@ -155,7 +155,7 @@ fn run_line_by_line(command: &mut Command, lines: &str) -> ProgramOutput {
     ProgramOutput { stdout: out, stderr: err, exit_code: ended.status.code().expect("it ends on its own") }
 }
 
-/// Returns whether the contents of a file are not compared: the database, the snapshot, and the lock with a process id.
+/// Returns whether the contents of a file are not compared: the database, the snapshot, and the lock with a process ID.
 fn is_content_ignored(name: &str) -> bool {
     ["world.db", "snapshot.bin", "lock"].iter().any(|end| name.ends_with(end))
 }

@@ -12,7 +12,7 @@ const TIME_LENGTH: usize = 19;
 const LINE_FIELDS: [&str; 10] =
     ["prev", "sum", "machine", "boot", "monotonic_ms", "for_ms", "read_ms", "took_ms", "stood_ms", "used_ms"];
 
-/// Masks for the folder of the test, for times that no recorded run contains, and for ids of new runs and classes.
+/// Masks for the folder of the test, for times that no recorded run contains, and for IDs of new runs and classes.
 #[derive(Default)]
 pub struct Masks {
     place: String,
@@ -34,12 +34,12 @@ impl Masks {
         self.seconds.extend(find_times(text).map(|(_, moment)| moment[..TIME_LENGTH].to_owned()));
     }
 
-    /// Excludes an id from masking.
+    /// Excludes an ID from masking.
     pub fn exclude_id(&mut self, id: &str) {
         self.ids.insert(id.to_owned());
     }
 
-    /// Masks the ids of new runs below a folder, starting with the oldest run.
+    /// Masks the IDs of new runs below a folder, starting with the oldest run.
     pub fn mask_new_ids(&mut self, below: &Path) {
         let mut new = Vec::new();
         self.collect_new_runs(below, &mut new);
@@ -49,7 +49,7 @@ impl Masks {
         }
     }
 
-    /// Collects the creation time and the id of each new run below a folder.
+    /// Collects the creation time and the ID of each new run below a folder.
     fn collect_new_runs(&self, below: &Path, found: &mut Vec<(String, String)>) {
         for folder in fs::read_dir(below).into_iter().flatten().flatten().map(|entry| entry.path()) {
             let id = folder.file_name().expect("a name").to_string_lossy().into_owned();
@@ -65,7 +65,7 @@ impl Masks {
         }
     }
 
-    /// Masks the ids of a class and of the runs of its handouts, if the file exists.
+    /// Masks the IDs of a class and of the runs of its handouts, if the file exists.
     pub fn mask_class_ids(&mut self, file: &Path) {
         let Ok(text) = fs::read_to_string(file) else { return };
         let class: toml::Table = text.parse().expect("a class");
@@ -76,7 +76,7 @@ impl Masks {
         }
     }
 
-    /// Masks an id as `RUN1`, `RUN2` and so on.
+    /// Masks an ID as `RUN1`, `RUN2` and so on.
     pub fn mask_id(&mut self, id: &str) {
         let next = format!("RUN{}", self.new_ids.len() + 1);
         self.new_ids.entry(id.to_owned()).or_insert(next);

@@ -199,7 +199,7 @@ fn panic_restores_the_terminal_and_names_the_run() {
     let mut terminal =
         Terminal::start_with(runs.path(), &["--new"], (120, 40), &[("NOVAMIND_FAULT", "panic")]);
     terminal.wait_for("day 0/500");
-    // F12
+    // Types F12.
     terminal.type_keys("\x1b[24~");
     let (code, screen) = terminal.wait_for_end();
     assert_eq!(code, 101);

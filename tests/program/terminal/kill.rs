@@ -1,4 +1,4 @@
-//! The console is killed at random moments: every action that the screen had confirmed is saved.
+//! The console is killed at random times: every action that the screen had confirmed is saved.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

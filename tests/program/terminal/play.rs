@@ -80,7 +80,7 @@ fn sql_statement_is_completed_and_run_and_a_slow_statement_is_cancelled() {
     terminal.wait_for("FROM rese");
     terminal.type_keys("\t");
     terminal.wait_for("FROM research_projects");
-    // F5
+    // Types F5, which runs the statement.
     terminal.type_keys("\x1b[15~");
     terminal.wait_for("Result · 1 row");
     terminal.wait_for("plans");

@@ -190,12 +190,12 @@ impl Terminal {
         &self.written
     }
 
-    /// Returns the process id.
+    /// Returns the process ID.
     pub fn process(&self) -> String {
         self.child.process_id().expect("a process").to_string()
     }
 
-    /// Limits the size of files that the process writes, which acts like a full disk. `unlimited` removes the limit.
+    /// Limits the size of files that the process writes, which simulates a full disk. `unlimited` removes the limit.
     #[cfg(target_os = "linux")]
     pub fn limit_file_size(&self, bytes: &str) {
         let arguments = ["--pid", &self.process(), &format!("--fsize={bytes}:")].map(str::to_owned);

@@ -64,12 +64,12 @@ fn check_last_block(study: &Study) -> Option<String> {
     })
 }
 
-/// Counts the forecasts whose target day is within a session, by horizon.
+/// Counts the forecasts with a target day in the session, by horizon.
 fn check_forecasts(days: u32, horizons: &[u32]) -> CheckOutcome {
     let due = |horizon: u32| days.checked_sub(horizon).map_or(0, |last| last / 7 + 1);
     let words: Vec<String> =
-        horizons.iter().map(|horizon| format!("{} looking {horizon} days ahead", due(*horizon))).collect();
-    let words = format!("of {} weeks' forecasts come due: {}", days.div_ceil(7), words.join(", "));
+        horizons.iter().map(|horizon| format!("{} for {horizon} days ahead", due(*horizon))).collect();
+    let words = format!("forecasts that come due in {} weeks: {}", days.div_ceil(7), words.join(", "));
     if horizons.iter().all(|horizon| due(*horizon) > 0) {
         CheckOutcome::Passed(words)
     } else {
@@ -86,8 +86,8 @@ mod tests {
         let CheckOutcome::Note(words) = check_forecasts(28, &[7, 28, 84, 182]) else { panic!("a note") };
         assert_eq!(
             words,
-            "of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84 days ahead, 0 \
-             looking 182 days ahead"
+            "forecasts that come due in 4 weeks: 4 for 7 days ahead, 1 for 28 days ahead, 0 for 84 days ahead, 0 \
+             for 182 days ahead"
         );
         assert!(matches!(check_forecasts(182, &[7, 182]), CheckOutcome::Passed(_)));
         assert!(matches!(check_forecasts(181, &[7, 182]), CheckOutcome::Note(_)));

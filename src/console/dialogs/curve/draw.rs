@@ -185,7 +185,7 @@ fn legend_lines(opened: &CurveExploration, area: Rect) -> Vec<String> {
     let mut words =
         format!("x: {unit}, y: quality · line: half of the leads accept · shaded: 10 to 90 % accept");
     if !opened.explorer.shows_true_values() {
-        words += " · dim lines: the line at both ends of its error · spread and slope are assumed; studies measure means";
+        words += " · dim lines: bounds of the line's error range · spread and slope are assumed; studies measure means";
     }
     wrap(&words, area.width as usize)
 }

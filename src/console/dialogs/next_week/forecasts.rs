@@ -50,7 +50,7 @@ impl NextWeekDialog {
         }
     }
 
-    /// Describes the naive forecasts, and its past coverage if the rules permit.
+    /// Describes the naive forecasts, and their past coverage if the rules permit it.
     fn naive_forecast_text(
         &self,
         context: &ScreenContext<'_>,
@@ -62,7 +62,7 @@ impl NextWeekDialog {
             (false, Some(key)) => format!("{key} fills empty cells"),
             _ => "marked as naive forecasts".to_owned(),
         };
-        let text = format!("{fills}: the last four weeks continue at current costs");
+        let text = format!("{fills}: the cash flow of the last four weeks continues at current costs");
         let mut lines: Vec<(String, Role)> =
             wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !context.company.is_baseline() {

@@ -43,7 +43,7 @@ pub struct NextWeekDialog {
     /// Content of the focused cell before it was edited.
     previous_cell: TextField,
     was_naive: bool,
-    /// Cells that the projection filled in.
+    /// Cells that were filled in with naive forecasts.
     filled_naively: [[bool; 3]; 4],
     problem: Option<String>,
     tools_with_drafts: Vec<ToolId>,
@@ -159,14 +159,15 @@ impl NextWeekDialog {
         };
     }
 
-    /// Returns the positions of the cells that the projection did not fill.
+    /// Returns the positions of the cells that were not filled in with naive forecasts.
     fn player_cells(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..4)
             .flat_map(|row| (0..3).map(move |column| (row, column)))
             .filter(|at| !self.filled_naively[at.0][at.1])
     }
 
-    /// Fills empty cells with the projection. If the point was typed, the interval of the projection is moved to that point.
+    /// Fills empty cells with naive forecasts. If the point was typed, the interval of the naive forecast is moved to
+    /// that point.
     fn fill_naive_forecasts(&mut self, company: &DisplayedCompany) {
         for (row, naive) in company.naive_forecasts.all.iter().enumerate() {
             let typed = |column: usize| parse_number(self.cells[row][column].text());

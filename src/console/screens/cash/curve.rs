@@ -1,4 +1,4 @@
-//! A chart of cash by day with the selected week, and bars of the change by week.
+//! A chart of cash by day with the selected week marked, and bars of the change in cash by week.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 

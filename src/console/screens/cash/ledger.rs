@@ -84,7 +84,7 @@ fn week_label(week: u32, company: &DisplayedCompany) -> String {
     format!("week {week} · days {from} to {}", to.min(company.observation.day.max(from)))
 }
 
-/// Returns the ledger table of a week: its columns, the subjects of its rows, and its rows.
+/// Returns the ledger table of a week: the columns, the subjects of the rows, and the rows.
 pub fn ledger_table(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
     let before = week.saturating_sub(1);
     let columns = vec![

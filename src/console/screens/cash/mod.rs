@@ -1,4 +1,4 @@
-//! Income and costs: the ledger by category and week, the change of cash, and forecasts.
+//! Income and costs: the ledger by category and week, the change in cash, and forecasts.
 
 mod bars;
 mod ledger;
@@ -35,7 +35,7 @@ pub enum CashPane {
     Weeks,
     /// Forecasts and outcomes.
     Forecasts,
-    /// Change of cash during the selected week.
+    /// Change in cash during the selected week.
     Waterfall,
     /// Curve of cash by day.
     Curve,

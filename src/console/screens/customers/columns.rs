@@ -59,7 +59,7 @@ static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::AcquisitionCost, "ad $/new", "cost-per-new-customer"),
     (GroupColumn::DevelopmentBudget, "dev/day", "set_targeted_dev_spend"),
     (GroupColumn::StudyLevel, "level", "info-level"),
-    (GroupColumn::MarketShare, "of market", "market-cap"),
+    (GroupColumn::MarketShare, "mkt share", "market-cap"),
     (GroupColumn::Trend, "new by week", "conversion"),
     (GroupColumn::Name, "name", "customer-group"),
 ];
@@ -188,13 +188,13 @@ pub fn figure(group: Group, column: usize, company: &DisplayedCompany) -> Option
         GroupColumn::Leads | GroupColumn::NewCustomers | GroupColumn::Cancellations | GroupColumn::Conversion => {
             format!("{name} of {group} in week {week}")
         }
-        _ => format!("{name} of {group}"),
+        _ => format!("{group}: {name}"),
     };
     let figure = Figure { title, term, sql: statement(what, group, week, company.observation.day), week_quantity: None };
     Some(figure.with_week_quantity(week_quantity(what, group), week))
 }
 
-/// Returns the weekly quantity that a column shows for a group. Name columns return the number of customers.
+/// Returns the weekly quantity that a column shows for a group. For columns with names, returns the number of subscribers.
 fn week_quantity(what: GroupColumn, group: Group) -> Option<WeekQuantity> {
     let figure = match what {
         GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Name | GroupColumn::Customers => WeekFigure::Subscribers,

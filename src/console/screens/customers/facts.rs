@@ -146,7 +146,7 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
             ),
         ),
     ] {
-        let title = format!("enterprises of {group}: {name}");
+        let title = format!("{group}, enterprises: {name}");
         lines.push(figure_line(format!("  {name}"), grouped_number(f64::from(count), 0), title, "lead", Some(sql)));
     }
     lines
@@ -216,19 +216,19 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
     let explained = churn.as_ref().and_then(|figure| figure.week_quantity);
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [
-        ("revenue a month", dollars(facts.sum(|plan_subscribers| plan_subscribers.monthly_revenue)), "mrr", rows(&revenue)),
+        ("revenue per month", dollars(facts.sum(|plan_subscribers| plan_subscribers.monthly_revenue)), "mrr", rows(&revenue)),
         (
-            if group.is_enterprise() { "per seat" } else { "per subscriber" },
+            if group.is_enterprise() { "revenue per seat" } else { "revenue per subscriber" },
             or_none(facts.revenue_per_seat(), dollars_and_cents),
             "arpu",
             rows(&revenue),
         ),
         ("30-day churn", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
-        ("ads per day", dollars(total_ad_budget(company, group)), "set_targeted_ad_spend", None),
-        ("ads, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
+        ("ad budget per day", dollars(total_ad_budget(company, group)), "set_targeted_ad_spend", None),
+        ("ad spend, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
         ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
-        lines.push(figure_line(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
+        lines.push(figure_line(format!("  {name}"), value, format!("{group}: {name}"), term, sql));
         // The churn line has the same query as the churn column.
         if let Some(FactLine { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
             figure.week_quantity = explained;

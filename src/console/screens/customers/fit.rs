@@ -1,4 +1,4 @@
-//! Fit of the open group: estimated requirements compared with each plan, leads, and the gaps of each plan.
+//! Fit of the open group: each plan compared with the estimated requirements, the leads, and the gaps of each plan.
 
 use ratatui::layout::Rect;
 

@@ -85,7 +85,7 @@ impl GroupFacts {
         (before > 0.0).then(|| self.lost_in_30_days / before)
     }
 
-    /// Returns the revenue in dollars per month and seat.
+    /// Returns the revenue in dollars per seat per month.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         let seats = self.sum(|plan_subscribers| plan_subscribers.seats);
         (seats > 0.0).then(|| self.sum(|subscribers| subscribers.monthly_revenue) / seats)

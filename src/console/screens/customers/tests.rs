@@ -127,7 +127,7 @@ fn table_figures_equal_their_rows() {
             let sql =
                 columns::figure_named(head, *group, &company).and_then(|figure| figure.sql).expect(head);
             let made = query_figure(&mut session, &sql, what);
-            assert!((made - shown).abs() < 0.02, "{head} of {group}: {shown}, rows make {made}: {sql}");
+            assert!((made - shown).abs() < 0.02, "{group}, {head}: {shown}, sum of the rows {made}: {sql}");
         }
     }
 }
@@ -202,7 +202,7 @@ fn group_panes_return_their_figures() {
 fn all_columns_are_reachable_and_marked() {
     let (_, company, mut screen) = played_screen::<Customers>(3);
     let wide = screen_text(&screen, &company, 250, 57);
-    for head in ["of market", "level", "ad $/new", "per seat", "churn 30d", "name", "dev/day"] {
+    for head in ["mkt share", "level", "ad $/new", "per seat", "churn 30d", "name", "dev/day"] {
         assert!(wide.contains(head), "{head} in\n{wide}");
     }
     let narrow = screen_text(&screen, &company, 80, 21);

@@ -22,7 +22,8 @@ pub fn rules_market(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEconom
     }
 }
 
-/// Returns the usage of a group in units per day and seat, and the source: the last day, otherwise the market study.
+/// Returns the usage of a group in units per seat per day, and the source of this figure: the last day, otherwise the
+/// market study.
 pub fn usage_per_seat(usage: &SeatUsage, company: &DisplayedCompany, group: &str) -> Option<(f64, String)> {
     if let Some(units) = usage.measured_usage(group) {
         return Some((units, format!("{group} on the last day")));

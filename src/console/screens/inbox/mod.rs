@@ -293,7 +293,7 @@ impl Inbox {
     }
 }
 
-/// Returns the list prices of the plans, $ per month and seat.
+/// Returns the list prices of the plans, $ per seat per month.
 fn list_prices(company: &DisplayedCompany) -> [f64; 3] {
     ["A", "B", "C"].map(|plan| company.current_setting(ToolId::SetPrices, plan))
 }

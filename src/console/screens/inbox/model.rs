@@ -145,7 +145,7 @@ pub struct Enterprise {
     pub traits: [String; 3],
     pub status: String,
     pub plan: String,
-    /// Price in $ per seat and month.
+    /// Price in $ per seat per month.
     pub price: f64,
     /// Day on which the enterprise subscribed or asked for an offer.
     pub since_day: u32,
@@ -235,7 +235,7 @@ fn parse_threads(rows: &QueryResult) -> BTreeMap<u32, Thread> {
         thread.number = number;
         thread.customer = number_at(row, 1) as u32;
         thread.kind = text_at(row, 2).to_owned();
-        // Rows of the player contain a seat count of 1, which is not the enterprise's.
+        // Rows of the player contain a seat count of 1 instead of the enterprise's seat count.
         thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
         thread.messages.push(ThreadMessage {
             number: number_at(row, 3) as u32,

@@ -20,7 +20,7 @@ pub enum PlanChoice {
 /// Unit and reference price of a term's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PriceBasis {
-    /// Dollars per month and seat.
+    /// Dollars per seat per month.
     Dollars,
     /// Percentage of the plan's list price.
     ListPrice,

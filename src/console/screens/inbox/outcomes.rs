@@ -29,9 +29,9 @@ pub const OUTCOME_READINGS: [Reading; 5] = [
 struct FirstOfferOutcome {
     group: String,
     plan: String,
-    /// Inclusive lower bound of the price range, in whole $ per seat and month.
+    /// Inclusive lower bound of the price range, in whole $ per seat per month.
     price_from: f64,
-    /// Exclusive upper bound of the price range, in whole $ per seat and month.
+    /// Exclusive upper bound of the price range, in whole $ per seat per month.
     price_below: f64,
     week: f64,
     threads: f64,

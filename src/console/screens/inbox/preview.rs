@@ -11,7 +11,7 @@ use novamind_base::formatting::{dollars_and_cents, dollars};
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::theme::Role;
 
-/// Width of the enterprise column, with names and without names.
+/// Width of the enterprise column with names.
 const NAMED_WIDTH: u16 = 28;
 const NUMBERED_WIDTH: u16 = 14;
 const MIN_WIDTH_FOR_NAMES: u16 = 68;

@@ -128,7 +128,7 @@ impl Inbox {
         let others = open.len() - leads;
         if others > 0 {
             text += &format!(
-                "{others} subscriber{} on the current terms; you can open a new thread from the next day.",
+                "{others} subscriber{} on the current terms; you can open new threads from the next day.",
                 if others == 1 { " stays" } else { "s stay" }
             );
         }
@@ -155,13 +155,11 @@ impl Inbox {
             self.drafts.remove(&number);
         }
         let failed = results.len() - done.len();
-        let what = if offered { "offered" } else { "ended" };
+        let (noun, what) = if offered { ("offer", "sent") } else { ("thread", "ended") };
+        let succeeded = format!("{} {what}", format_count(done.len() as f64, noun));
         match failed {
-            0 => vec![Effect::ShowStatus(format!("{} {what}", done.len()))],
-            _ => vec![Effect::ShowError(format!(
-                "{} {what}, {failed} rejected. Press 0 for the reasons.",
-                done.len()
-            ))],
+            0 => vec![Effect::ShowStatus(succeeded)],
+            _ => vec![Effect::ShowError(format!("{succeeded}, {failed} rejected. Press 0 for the reasons."))],
         }
     }
 }

@@ -170,7 +170,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     let [Effect::ConfirmCalls { calls, text }] = &effects[..] else { panic!("{effects:?}") };
     let sizes: Vec<(ToolId, usize)> =
         calls.iter().map(|(tool, call)| (*tool, call["deals"].as_array().expect("deals").len())).collect();
-    // Leads of E1 have a number divisible by three, and all leads have asked for an offer.
+    // The customer numbers of leads of E1 are divisible by three, and all leads have asked for an offer.
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 unanswered"), "{text}");
     assert_eq!(
@@ -480,7 +480,7 @@ fn thousands_of_marked_threads_are_answered_at_once() {
     press(&mut screen, &company, "a");
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
-    // The first half of the threads is sent while its first thread is selected. The list then shows the second half.
+    // Offers are sent to the first half of the threads while the first thread is selected. The list then shows the second half.
     let (effects, _) =
         press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };

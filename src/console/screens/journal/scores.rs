@@ -152,7 +152,7 @@ fn forecast_line(filed: &ScoredForecast) -> String {
     )
 }
 
-/// Formats an error up to a maximum, because any error is a large share of cash near zero.
+/// Formats an error with an upper limit, because any error is a large share of cash that is near zero.
 fn capped_percent(share: f64) -> String {
     if share < 10.0 { percent(share, 1) } else { "> 999%".to_owned() }
 }

@@ -111,7 +111,7 @@ impl Pane<Market> for EconomyPane {
         let mut words = wrap(&here.text, width);
         words.extend(wrap(&lag, width));
         if inside.height >= 14 {
-            words.extend(wrap("◆ published · ░ not yet published · ▁▃▅ news of competitors", width));
+            words.extend(wrap("◆ published · ░ not yet published · ▁▃▅ news about competitors", width));
         }
         let room = (inside.height / 2) as usize;
         let words = &words[words.len().saturating_sub(room.max(1))..];
@@ -130,7 +130,7 @@ fn show_measurement(point: &EconomyMeasurement) -> Effect {
 
 fn draw_empty_state(canvas: &mut Canvas<'_>, area: Rect, view: &EconomyView<'_>, terms: &ToolLimits) {
     let words = format!(
-        "No index yet: day 1 is published on day {}, {} days after measurement",
+        "No PMI yet: the value of day 1 is published on day {}, {} days after measurement",
         next_publication_day(view.economy, terms),
         terms.economy_lag_days
     );

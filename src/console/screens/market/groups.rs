@@ -38,7 +38,7 @@ impl Pane<Market> for KnownGroupsPane {
         let (term, what) = match market.table.selected_column() {
             2 | 3 => ("group_info_levels.info_level", "study level of"),
             4 => ("research_group.target_level", "the next study of"),
-            5 => ("group_info_levels.discovered_day", "day found of"),
+            5 => ("group_info_levels.discovered_day", "discovery day of"),
             6 => ("group_info_levels.last_research_day", "last study of"),
             _ => ("group_info_levels.group_id", "facts about"),
         };

@@ -37,7 +37,7 @@ pub struct EconomyMeasurement {
     pub day: u32,
     /// Measured value of the PMI.
     pub value: f64,
-    /// Change of the PMI since the previous measurement.
+    /// Change in the PMI since the previous measurement.
     pub change: f64,
     /// Trend and phase of the economy.
     pub phase: String,

@@ -104,8 +104,8 @@ pub fn lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine> {
         let Some(value) = estimate(&insights.estimates) else { continue };
         let (from, to) = true_value_range(value, noise);
         let unit = match (unit, group.is_enterprise()) {
-            ("$/month", true) => "$/month, seat",
-            ("units/day", true) => "units/day, seat",
+            ("$/month", true) => "$/seat·month",
+            ("units/day", true) => "units/seat·day",
             ("customers", true) => "enterprises",
             (unit, _) => unit,
         };
@@ -165,7 +165,7 @@ fn study_offer_text(company: &DisplayedCompany, group: Group, chosen: Option<u8>
     let Some(terms) = company.tool_limits.study_level(target) else { return String::new() };
     let what = match target == study_level(company, group) {
         true => format!("update at level {target}"),
-        false => format!("to level {target}"),
+        false => format!("study to level {target}"),
     };
     format!("{what}: {}, {}, then ±{}", dollars(terms.cost), pluralize(terms.days, "day"), percent(terms.noise, 0))
 }

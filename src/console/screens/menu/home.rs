@@ -174,7 +174,7 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
         "You run a company that sells an AI subscription. The company starts with a million dollars and no customers.",
         "Once a week you set prices, models, quotas, capacity, advertising and development, answer enterprises, and \
          forecast your cash. Then seven days are simulated.",
-        "Customers, competitors and the economy react. Screens and tables show all that you may know.",
+        "Customers, competitors and the economy react. Screens and tables show all available information.",
         "Your score is the cash after the last day. If cash falls below zero, the run ends.",
         "You can quit at any time. Confirmed actions are saved.",
     ];

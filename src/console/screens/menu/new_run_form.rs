@@ -271,7 +271,7 @@ fn mode_description(mode: Mode) -> &'static str {
         Mode::Sandbox => {
             "Everything in baseline, plus branches from any earlier week; forecasts may be filled in."
         }
-        Mode::Lesson => "Everything in sandbox; the record marks the run as a lesson.",
+        Mode::Lesson => "Everything in sandbox; the run is recorded as a lesson.",
         Mode::Debug => "Everything in sandbox, plus hidden state; not comparable with other runs.",
     }
 }

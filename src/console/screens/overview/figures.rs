@@ -20,7 +20,7 @@ pub struct Metric {
     pub read: fn(&WeekFigures) -> f64,
     /// Formats a value of the figure.
     pub write: fn(f64) -> String,
-    /// Whether a higher value is better.
+    /// Whether a higher value of the figure is better.
     pub more_is_better: bool,
     /// Source rows of the figure.
     rows_source: RowsSource,
@@ -217,7 +217,7 @@ pub static METRICS: [Metric; 22] = [
     ),
 ];
 
-/// Returns the columns of the table. Narrow windows omit the last columns first.
+/// Returns the columns of the table. In narrow windows, the last columns are omitted first.
 pub fn columns() -> Vec<TableColumn> {
     let numbers = ["this week", "change"].map(TableColumn::numeric);
     let last = ["last week", "4-wk mean"].map(TableColumn::numeric);

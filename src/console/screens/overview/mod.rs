@@ -173,7 +173,7 @@ impl Overview {
         let needs = needs::pane_height(context.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
         draw_pane(self, OverviewPane::Needs, canvas, above, context);
-        // The week pane needs space for the name, value and change of each figure.
+        // The week pane needs space for the name and the value of each figure, and for its change.
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
         draw_pane(self, OverviewPane::Week, canvas, week, context);

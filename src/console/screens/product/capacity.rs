@@ -45,7 +45,8 @@ fn summary(company: &DisplayedCompany, rungs: &[CapacityTier], days: &[ServiceDa
     ]
 }
 
-/// Formats the utilization of a tier in percent. Values of at least ten times the capacity are not shown exactly.
+/// Formats the utilization of a tier in percent. If the usage is at least ten times the capacity, a lower bound is
+/// shown instead.
 fn capacity_share(units: f64, of: f64) -> String {
     match of {
         of if of <= 0.0 => "–".to_owned(),

@@ -15,9 +15,9 @@ use novamind_worker::company::DisplayedCompany;
 pub struct PlanFacts {
     /// Model tier of the plan.
     pub tier: u32,
-    /// Quota in units per day and customer.
+    /// Quota in units per customer per day.
     pub quota: f64,
-    /// List price, $ per month and seat.
+    /// List price, $ per seat per month.
     pub price: f64,
     /// Compute cost in $ per unit.
     pub unit_cost: f64,
@@ -26,7 +26,7 @@ pub struct PlanFacts {
 }
 
 impl PlanFacts {
-    /// Returns the compute cost in $ per month and seat.
+    /// Returns the compute cost in $ per seat per month.
     pub fn compute_cost_per_seat(&self) -> Option<f64> {
         self.usage.compute_cost(self.unit_cost)
     }

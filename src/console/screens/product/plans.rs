@@ -19,7 +19,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
-/// Pane with a table that has plans as columns. A row opens the tool that sets its values.
+/// Pane with a table that has plans as columns. Opening a row shows the tool that sets the values in this row.
 pub struct PlansPane;
 
 impl ProductPanel for PlansPane {
@@ -124,9 +124,9 @@ static PLAN_FIGURES: [PlanFigure; 11] = [
     ("unit cost, $/1k", |plan| format!("${}", grouped_number(plan.unit_cost * 1000.0, 3))),
     ("customers", |plan| grouped_number(plan.usage.customers, 0)),
     ("billed seats", |plan| grouped_number(plan.usage.seats, 0)),
-    ("usage/seat, day", |plan| format_optional(plan.usage.units_per_seat(), |usage| grouped_number(usage, 1))),
-    ("paid/seat, mo.", |plan| format_optional(plan.usage.revenue_per_seat(), dollars_and_cents)),
-    ("compute/seat, mo.", |plan| format_optional(plan.compute_cost_per_seat(), dollars_and_cents)),
+    ("usage/seat·day", |plan| format_optional(plan.usage.units_per_seat(), |usage| grouped_number(usage, 1))),
+    ("paid/seat·mo.", |plan| format_optional(plan.usage.revenue_per_seat(), dollars_and_cents)),
+    ("compute/seat·mo.", |plan| format_optional(plan.compute_cost_per_seat(), dollars_and_cents)),
     ("gross margin", |plan| {
         // A warning sign marks a plan with a negative margin. The sign is in the cell, because narrow windows cut off notes.
         format_optional(plan.margin(), |margin| {

@@ -79,7 +79,7 @@ impl Pane<Social> for DraftPane {
         let key = context.keys.label(Action::Compose).unwrap_or_default();
         let hint = match social.has_posted_this_week() {
             true => "This week's post is published. Write the next one next week.".to_owned(),
-            false => format!("Write a post with {key}. One per week; every known group reads it."),
+            false => format!("Write a post with {key}. One post per week; every known group reads it."),
         };
         social.draft.draw(canvas, placement.area, social.editing, &hint);
     }

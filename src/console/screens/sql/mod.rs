@@ -57,7 +57,7 @@ pub enum SqlPane {
 /// Minimum width for showing the tables even without the focus.
 const MIN_WIDTH_FOR_TABLES: u16 = 90;
 
-/// A running statement, and the editor text when it was started.
+/// A running statement, and the editor text from which the statement was started.
 struct RunningStatement {
     text: String,
     statement: Statement,
@@ -157,7 +157,7 @@ impl Sql {
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }
 
-    /// Returns whether a statement reads x-ray tables and the run permits it.
+    /// Returns whether a statement reads x-ray tables and the run permits such queries.
     fn reads_hidden_state(&self, sql: &str) -> bool {
         self.can_inspect && reads_hidden_tables(sql)
     }

@@ -365,7 +365,7 @@ fn running_query_shows_its_time_and_named_query_focuses_results() {
     screen.edit_and_run("SELECT wrong FROM ledger");
     assert_eq!(screen.scopes()[0], Scope::Result);
     let since = Instant::now().checked_sub(Duration::from_secs(7)).expect("the clock is older");
-    screen.running.as_mut().expect("it runs").started_at = since;
+    screen.running.as_mut().expect("a running statement").started_at = since;
     assert!(contains(&screen_rows(&screen, &company, 120, 37), " s … esc cancels"));
     receive_answer(&mut screen, &company, Err(Rejection::new("sql_error", "no such column: wrong (at character 8)")));
     assert_eq!(screen.scopes()[0], Scope::Editor, "the editor has the focus after an error");

@@ -136,7 +136,7 @@ fn draw_code(editor: &TextEditor, canvas: &mut Canvas<'_>, area: Rect, focused: 
     let (row, _) = editor.cursor();
     let words = format!("code, line {} of {}", row + 1, editor.lines().len());
     canvas.draw_text(Rect { height: area.height.min(1), ..area }, &words, Role::Header);
-    editor.draw(canvas, area_below(area, 1), focused, "SQL, or Python that starts with #");
+    editor.draw(canvas, area_below(area, 1), focused, "SQL, or Python if the code starts with #");
 }
 
 /// Returns the part of an area below its first `rows` rows.

@@ -81,8 +81,8 @@ pub(super) enum DetailLevel {
 
 pub(super) struct OutcomeLines {
     pub lines: Vec<(String, Role)>,
-    /// Number of leading lines that must be visible, up to the last row of margins or of the project's range. The
-    /// number is 0 for other tools.
+    /// Number of leading lines that must be visible: up to the last row of margins or of the project's range, or 0
+    /// without such rows.
     pub required_lines: usize,
 }
 

@@ -11,7 +11,7 @@ use novamind_tools::{Rejection, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
-/// Types into the form of a tool. Named keys are pressed, other strings are typed.
+/// Enters keys into the form of a tool. Named keys are pressed, and other strings are typed.
 fn form_after_keys(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
     let (company, bindings) = (new_company(), KeyBindings::bundled());
     let context = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
@@ -432,7 +432,7 @@ fn code_keeps_its_lines_when_pasted() {
     assert!(text.contains("answered") && text.contains("first") && text.contains("second"), "{text}");
     assert_eq!(tools.tools_with_drafts(), [ToolId::PythonExec]);
     tools.handle_action(Action::Apply, &context);
-    assert!(tools.tools_with_drafts().is_empty(), "it was sent");
+    assert!(tools.tools_with_drafts().is_empty(), "the call was sent");
     tools.handle_action(Action::ResetForm, &context);
     tools.paste("# python\nfor day in range(2):\n    print(day)\n", &context);
     let effects = tools.handle_action(Action::Apply, &context);

@@ -164,7 +164,7 @@ impl Xray {
         }
     }
 
-    /// Shows why a run of days stopped.
+    /// Shows why a simulation of several days stopped.
     pub fn show_run_result(&mut self, ran: &DebugRunResult) {
         let question = InspectionQuestion::Breakpoints(BreakpointCommand::List);
         let lines = ran.lines.clone();

@@ -218,7 +218,7 @@ fn requests_that_bypass_the_screen_are_rejected() {
         drop(session);
         let mut console = Headless::new(settings(runs.path()), (200, 60));
         console.wait_until_idle().expect("the menu");
-        console.open("latest").expect("it opens");
+        console.open("latest").expect("the run opens");
         let group = Group::all().next().expect("a group");
         let words = |text: &str| {
             let inspection_command = InspectionCommand::parse(text).expect(text);

@@ -97,7 +97,7 @@ impl WorldEvent {
 pub enum Condition {
     /// A comparison of a figure with a threshold.
     Compared(Quantity, ComparisonOperator, f64),
-    /// A change of a figure compared with the day before.
+    /// A change in a figure compared with the day before.
     Changed(Quantity, Direction),
     /// True on days on which the event occurs.
     Event(WorldEvent),

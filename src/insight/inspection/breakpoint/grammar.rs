@@ -140,7 +140,7 @@ impl<'a> TokenReader<'a> {
         }
         let days = self.parse_whole_number()?;
         let days =
-            days.ok_or_else(|| self.error_at(None, "over needs a number of days, for example over 7"))?;
+            days.ok_or_else(|| self.error_at(None, "\"over\" needs a number of days, for example: over 7"))?;
         let _ = self.next_if("days") || self.next_if("day");
         Ok(Some((days, column)))
     }
@@ -225,11 +225,11 @@ pub(crate) fn describe_quantity_error(id: &str, no: QuantityError) -> String {
         QuantityError::CompanyOnly => {
             format!("{id} is a figure of the whole company; write {id} without a group")
         }
-        QuantityError::GroupOnly => format!("{id} is a figure of a group; write for example {id}(S1)"),
+        QuantityError::GroupOnly => format!("{id} is a figure of a group; write, for example, {id}(S1)"),
         QuantityError::NotSummable => {
-            format!("{id} is a value of one day; over applies only to sums and shares")
+            format!("{id} is a value of one day; \"over\" applies only to sums and shares")
         }
-        QuantityError::DaysOutOfRange => format!("over needs 1 to {} days", Quantity::MAX_DAYS),
+        QuantityError::DaysOutOfRange => format!("\"over\" needs 1 to {} days", Quantity::MAX_DAYS),
     }
 }
 

@@ -81,7 +81,7 @@ impl Inspector<'_> {
             self.cache.breakpoints.all().iter().map(|breakpoint| breakpoint.number.to_string()).collect();
         let message = match numbers.is_empty() {
             true => format!("there is no breakpoint {number}; no breakpoint is set"),
-            false => format!("there is no breakpoint {number}; there are {}", numbers.join(", ")),
+            false => format!("there is no breakpoint {number}; the breakpoints are {}", numbers.join(", ")),
         };
         Rejection::for_field("number", "breakpoint_unknown", message)
     }

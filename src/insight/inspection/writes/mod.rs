@@ -1,4 +1,4 @@
-//! The changes of a figure on a day, in the order of the day, each with its mechanism and amount
+//! The changes in a figure on a day, in the order of the day, each with its mechanism and amount
 //! (docs/debugging.md#who-writes).
 
 mod recorder;
@@ -30,7 +30,7 @@ pub enum WriteSource {
     FirstDeals,
 }
 
-/// Consecutive changes of a figure by one mechanism.
+/// Consecutive changes that one mechanism makes to a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureWrite {
     /// The mechanism that made the changes.
@@ -44,7 +44,7 @@ pub struct FigureWrite {
 }
 
 impl FigureWrite {
-    /// Returns the actual change of the figure.
+    /// Returns the actual change in the figure.
     pub fn amount(&self) -> f64 {
         self.after - self.before
     }
@@ -60,7 +60,7 @@ impl FigureWrite {
     }
 }
 
-/// All changes of a figure on a day.
+/// All changes in a figure on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureWrites {
     /// The changed figure.
@@ -76,7 +76,7 @@ pub struct FigureWrites {
 }
 
 impl Inspector<'_> {
-    /// Returns the changes of a figure on a day, by default the last day. Records the inspection in the trajectory.
+    /// Returns the changes in a figure on a day, by default the last day. Records the inspection in the trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

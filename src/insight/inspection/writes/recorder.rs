@@ -1,4 +1,4 @@
-//! Recorder of the changes of a figure on one day.
+//! Recorder of the changes in a figure on one day.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,7 +13,7 @@ use novamind_world::params::Params;
 use novamind_world::reputation::ReputationWrite;
 use novamind_world::state::World;
 
-/// Records the changes of a figure on one day.
+/// Records the changes in a figure on one day.
 pub(super) struct WriteRecorder {
     target: WriteTarget,
     day: u32,
@@ -43,7 +43,7 @@ impl RecordedWrites {
         self.push_write(by, &[amount], before, before + amount);
     }
 
-    /// Merges consecutive changes of one mechanism.
+    /// Merges consecutive changes by one mechanism.
     fn push_write(&mut self, by: WriteSource, changes: &[f64], before: f64, after: f64) {
         match self.writes.last_mut().filter(|write| write.source == by) {
             Some(write) => {
@@ -133,7 +133,7 @@ impl DayObserver for WriteRecorder {
     }
 }
 
-/// Adds the changes of cash on a day, in this order: lead costs, payments of subscribers, other ledger entries.
+/// Adds the changes in cash on a day, in this order: lead costs, payments of subscribers, other ledger entries.
 fn add_cash_writes(pages: &mut RecordedWrites, params: &Params, facts: &Facts) {
     let DayFigures { new_leads, payments_received, .. } = pages.figures;
     let leads = f64::from(new_leads) * params.leads.lead_acquisition_cost;
@@ -142,7 +142,7 @@ fn add_cash_writes(pages: &mut RecordedWrites, params: &Params, facts: &Facts) {
     pages.add_ledger_entries(&facts.ledger);
 }
 
-/// Adds the changes of a group's subscriptions: cancellations by reason and new subscribers by source.
+/// Adds the changes in a group's subscriptions: cancellations by reason and new subscribers by source.
 fn add_subscriber_writes(pages: &mut RecordedWrites, group: Group, world: &World, facts: &Facts) {
     let has_left = |subscription_ended: &&SubscriptionEnded| {
         subscription_ended.group == group && subscription_ended.status == SubscriptionStatus::Cancelled

@@ -42,7 +42,7 @@ impl WriteTarget {
             ("reputation", Some(group)) => WriteTarget::Reputation(group),
             (_, Some(group)) => WriteTarget::Subscribers(group),
             (name, None) => {
-                return problem(format!("{name} is a figure of a group; write for example {name}(S1)"));
+                return problem(format!("{name} is a figure of a group; write, for example, {name}(S1)"));
             }
         };
         Ok((target, day))

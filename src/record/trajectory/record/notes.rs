@@ -36,7 +36,7 @@ pub enum QuerySource {
     Library,
     /// Statement that shows the rows behind a figure.
     DrillDown,
-    /// Statement that the program derived from a result: counts, pivots.
+    /// Statement that the program derived from a result, for example a count or a pivot.
     Derived,
     /// Statement of a Python script.
     Script,

@@ -46,9 +46,9 @@ pub enum PresenceEvent {
     Idle,
     /// The user pressed the first key after an idle period.
     Active,
-    /// The terminal lost the focus.
+    /// The terminal lost focus.
     FocusLost,
-    /// The terminal regained the focus.
+    /// The terminal regained focus.
     FocusGained,
     /// The shell suspended the program.
     Suspended,
@@ -81,7 +81,7 @@ pub enum DetachCause {
 pub struct Clock {
     /// Kind of the event.
     pub event: ClockEvent,
-    /// Reason for the stop that the user entered, if the study asks for a reason.
+    /// The user's reason for stopping the clock, if the study asks for a reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Milliseconds for which the clock was stopped; only in events that start the clock.

@@ -16,7 +16,7 @@ pub struct QuestionShown {
     pub text: String,
     /// Answer format: `likert`, `number`, `choice`, `text` or `attention`.
     pub form: String,
-    /// Options that the participant can choose; empty for other questions.
+    /// Options that the participant can choose; empty for questions without options.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<String>,
 }

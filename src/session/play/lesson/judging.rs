@@ -40,7 +40,7 @@ fn query_number(session: &mut Session, sql: &str) -> Result<Option<f64>, String>
 
 impl Session {
     /// Sets the function that evaluates rules. Goals relative to a reference play with rules need this function.
-    /// Judges a completed step that could not be judged without it.
+    /// Judges a completed step that could not be judged without the function.
     pub fn set_rule_evaluator(&mut self, answers: RuleEvaluator) {
         self.rule_evaluator = Some(answers);
         if self.log().is_written() && self.awaits_judgement() {

@@ -97,7 +97,7 @@ impl Session {
                 path: folder.join("lesson.toml"),
                 line: 1,
                 problem: format!("this file is not the recorded lesson, {}", stamp.name),
-                remedy: "The trajectory was not touched; restore lesson.toml and lesson.md from a copy to open the run"
+                remedy: "The trajectory was not changed; restore lesson.toml and lesson.md from a copy to open the run"
                     .to_owned(),
             });
         }

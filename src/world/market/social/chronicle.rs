@@ -99,7 +99,7 @@ impl Chronicle {
         self.days.windows(2).rev().map(|pair| (&pair[0], &pair[1]))
     }
 
-    /// Returns the change of a group's quality bonus over the recorded days.
+    /// Returns the change in a group's quality bonus over the recorded days.
     pub fn quality_change(&self, group: Group) -> f64 {
         self.today().bonus[group] - self.oldest().bonus[group]
     }

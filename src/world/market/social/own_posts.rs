@@ -30,7 +30,7 @@ impl OwnPost {
     }
 }
 
-/// Returns the change of the lead factor from one reaction to a post of the given age in days. Reactions below 0.6
+/// Returns the change in the lead factor from one reaction to a post of the given age in days. Reactions below 0.6
 /// have no effect.
 pub fn post_effect(effect: f64, age_days: u32, posts: &CeoPosts) -> f64 {
     let (size, threshold) = (effect.abs(), posts.multiplier_viral_threshold);

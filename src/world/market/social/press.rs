@@ -141,7 +141,7 @@ mod tests {
         CompetitorEvent { day, boost, sampled: boost, u: 0.0, by_feedback: false }
     }
 
-    /// Returns the estimate, and likes and shares of two posts, for given draws.
+    /// Returns the press estimate, and the likes and shares of two posts, for given draws.
     fn posts(events: &[CompetitorEvent], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
         let competitor = Params::bundled().competitor;
         let event = current_event(day, events, &competitor).expect("a topic");

@@ -72,7 +72,7 @@ impl ClassPage {
         let inside = canvas.draw_pane_frame(area, "Ranking", &note, true);
         let is_wide = area.width == RANKING_WIDTH.1;
         let mut rows = row_rects(inside);
-        let score = if view.lesson.is_some() { "of ref." } else { "cash" };
+        let score = if view.lesson.is_some() { "vs ref." } else { "cash" };
         if let Some(row) = rows.next() {
             draw_cells(canvas, row, ["", "student", score, "goals", "tries", "hints"], is_wide, Role::Header);
         }

@@ -56,7 +56,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn checks(known: KnownHash, context: &Context) -> Vec<CheckItem> {
     let mut items = vec![
         CheckItem::new("version", Ok(describe_build())),
-        CheckItem::new("records", describe_records(&context.configuration)),
+        CheckItem::new("records", describe_versions(&context.configuration)),
         CheckItem::new("simulation", check_simulation(known)),
         CheckItem::new("terminal", CheckOutcome::from(describe_terminal())),
         CheckItem::new("window", check_window()),
@@ -88,7 +88,7 @@ fn describe_build() -> String {
 }
 
 /// Lists the versions that determine which recorded runs this program opens.
-fn describe_records(configuration: &Configuration) -> Result<String, String> {
+fn describe_versions(configuration: &Configuration) -> Result<String, String> {
     let scenario = configuration.load_scenario(DEFAULT_SCENARIO).map_err(|error| error.to_string())?;
     let params = configuration.load_parameters(&scenario, &[], true).map_err(|error| error.to_string())?;
     Ok(format!(
@@ -162,7 +162,7 @@ fn describe_colors() -> String {
 fn check_runs_folder(runs: &Path) -> Result<String, String> {
     let ancestor = existing_ancestor(runs);
     check_writable(ancestor)?;
-    let name = shortened(runs);
+    let name = abbreviate_home_folder(runs);
     if ancestor != runs {
         return Ok(format!("{name} does not exist yet; the first run creates it"));
     }
@@ -182,7 +182,7 @@ fn existing_ancestor(path: &Path) -> &Path {
 /// Checks that the user's keys, theme and scenarios can be read.
 fn check_settings(configuration: &Configuration) -> Result<String, String> {
     let folder = configuration.folder.as_deref();
-    let name = folder.map_or("bundled files only".to_owned(), shortened);
+    let name = folder.map_or("bundled files only".to_owned(), abbreviate_home_folder);
     if !folder.is_some_and(Path::is_dir) {
         return Ok(format!("{name}: no files, defaults are used"));
     }
@@ -196,7 +196,7 @@ fn check_settings(configuration: &Configuration) -> Result<String, String> {
 }
 
 /// Returns a path with `~` for the user's home folder, so that a report does not contain the user's name.
-fn shortened(path: &Path) -> String {
+fn abbreviate_home_folder(path: &Path) -> String {
     let home = std::env::var_os("HOME").filter(|home| !home.is_empty());
     match home.and_then(|home| path.strip_prefix(home).ok().map(Path::to_owned)) {
         Some(rest) => format!("~/{}", rest.display()),

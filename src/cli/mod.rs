@@ -409,7 +409,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
                 Some(Command::Play(options)) => options,
                 _ => arguments.play,
             };
-            return play::lead_participant(folder, &options, &context);
+            return play::guide_participant(folder, &options, &context);
         }
         context.is_experimenter = has_code;
         if !has_code {

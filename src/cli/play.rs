@@ -118,7 +118,7 @@ fn uses_plain_mode(options: &Options) -> bool {
 }
 
 /// Guides a participant through a study. The protocol determines the runs, so options of a run are rejected.
-pub fn lead_participant(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
+pub fn guide_participant(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
     if options.run.is_some() || options.voice.is_some() || options.requests_new_run() {
         return Err(Failure::usage(
             "the protocol of the study determines the runs: leave out --run, --voice and the options of a new run",

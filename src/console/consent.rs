@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn consent_requires_the_end_to_be_shown() {
+    fn consent_requires_that_the_end_of_the_text_was_shown() {
         let text = (1..=30).map(|line| format!("- line {line}.")).collect::<Vec<_>>().join("\n");
         let mut long = ConsentText::new(text);
         assert!(draw_to_text(&long, 16).contains("scroll to the end"));

@@ -202,7 +202,7 @@ impl Headless {
     }
 
     /// Waits until all jobs are done, including jobs without a response, such as recording activity.
-    pub fn flush_notes(&self) {
+    pub fn wait_for_jobs(&self) {
         self.workers.wait_for_jobs(RESPONSE_TIMEOUT);
     }
 

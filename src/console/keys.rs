@@ -143,7 +143,7 @@ mod tests {
     use crate::action::ACTIONS;
 
     #[test]
-    fn every_action_is_in_the_key_file_and_names_are_unique() {
+    fn every_action_is_in_the_key_file() {
         let file: Table = BUNDLED_KEYS.parse().expect("TOML");
         for entry in ACTIONS {
             let bound = file.get(entry.scope.id()).and_then(|scope| scope.get(entry.name));
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn user_file_patches_single_actions_and_errors_name_the_line() {
+    fn user_file_patches_single_actions() {
         let mut keys = KeyBindings::bundled();
         keys.patch("[global]\nquit = [\"ctrl-q\"]").expect("a patch");
         assert_eq!(keys.label(Action::Quit).as_deref(), Some("ctrl-q"));

@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_name_existing_actions_and_numbers_and_are_short() {
+    fn tour_steps_name_existing_actions_and_parameters() {
         let keys = KeyBindings::bundled();
         let numbers = ParameterNumbers::bundled();
         for (at, step) in steps().iter().enumerate() {

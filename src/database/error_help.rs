@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::catalogue::{HIDDEN_SCHEMA, Scope, Table, table};
 use super::guard::is_unsafe_function;
-use super::math_functions::register_mathematics;
+use super::math_functions::register_math_functions;
 use super::tokens::{Token, TokenKind, tokenize};
 use novamind_base::similar_names;
 
@@ -59,7 +59,7 @@ fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
 fn function_names() -> Vec<String> {
     let names = || -> rusqlite::Result<Vec<String>> {
         let engine = rusqlite::Connection::open_in_memory()?;
-        register_mathematics(&engine)?;
+        register_math_functions(&engine)?;
         let mut statement = engine.prepare("SELECT DISTINCT name FROM pragma_function_list ORDER BY name")?;
         statement.query_map([], |row| row.get(0))?.collect()
     };

@@ -53,7 +53,7 @@ const BINARY_FUNCTIONS: [(&str, BinaryFunction); 5] = [
 ///
 /// # Errors
 /// SQLite cannot register a function on the connection.
-pub fn register_mathematics(connection: &Connection) -> rusqlite::Result<()> {
+pub fn register_math_functions(connection: &Connection) -> rusqlite::Result<()> {
     let flags =
         FunctionFlags::SQLITE_UTF8 | FunctionFlags::SQLITE_DETERMINISTIC | FunctionFlags::SQLITE_INNOCUOUS;
     for (name, function) in ROUNDING_FUNCTIONS {
@@ -133,7 +133,7 @@ mod tests {
 
     fn connection() -> Connection {
         let connection = Connection::open_in_memory().expect("memory");
-        register_mathematics(&connection).expect("functions");
+        register_math_functions(&connection).expect("functions");
         connection
     }
 

@@ -24,7 +24,7 @@ use super::guard::{
 };
 use super::hidden_schema;
 use super::location::DatabaseLocation;
-use super::math_functions::register_mathematics;
+use super::math_functions::register_math_functions;
 use super::packed_tables;
 use super::query_interrupt::{Interrupt, QueryTicket, STEPS_BETWEEN_CHECKS, StopCause};
 use super::query_plan;
@@ -93,7 +93,7 @@ impl QueryConnection {
         let seen = Arc::new(QueryView::default());
         block_table::register(&connection, &seen)?;
         packed_tables::register(&connection, &seen)?;
-        register_mathematics(&connection)?;
+        register_math_functions(&connection)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
         if scope == Scope::Hidden {
             hidden_schema::create_hidden_tables(&connection)?;

@@ -14,7 +14,7 @@ use rusqlite::{Batch, Connection, Statement};
 use super::catalogue::{Scope, Table, table, tables};
 use super::guard::{CUSTOMER_ID, ColumnReads, ColumnsByTable, Guard, LastRejection, set_limits};
 use super::hidden_schema;
-use super::math_functions::register_mathematics;
+use super::math_functions::register_math_functions;
 use super::query::QueryFault;
 use super::tokens::{Token, tokenize};
 
@@ -61,7 +61,7 @@ impl ReleasedSchema {
         }
         let declarations: Vec<String> = tables().iter().map(Table::create_statement).collect();
         connection.execute_batch(&declarations.join(";\n"))?;
-        register_mathematics(&connection)?;
+        register_math_functions(&connection)?;
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
         let guard = Guard::for_ordinary_tables(&connection, scope)?;

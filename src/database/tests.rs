@@ -238,7 +238,7 @@ fn usage_older_than_a_month_is_deleted() {
 }
 
 #[test]
-fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
+fn ledger_day_lists_leads_payments_then_costs() {
     let mut company = Company::open(DatabaseLocation::new_in_memory());
     let connection = company.simulate_weeks(1);
     let first = query_rows(&connection, "SELECT id, category, amount, note FROM ledger WHERE day = 0");

@@ -79,7 +79,7 @@ mod tests {
 
     /// The forecast that is offered during play equals the forecast of the back-test.
     #[test]
-    fn backtest_uses_the_forecasts_the_game_offers() {
+    fn backtest_forecasts_equal_the_offered_forecasts() {
         let configuration = Configuration::bundled();
         let policy = Policy::find("P1c", &configuration).expect("a shipped policy");
         let spec = RunSpec { stop_after_day: Some(84), ..RunSpec::for_seed(5) };

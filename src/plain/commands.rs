@@ -247,7 +247,7 @@ impl Interpreter {
         // Errors report columns of the whole line.
         let column = line.trim_end().chars().count() - rest.chars().count() + 1;
         match grammar::current_name(word) {
-            "inbox" => self.inbox_where(rest, column),
+            "inbox" => self.run_inbox_where(rest, column),
             "memo" if rest.is_empty() => self.show_notes(),
             "memo" => self.add_note(rest),
             "explain" | "what" => self.explain(word, rest),
@@ -344,8 +344,8 @@ impl Interpreter {
             "tools" => optional_name(arguments)
                 .and_then(|name| overview::tools_command(name, arguments, &self.session.numbers())),
             "queries" => optional_name(arguments).and_then(|name| match name {
-                Some(name) => self.named_query(name, arguments),
-                None => Ok(self.queries()),
+                Some(name) => self.run_named_query(name, arguments),
+                None => Ok(self.list_queries()),
             }),
             "tables" => optional_name(arguments).and_then(|name| overview::tables_command(name, arguments)),
             "report" => optional_name(arguments).and_then(|what| self.report(what, arguments)),

@@ -11,7 +11,7 @@ use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 
 /// Current time of the scripted clock, in nanoseconds since the Unix epoch; 0 if no scripted clock is active.
-static SCRIPTED_MOMENT: AtomicI64 = AtomicI64::new(0);
+static SCRIPTED_TIME_NS: AtomicI64 = AtomicI64::new(0);
 
 /// A clock that a script controls. The scripted clock replaces the wall clock and the monotonic clock of the whole
 /// process. It advances only through [`ScriptedClock::advance`].
@@ -21,29 +21,29 @@ pub struct ScriptedClock(());
 impl ScriptedClock {
     /// Starts the scripted clock at a time, in nanoseconds since the Unix epoch.
     pub fn start(moment: i64) -> ScriptedClock {
-        SCRIPTED_MOMENT.store(moment, Ordering::SeqCst);
+        SCRIPTED_TIME_NS.store(moment, Ordering::SeqCst);
         ScriptedClock(())
     }
 
     /// Advances the scripted clock by `time`.
     pub fn advance(&self, time: Duration) {
-        SCRIPTED_MOMENT.fetch_add(i64::try_from(time.as_nanos()).unwrap_or(0), Ordering::SeqCst);
+        SCRIPTED_TIME_NS.fetch_add(i64::try_from(time.as_nanos()).unwrap_or(0), Ordering::SeqCst);
     }
 
     /// Returns the current time of the scripted clock, in nanoseconds since the Unix epoch.
-    pub fn moment(&self) -> i64 {
-        SCRIPTED_MOMENT.load(Ordering::SeqCst)
+    pub fn time_ns(&self) -> i64 {
+        SCRIPTED_TIME_NS.load(Ordering::SeqCst)
     }
 }
 
-fn scripted_moment() -> Option<i64> {
-    Some(SCRIPTED_MOMENT.load(Ordering::SeqCst)).filter(|moment| *moment != 0)
+fn scripted_time_ns() -> Option<i64> {
+    Some(SCRIPTED_TIME_NS.load(Ordering::SeqCst)).filter(|moment| *moment != 0)
 }
 
 /// Returns the current time as an RFC 3339 timestamp.
 pub fn now() -> String {
-    match scripted_moment() {
-        Some(moment) => format_moment(moment),
+    match scripted_time_ns() {
+        Some(moment) => format_timestamp(moment),
         None => OffsetDateTime::now_utc().format(&Rfc3339).unwrap_or_default(),
     }
 }
@@ -56,11 +56,11 @@ pub fn monotonic_time() -> Duration {
 
 /// Returns the time since the Unix epoch on the scripted clock, or `None` if no scripted clock is active.
 pub fn scripted_monotonic_time() -> Option<Duration> {
-    scripted_moment().map(|moment| Duration::from_nanos(moment.unsigned_abs()))
+    scripted_time_ns().map(|moment| Duration::from_nanos(moment.unsigned_abs()))
 }
 
 /// Formats a time, in nanoseconds since the Unix epoch, as an RFC 3339 timestamp.
-pub fn format_moment(nanoseconds: i64) -> String {
+pub fn format_timestamp(nanoseconds: i64) -> String {
     let moment = OffsetDateTime::from_unix_timestamp_nanos(i128::from(nanoseconds)).ok();
     moment.and_then(|moment| moment.format(&Rfc3339).ok()).unwrap_or_default()
 }

@@ -9,7 +9,7 @@ pub const WINDOW_WEEKS: usize = 4;
 /// Minimum number of leads in four weeks for a comparison of the cost per lead.
 pub const MIN_LEADS: f64 = 20.0;
 /// Minimum ratio of the current to the lowest cost per lead that counts as a rise.
-pub const MIN_RISE_FACTOR: f64 = 2.0;
+pub const MIN_RISE_RATIO: f64 = 2.0;
 
 /// Results of advertising for a group in a channel over consecutive weeks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +75,7 @@ impl LeadCost {
     pub fn cost_rise(&self) -> Option<f64> {
         let before = self.cheapest?.cost_per_lead()?;
         let now = self.recent.cost_per_lead().unwrap_or(self.recent.spend);
-        (self.recent.spend / before >= MIN_LEADS && now >= MIN_RISE_FACTOR * before).then(|| now / before)
+        (self.recent.spend / before >= MIN_LEADS && now >= MIN_RISE_RATIO * before).then(|| now / before)
     }
 }
 

@@ -247,7 +247,7 @@ fn questions_section(study: &Study) -> String {
                 "- `{}`: {} ({}{required})\n",
                 question.id,
                 question.text,
-                form_questions(&question.form)
+                describe_answer_format(&question.form)
             );
         }
     }
@@ -269,7 +269,7 @@ fn describe_questionnaire_time(questionnaire: &Questionnaire) -> String {
     }
 }
 
-fn form_questions(form: &AnswerFormat) -> String {
+fn describe_answer_format(form: &AnswerFormat) -> String {
     match form {
         AnswerFormat::Likert { points, low, high } if low.is_empty() && high.is_empty() => {
             format!("1 to {points}")

@@ -62,7 +62,7 @@ impl ForeignTranscript {
     ///
     /// # Errors
     /// The file has none of these formats, or contains no call to a tool of this program.
-    pub fn read(bytes: &[u8]) -> Result<ForeignTranscript, String> {
+    pub fn parse(bytes: &[u8]) -> Result<ForeignTranscript, String> {
         let read = match serde_json::from_slice::<Value>(bytes) {
             Ok(Value::Object(whole)) if whole.contains_key("steps") => from_steps(&whole),
             Ok(whole) if whole["eval"].is_object() => inspect_log::parse_json(&whole)?,
@@ -234,7 +234,7 @@ mod tests {
             ],
         });
         for (text, place) in [(lines, 3), (steps.to_string(), 2)] {
-            let read = ForeignTranscript::read(text.as_bytes()).expect("a transcript");
+            let read = ForeignTranscript::parse(text.as_bytes()).expect("a transcript");
             assert_eq!(read.calls.len(), 3, "{read:?}");
             let new = NewRun { seed: read.seed, days: Some(28), ..NewRun::default() };
             let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn programs_in_a_transcript_are_not_started() {
         let script = json!({"tool": "python_exec", "args": {"code": "# python\nprint(1)"}, "success": true});
-        let read = ForeignTranscript::read(script.to_string().as_bytes()).expect("a transcript");
+        let read = ForeignTranscript::parse(script.to_string().as_bytes()).expect("a transcript");
         let new = NewRun { days: Some(28), ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         let played = read.play(&mut session, &mut |_| {});
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn read_rejects_other_files() {
+    fn parse_rejects_other_files() {
         for (text, words) in [
             ("", "no call"),
             ("{\"steps\": []}", "no call"),
@@ -264,7 +264,7 @@ mod tests {
             ("{\"args\": {}}", "has no tool"),
             ("{\"tool\": \"set_prices\", \"args\": [1]}", "not an object"),
         ] {
-            let error = ForeignTranscript::read(text.as_bytes()).expect_err(text);
+            let error = ForeignTranscript::parse(text.as_bytes()).expect_err(text);
             assert!(error.contains(words), "{text}: {error}");
         }
     }

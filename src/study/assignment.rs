@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn randomized_blocks_are_balanced_and_round_trip() {
+    fn randomized_assignment_is_balanced_and_round_trips_through_csv() {
         let labels: Vec<String> = (1..=13).map(|number| format!("P{number:02}")).collect();
         let conditions = ["control".to_owned(), "advice".to_owned()];
         let made = Assignment::randomize_in_blocks(&labels, &[3, 5, 8], &conditions, 7);

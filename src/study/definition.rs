@@ -427,7 +427,7 @@ impl Protocol {
                 format!("{kind} cannot be left out: times and answers depend on it"),
             ));
         }
-        self.voice.as_ref().map_or(Ok(()), ModelSettings::check).map_err(voice_problem)?;
+        self.voice.as_ref().map_or(Ok(()), ModelSettings::check).map_err(qualify_voice_key)?;
         self.limits.check_warning()?;
         let limits = [self.limits.week_minutes, self.limits.session_minutes, self.limits.study_minutes];
         if limits.contains(&Some(0)) {
@@ -443,7 +443,7 @@ pub(crate) fn shorten_digest(digest: &str) -> &str {
 }
 
 /// Adds the name of the table `voice` to the key of a problem.
-fn voice_problem((key, problem): (&'static str, String)) -> (&'static str, String) {
+fn qualify_voice_key((key, problem): (&'static str, String)) -> (&'static str, String) {
     let key = match key {
         "endpoint" => "voice.endpoint",
         "model" => "voice.model",

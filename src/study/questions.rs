@@ -299,7 +299,7 @@ impl Questionnaire {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Questionnaire, String> {
+    fn parse_questionnaire(text: &str) -> Result<Questionnaire, String> {
         Questionnaire::parse(Path::new("questions/effort.toml"), text).map_err(|error| error.to_string())
     }
 
@@ -336,7 +336,7 @@ min = 0.0
 
     #[test]
     fn parse_answer_depends_on_the_format() {
-        let effort = read(SAMPLE_QUESTIONNAIRE).expect("it reads");
+        let effort = parse_questionnaire(SAMPLE_QUESTIONNAIRE).expect("it reads");
         assert_eq!(effort.name, "effort");
         assert!(effort.is_due_after(4) && !effort.is_due_after(5));
         let value = |at: usize, typed: &str| effort.questions[at].form.parse_answer(typed);
@@ -360,7 +360,7 @@ min = 0.0
             ("when = \"weeks\"", "when = \"sometimes\"", "line 3"),
             ("low = \"easy\"", "lowest = \"easy\"", "lowest is not a key of this form"),
         ] {
-            let error = read(&SAMPLE_QUESTIONNAIRE.replace(from, to)).expect_err(to);
+            let error = parse_questionnaire(&SAMPLE_QUESTIONNAIRE.replace(from, to)).expect_err(to);
             assert!(error.contains(part), "{error}");
         }
     }

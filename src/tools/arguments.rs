@@ -80,7 +80,7 @@ impl Arguments {
     ///
     /// # Errors
     /// As `reader`.
-    pub fn read<T>(
+    pub fn parse_argument<T>(
         &self,
         name: &'static str,
         reader: impl FnOnce(&Value, &'static str) -> Result<T, Rejection>,
@@ -201,7 +201,7 @@ pub struct AmountRule {
 }
 
 impl AmountRule {
-    fn read(&self, value: &Value, field: &str) -> Result<SentNumber, Rejection> {
+    fn parse(&self, value: &Value, field: &str) -> Result<SentNumber, Rejection> {
         match SentNumber::from_json(value) {
             Some(sent) if self.range.contains(sent.value) => Ok(sent),
             _ => Err(Rejection::for_field(
@@ -265,7 +265,7 @@ fn parse_amounts<K: std::hash::Hash + Eq>(
     amount: AmountRule,
     key: impl Fn(&str, &str) -> Result<K, Rejection>,
 ) -> Result<IndexMap<K, SentNumber>, Rejection> {
-    parse_entries(value, field, key, |value, field| amount.read(value, field))
+    parse_entries(value, field, key, |value, field| amount.parse(value, field))
 }
 
 /// Parses a map. All keys are checked before the values.
@@ -343,7 +343,7 @@ pub fn parse_per_channel(
 pub fn parse_per_customer(value: &Value, field: &str, amount: AmountRule) -> Result<PerCustomer, Rejection> {
     let entry = |(name, value): (&String, &Value)| {
         let path = format!("{field}.{name}");
-        Ok((parse_customer(name, &path)?, amount.read(value, &path)?.value))
+        Ok((parse_customer(name, &path)?, amount.parse(value, &path)?.value))
     };
     to_map(value, field)?.iter().map(entry).collect()
 }

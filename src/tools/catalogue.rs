@@ -64,7 +64,7 @@ macro_rules! catalogue {
             }
 
             fn plan(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PlannedCall<Answer>, Rejection> {
-                let args = self.read(view, arguments)?;
+                let args = self.parse_arguments(view, arguments)?;
                 Ok(Tool::plan(self, view, args)?.map_answer(Answer::$tool))
             }
         })*

@@ -29,7 +29,8 @@ pub trait Tool: Sync {
     ///
     /// # Errors
     /// The rejections in the [`ToolSpec`] that depend only on the arguments and the player's knowledge.
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection>;
+    fn parse_arguments(&self, view: &ToolContext<'_>, arguments: &Arguments)
+    -> Result<Self::Args, Rejection>;
 
     /// Plans a call with these arguments, and returns its effect and result.
     ///

@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bundled_themes_parse_and_mono_has_no_color() {
+    fn bundled_themes_are_valid() {
         for (name, _) in novamind_assets::themes() {
             Theme::bundled(name).expect(name);
         }

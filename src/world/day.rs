@@ -26,7 +26,7 @@ use super::product::ads::AdLoad;
 use super::product::{ads, development, research, service, usage};
 use super::random::Streams;
 use super::retention::billing::{self, BlockBills};
-use super::retention::issues::{self, IssueBatch, SettledIssues};
+use super::retention::issues::{self, IssueBatch, IssueUpdates};
 use super::retention::renewal::{self, BlockDecisions, RenewalContext};
 use super::retention::{refresh_block, satisfaction};
 use super::state::World;
@@ -130,7 +130,7 @@ pub fn step_day_observed(
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
     };
-    let decided = settle_and_decide(customers, felt.calls, &judgement, watch);
+    let decided = update_issues_and_decide(customers, felt.calls, &judgement, watch);
     issues::record_issues(decided.settled, facts);
     let mut on_write = |write: &ReputationWrite<'_>| watch.on_reputation_change(write);
     let renewals =
@@ -142,7 +142,7 @@ pub fn step_day_observed(
     let moods = satisfaction::sum_by_group(felt.moods);
     let is_known = |group: Group| knowledge[group].level >= 1;
     reputation::apply_contributions(&mut market.reputation, &moods, is_known, params, &mut on_write);
-    watch.on_reputation_settled(&moods, market, params);
+    watch.after_reputation_changes(&moods, market, params);
 
     // Publish posts of customers and the press.
     if let Some(mut crowd) = crowd {
@@ -227,13 +227,13 @@ fn update_satisfaction(
 
 /// Results of the second sweep over subscribers, one element per block.
 struct DecisionRound {
-    settled: Vec<SettledIssues>,
+    settled: Vec<IssueUpdates>,
     decisions: Vec<BlockDecisions>,
     billed: Vec<BlockBills>,
 }
 
 /// Updates issues, computes the decisions of due customers, and bills the customers who stay.
-fn settle_and_decide(
+fn update_issues_and_decide(
     customers: &mut Customers,
     calls: Vec<IssueBatch>,
     judgement: &RenewalContext<'_>,
@@ -241,7 +241,7 @@ fn settle_and_decide(
 ) -> DecisionRound {
     let day = judgement.day;
     let decided = customers.sweep_with(calls, |group, number, block, calls| {
-        let settled = issues::settle(block, &calls, day);
+        let settled = issues::update_issues(block, &calls, day);
         watch.before_decisions(group, block, judgement);
         let decisions = renewal::decide_block(group, number, block, judgement);
         (settled, decisions, billing::bill_block(group, number, block, day))

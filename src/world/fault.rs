@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn fault_changes_the_digest_and_no_table() {
+    fn fault_changes_the_digest_but_no_table() {
         let sound = Params::bundled();
         let faulty = Params { fault: Some(Fault::DriftTwice), ..sound.clone() };
         assert_ne!(sound.digest(), faulty.digest());

@@ -126,14 +126,14 @@ pub fn contribution(satisfaction: f64, reputation: &Reputation) -> f64 {
 
 /// Returns the change in a group's reputation from today's contributions, before the threshold is applied: (sum / m)
 /// log2(m), where m = max(count, 2).
-pub fn unrounded_daily_change(mood: &ReputationContribution, reputation: &Reputation) -> f64 {
+pub fn daily_change_before_threshold(mood: &ReputationContribution, reputation: &Reputation) -> f64 {
     let size = f64::from(mood.count.max(reputation.min_group_size));
     mood.sum / size * libm::log2(size)
 }
 
 /// Returns the daily change in a group's reputation, or `None` if the change is below the threshold.
 pub fn daily_change(mood: &ReputationContribution, reputation: &Reputation) -> Option<f64> {
-    let change = unrounded_daily_change(mood, reputation);
+    let change = daily_change_before_threshold(mood, reputation);
     (change.abs() >= reputation.daily_delta_min_abs).then_some(change)
 }
 

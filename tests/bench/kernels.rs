@@ -122,8 +122,9 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
             let mut calls =
                 customers.sweep(|group, number, block| issues::find_issues(group, number, block, day));
             issues::allocate_resolutions(&mut calls, day.settings, customers, &mut connection, day);
-            let settled = customers
-                .sweep_with(calls, |_, _, block, issue_batch| issues::settle(block, &issue_batch, day));
+            let settled = customers.sweep_with(calls, |_, _, block, issue_batch| {
+                issues::update_issues(block, &issue_batch, day)
+            });
             issues::record_issues(settled, &mut facts);
             facts.issues_opened.len()
         });

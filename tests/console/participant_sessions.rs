@@ -14,7 +14,7 @@ use novamind::worker::request::{RecordSource, Request};
 use super::harness::Console;
 
 /// A study of two weeks with every kind of question, and its folder.
-struct Lab(tempfile::TempDir);
+struct StudyHome(tempfile::TempDir);
 
 const PROTOCOL: &str = r#"
 name = "pilot"
@@ -82,9 +82,9 @@ most = 40
 required = true
 "#;
 
-impl Lab {
-    fn new() -> Lab {
-        let lab = Lab(tempfile::tempdir().expect("a folder"));
+impl StudyHome {
+    fn new() -> StudyHome {
+        let lab = StudyHome(tempfile::tempdir().expect("a folder"));
         let folder = lab.folder();
         std::fs::create_dir_all(folder.join("questions")).expect("a folder");
         let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
@@ -161,7 +161,7 @@ fn advance_week(console: &mut Console) {
 
 #[test]
 fn participant_session_runs_from_label_to_thanks() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let mut console = lab.open_console((100, 30));
     for wrong in ["'P9'", "'../x'"] {
         console.press(&format!("{wrong} enter"));
@@ -234,7 +234,7 @@ fn participant_session_runs_from_label_to_thanks() {
 
 #[test]
 fn declined_consent_creates_no_run_and_withdrawal_is_recorded() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let mut console = lab.open_console((80, 24));
     console.press("'P02' enter n");
     console.assert_shows("You did not agree");
@@ -263,7 +263,7 @@ fn declined_consent_creates_no_run_and_withdrawal_is_recorded() {
 
 #[test]
 fn practice_comes_first_and_is_skippable_if_optional() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.edit_protocol(
         "offer = \"none\"",
         "offer = \"optional\"\nscenario = \"short\"\ndays = 7\n[session]\ntour = true",
@@ -295,7 +295,7 @@ fn practice_comes_first_and_is_skippable_if_optional() {
 
 #[test]
 fn other_runs_require_the_experimenter_code() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let mut console = lab.open_console((100, 30));
     console.press("'P01' enter end y enter 4 enter enter");
     for keys in ["; r", "; t"] {
@@ -348,7 +348,7 @@ fn results_page_shows_only_results_that_the_protocol_permits() {
     for (results, shows_score, published) in
         [("none", false, false), ("own", true, false), ("published", true, true)]
     {
-        let lab = Lab::new();
+        let lab = StudyHome::new();
         lab.edit_protocol("[access]", &format!("[session]\nresults = \"{results}\"\n[access]"));
         lab.edit_protocol("days = 14", "days = 7");
         let mut console = lab.open_console((120, 40));
@@ -363,7 +363,7 @@ fn results_page_shows_only_results_that_the_protocol_permits() {
 
 #[test]
 fn study_pages_fit_every_window() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.edit_protocol("offer = \"none\"", "offer = \"optional\"\nscenario = \"short\"\ndays = 7");
     let mut console = lab.open_console((100, 30));
     let steps = [
@@ -414,7 +414,7 @@ fn study_pages_fit_every_window() {
 
 #[test]
 fn question_pages_show_their_keys_in_the_footer() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     for size in [(60, 16), (80, 24)] {
         let mut console = lab.open_console(size);
         console.press(&format!("'P0{}' enter end y", if size.0 == 60 { 1 } else { 2 }));
@@ -444,7 +444,7 @@ fn question_pages_show_their_keys_in_the_footer() {
 
 #[test]
 fn withdrawal_is_possible_at_a_question() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let mut console = lab.open_console((80, 24));
     console.press("'P01' enter end y enter");
     console.assert_shows("question 1 of 2");
@@ -455,7 +455,7 @@ fn withdrawal_is_possible_at_a_question() {
 
 #[test]
 fn palette_finds_pause_by_synonyms() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let mut console = lab.open_console((80, 24));
     console.press("'P01' enter end y enter 4 enter enter");
     for word in ["pause", "break", "clock"] {
@@ -467,7 +467,7 @@ fn palette_finds_pause_by_synonyms() {
 
 #[test]
 fn naive_forecasts_are_labeled() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     for (label, size) in [("P01", (60, 16)), ("P02", (80, 24))] {
         let mut console = lab.open_console(size);
         console.press(&format!("'{label}' enter end y enter 4 enter enter n"));

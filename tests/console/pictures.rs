@@ -55,7 +55,7 @@ fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
 }
 
 /// Minimum share of non-empty cells in every half of a large window.
-const MIN_INK_SHARE: f64 = 0.04;
+const MIN_NON_EMPTY_SHARE: f64 = 0.04;
 
 /// Returns the layout problems of a picture. Empty halves are a problem only if `rich` is set, because only a company
 /// with much data fills both halves.
@@ -66,7 +66,7 @@ fn layout_problems(place: &str, size: (u16, u16), rich: bool, letters: &str) -> 
         .map(|line| format!("{place} at {size:?}: truncated next to free space: {line}"))
         .collect();
     let ink = min_half_coverage(letters, size.0.into());
-    if rich && size.0 >= 120 && ink < MIN_INK_SHARE {
+    if rich && size.0 >= 120 && ink < MIN_NON_EMPTY_SHARE {
         found.push(format!("{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}"));
     }
     found
@@ -111,7 +111,7 @@ fn crisis_in_week_30_matches_snapshots() {
 }
 
 #[test]
-fn pictures_of_a_large_company_in_week_45() {
+fn large_company_in_week_45_matches_snapshots() {
     check_pictures("week-45", "crowd.toml", 42, 315);
 }
 

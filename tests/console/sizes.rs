@@ -234,7 +234,7 @@ fn ascii_mode_draws_only_ascii() {
 }
 
 #[test]
-fn the_smallest_window_names_the_screen_that_is_shown() {
+fn smallest_window_names_the_current_screen() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_in_played_run(runs.path());
     console.size = (60, 16);

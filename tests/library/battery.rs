@@ -8,7 +8,7 @@ use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
 use novamind::database::query::QueryLimits;
-use novamind::database::{Cell, QueryConnection, QueryResult, register_mathematics, tables};
+use novamind::database::{Cell, QueryConnection, QueryResult, register_math_functions, tables};
 use novamind::lab::benchmark::{BenchContext, create_company_for_queries};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
@@ -113,7 +113,7 @@ fn answer_threads(session: &mut Session) {
 /// Returns ordinary tables with the schema of the released simulator and the rows of a company.
 fn plain_tables(connection: &QueryConnection) -> Connection {
     let mut plain = Connection::open_in_memory().expect("memory");
-    register_mathematics(&plain).expect("functions");
+    register_math_functions(&plain).expect("functions");
     let transaction = plain.transaction().expect("a transaction");
     for table in tables() {
         transaction.execute_batch(&table.create_statement()).expect("a table");
@@ -215,7 +215,7 @@ fn queries_match_plain_tables_within_step_limit() {
 
 #[test]
 #[ignore = "takes minutes; prints how long the statements take with 190,000 subscribers"]
-fn statement_times_with_190_000_subscribers() {
+fn print_statement_times_with_190_000_subscribers() {
     let scratch = tempfile::tempdir().expect("a folder");
     let configuration = Configuration::bundled();
     let bench = BenchContext { repetitions: 1, scratch_folder: scratch.path().to_owned(), configuration };

@@ -203,7 +203,7 @@ fn finished_run_has_its_own_exit_code() {
 }
 
 #[test]
-fn the_page_and_its_documents_are_written() {
+fn docs_command_writes_the_agent_page_and_its_documents() {
     let shell = AgentShell::new();
     let folder = shell.home.0.path().join("handed");
     assert!(shell.run_agent(&["docs"]).stdout.starts_with("# You run NovaMind\n"));

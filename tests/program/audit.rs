@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use novamind::record::clock::{format_moment, parse_nanoseconds};
+use novamind::record::clock::{format_timestamp, parse_nanoseconds};
 use serde_json::{Map, Value, json};
 
 use crate::support::home::{Home, ProgramOutput, run_with_input};
@@ -315,7 +315,7 @@ fn audit_finds_a_clock_change_in_the_last_session() {
             text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
         for line in all.iter_mut().skip(from) {
             let at = parse_nanoseconds(line["at"].as_str().expect("a moment")) + seconds * 1_000_000_000;
-            line.insert("at".to_owned(), json!(format_moment(at)));
+            line.insert("at".to_owned(), json!(format_timestamp(at)));
         }
         all.into_iter().map(|line| Value::Object(line).to_string() + "\n").collect()
     };
@@ -395,7 +395,7 @@ fn audit_counts_match_the_tables() {
     record_lines[weeks[1]]["forecasts"][0]["filled_naively"] = json!(false);
     for line in record_lines.iter_mut().skip(weeks[2]) {
         let at = parse_nanoseconds(line["at"].as_str().expect("a moment")) + 30_000_000_000;
-        line.insert("at".to_owned(), json!(format_moment(at)));
+        line.insert("at".to_owned(), json!(format_timestamp(at)));
     }
     write_forged_lines(&run, record_lines);
     let out = study.home.0.path().join("data");

@@ -27,7 +27,7 @@ fn failed_checks(home: &Home) -> Vec<String> {
 }
 
 #[test]
-fn doctor_finds_what_is_wrong_and_creates_no_files() {
+fn doctor_reports_problems_and_creates_no_files() {
     let home = Home::new();
     fs::remove_dir(home.runs()).expect("an empty folder");
     assert!(failed_checks(&home).is_empty());

@@ -193,7 +193,7 @@ fn run_is_left_resumed_finished_and_replayed() {
 }
 
 #[test]
-fn invalid_starts_have_exit_codes() {
+fn play_with_invalid_options_has_documented_exit_codes() {
     let runs = tempfile::tempdir().expect("a folder");
     let failure = |options: &[&str]| {
         let output = program(runs.path()).args(["play", "--plain"]).args(options).output().expect("it runs");

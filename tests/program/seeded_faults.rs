@@ -84,7 +84,7 @@ fn debugging_answers_match_the_program() {
                 let named = what.trim().split(' ').next().unwrap_or_default();
                 assert!(diff.contains(named), "{}: {what}: {diff}", row.number);
             }
-            None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
+            None => assert!(diff.starts_with("the runs are identical"), "{}: {diff}", row.number),
         }
         let shown = run_commands(&home, &faulty, &row.commands);
         // The page also lists figures of the run without the fault. These figures are not compared if a command

@@ -11,11 +11,11 @@ use novamind::study::{VisitEvent, read_visits};
 use crate::support::home::{Home, ProgramOutput, run_id, run_with_input};
 
 /// The home of a machine with a study of five weeks and questions.
-struct Lab(Home);
+struct StudyHome(Home);
 
-impl Lab {
-    fn new() -> Lab {
-        let lab = Lab(Home::new());
+impl StudyHome {
+    fn new() -> StudyHome {
+        let lab = StudyHome(Home::new());
         let made = lab.0.run(&["study", "new", &lab.folder()]);
         assert_eq!(made.exit_code, 0, "{}", made.stderr);
         lab.edit("# days = 84 ", "days = 35 #");
@@ -75,7 +75,7 @@ fn recorded_answers(run: &std::path::Path) -> Vec<String> {
 
 #[test]
 fn participant_session_runs_from_label_to_thanks() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.assign();
     let script = format!("P9\nP01\nwhat?\nyes\n8\n5\nset_prices A=9 B=19\n{WEEKS}4\n2\nquit\n");
     let first = lab.play_session(&script);
@@ -130,7 +130,7 @@ fn participant_session_runs_from_label_to_thanks() {
 
 #[test]
 fn declined_and_withdrawn_participants_leave_no_run() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.assign();
     let declined = lab.play_session("P02\nno\n");
     assert!(declined.exit_code == 0 && declined.stdout.contains("Kept: your label"), "{}", declined.stdout);
@@ -180,7 +180,7 @@ fn declined_and_withdrawn_participants_leave_no_run() {
 
 #[test]
 fn leaving_and_withdrawing_work_at_every_prompt() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.assign();
     lab.edit("offer = \"none\"", "offer = \"optional\"");
     assert_eq!(lab.play_session("quit\n").exit_code, 0);
@@ -228,7 +228,7 @@ fn leaving_and_withdrawing_work_at_every_prompt() {
 
 #[test]
 fn other_commands_require_the_experimenter_code() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let code = run_with_input(lab.0.program().args(["study", "code"]), "open sesame\n");
     let line = code.stdout.lines().find(|line| line.starts_with("code = ")).expect("a line");
     lab.edit("# code = \"…\"", line);
@@ -256,7 +256,7 @@ fn other_commands_require_the_experimenter_code() {
 
 #[test]
 fn practice_results_require_the_experimenter_code() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.edit("offer = \"none\"", "offer = \"required\"");
     let code = run_with_input(lab.0.program().args(["study", "code"]), "open sesame\n");
     let line = code.stdout.lines().find(|line| line.starts_with("code = ")).expect("a line");
@@ -281,7 +281,7 @@ fn practice_results_require_the_experimenter_code() {
 
 #[test]
 fn invalid_protocols_are_reported_with_line_and_key() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let good = fs::read_to_string(lab.0.0.path().join("pilot/study.toml")).expect("a protocol");
     let line = |start: &str| good.lines().position(|line| line.starts_with(start)).expect(start) + 1;
     for (from, to, parts) in [
@@ -315,7 +315,7 @@ fn invalid_protocols_are_reported_with_line_and_key() {
 
 #[test]
 fn watch_lists_sessions_and_writes_remarks() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.assign();
     lab.play_session(&format!("P01\nyes\n3\n{WEEKS}2\n2\nquit\n"));
     lab.play_session("P02\nyes\n3\n");
@@ -345,7 +345,7 @@ fn watch_lists_sessions_and_writes_remarks() {
 
 #[test]
 fn protocol_lists_every_measure_and_rule() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.assign();
     let program_output = lab.0.run(&["study", "protocol", &lab.folder()]);
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
@@ -377,7 +377,7 @@ fn protocol_lists_every_measure_and_rule() {
 #[test]
 fn final_page_shows_only_permitted_results() {
     for (results, shows) in [("none", false), ("own", true), ("published", true)] {
-        let lab = Lab::new();
+        let lab = StudyHome::new();
         lab.edit("results = \"own\"", &format!("results = \"{results}\""));
         for json in [false, true] {
             let label = if json { "P02" } else { "P01" };
@@ -417,7 +417,7 @@ fn final_page_shows_only_permitted_results() {
 
 #[test]
 fn study_keys_seal_snapshots_and_sign_archives() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.assign();
     let made = lab.0.run(&["study", "key", &lab.folder()]);
     assert!(made.exit_code == 0 && made.stdout.contains("fingerprint"), "{}{}", made.stdout, made.stderr);

@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use crate::support::home::{Home, ProgramOutput, run_with_input};
 
 /// The home of a machine with a study of four weeks, without questions and practice.
-struct Lab(Home);
+struct StudyHome(Home);
 
-impl Lab {
-    fn new() -> Lab {
-        let lab = Lab(Home::new());
+impl StudyHome {
+    fn new() -> StudyHome {
+        let lab = StudyHome(Home::new());
         assert_eq!(lab.0.run(&["study", "new", &lab.folder()]).exit_code, 0);
         lab.edit("# days = 84 ", "days = 28 #");
         lab.edit("offer = \"required\"", "offer = \"none\"");
@@ -52,7 +52,7 @@ impl Lab {
 
 #[test]
 fn removed_settings_are_reported_and_ignored() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let clean = lab.run("check", &[]).stdout;
     assert!(!clean.contains("removed"), "{clean}");
     lab.edit("[access]", "[integrity]\nwitness = \"share\"\ncode_words = true\n\n[access]");
@@ -76,7 +76,7 @@ fn removed_settings_are_reported_and_ignored() {
 
 #[test]
 fn check_reports_impossible_designs() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     let questionnaire = |weeks: &str| {
         let text = format!(
             "title = \"Week\"\nwhen = \"weeks\"\nweeks = [{weeks}]\n[[question]]\nid = \"a\"\ntext = \"How?\"\nform = \"text\"\n"
@@ -113,7 +113,7 @@ fn check_reports_impossible_designs() {
 
 #[test]
 fn assign_add_keeps_existing_rows() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.edit(
         "plan = \"one\" ",
         "plan = \"blocks\"\nblock = [11, 12, 13]\nconditions = [\"A\", \"B\"]\ndraw = 5 ",
@@ -149,7 +149,7 @@ fn assign_add_keeps_existing_rows() {
 
 #[test]
 fn remark_is_stored_next_to_the_runs() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     assert_eq!(lab.run("assign", &["--participants", "3"]).exit_code, 0);
     lab.play_session("m1", "P01\nyes\nquit\n");
     lab.play_session("m2", "P02\nyes\nquit\n");
@@ -175,7 +175,7 @@ fn remark_is_stored_next_to_the_runs() {
 
 #[test]
 fn protocol_lists_randomization_and_limits() {
-    let lab = Lab::new();
+    let lab = StudyHome::new();
     lab.edit(
         "plan = \"one\" ",
         "plan = \"blocks\"\nblock = [11, 12]\nconditions = [\"A\", \"B\"]\ndraw = 5 ",

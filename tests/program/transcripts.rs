@@ -134,7 +134,7 @@ fn atif_export_contains_calls_and_responses_only() {
 }
 
 #[test]
-fn exports_contain_calls_of_unknown_tools() {
+fn exports_contain_calls_to_unknown_tools() {
     let home = Home::new();
     let lines = "set_wages {\"sales\": 3}\nhlep\nhlep me\nset_prices A=12\nnext naive\n";
     home.play(&["--seed", "11", "--days", "28"], lines);
@@ -259,7 +259,7 @@ fn score_is_consistent_everywhere() {
 }
 
 #[test]
-fn inspect_log_is_not_written_as_an_unreadable_archive() {
+fn inspect_export_rejects_eval_file() {
     let home = Home::new();
     let (run, _) = played_run(&home);
     let out = home.0.path().join("log.eval").to_string_lossy().into_owned();
@@ -282,7 +282,7 @@ fn imported_evaluation_log_reaches_the_same_state() {
 /// `tests/data/inspect.eval` was written by Inspect 0.3.285. It contains four calls of NovaMind tools, one of which
 /// was rejected, and a call to an unrelated tool.
 #[test]
-fn archive_of_inspect_is_imported() {
+fn inspect_archive_is_imported() {
     let home = Home::new();
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/inspect.eval");
     let program_output =

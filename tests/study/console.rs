@@ -9,7 +9,7 @@ use novamind::worker::message::Message;
 
 use crate::diary::{Diary, ExpectedLine, StudyQuestion, TimeCategory, WEEKS};
 use crate::harness::Console;
-use crate::lab::Lab;
+use crate::lab::StudyLab;
 
 /// A machine with a console in study mode.
 pub struct ConsoleParticipant<'a> {
@@ -40,7 +40,7 @@ impl DerefMut for ConsoleParticipant<'_> {
 impl<'a> ConsoleParticipant<'a> {
     /// Opens the console on the page that asks for the label.
     pub fn arrive(
-        lab: &Lab,
+        lab: &StudyLab,
         machine: &str,
         label: &'static str,
         clock: &'a ScriptedClock,
@@ -50,7 +50,7 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     fn arrive_again(
-        lab: &Lab,
+        lab: &StudyLab,
         machine: &str,
         diary: Diary,
         clock: &'a ScriptedClock,
@@ -58,7 +58,7 @@ impl<'a> ConsoleParticipant<'a> {
         let runs = lab.machine(machine);
         let mut console = Console::start(&runs, (100, 30));
         console.start_study(lab.read_study()).expect("the label page is shown");
-        let view = ("overview", "", clock.moment());
+        let view = ("overview", "", clock.time_ns());
         ConsoleParticipant { console, clock, diary, began: 0, current_view: view, spends: TimeCategory::Away }
     }
 
@@ -66,7 +66,7 @@ impl<'a> ConsoleParticipant<'a> {
     pub fn wait(&mut self, seconds: u64) {
         let mut left = Duration::from_secs(seconds);
         while !left.is_zero() {
-            self.console.flush_notes();
+            self.console.wait_for_jobs();
             let step = self.console.app.time_until_wake().map_or(left, |due| due.min(left));
             self.clock.advance(step);
             self.console.app.handle_message(Message::TimePassed);
@@ -87,20 +87,20 @@ impl<'a> ConsoleParticipant<'a> {
 
     /// Processes all pending messages, including due questions and time limits.
     fn process_pending_events(&mut self) {
-        self.console.flush_notes();
+        self.console.wait_for_jobs();
         while let Some(message) = self.console.try_receive() {
             self.console.app.handle_message(message);
             self.console.wait_until_idle().expect("the console settles");
         }
     }
 
-    fn since(&self, moment: i64) -> u64 {
-        ((self.clock.moment() - moment) / 1_000_000).unsigned_abs()
+    fn milliseconds_since(&self, moment: i64) -> u64 {
+        ((self.clock.time_ns() - moment) / 1_000_000).unsigned_abs()
     }
 
-    fn note(&mut self, kind: &'static str, what: &str, which: &str, for_ms: Option<u64>) {
+    fn add_expected_line(&mut self, kind: &'static str, what: &str, which: &str, for_ms: Option<u64>) {
         let line = ExpectedLine {
-            at: self.since(self.began),
+            at: self.milliseconds_since(self.began),
             week: self.diary.week(),
             kind,
             what: what.to_owned(),
@@ -122,48 +122,48 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     pub fn start_run(&mut self) {
-        self.began = self.clock.moment();
-        self.note("start", "baseline", "short", None);
+        self.began = self.clock.time_ns();
+        self.add_expected_line("start", "baseline", "short", None);
         self.attach();
     }
 
     fn attach(&mut self) {
         self.press_unrecorded("enter");
         self.diary.sittings += 1;
-        self.note("session", "opened", "console", None);
-        (self.spends, self.current_view) = (TimeCategory::Active, ("overview", "", self.clock.moment()));
+        self.add_expected_line("session", "opened", "console", None);
+        (self.spends, self.current_view) = (TimeCategory::Active, ("overview", "", self.clock.time_ns()));
     }
 
     /// Answers the only question of a page after some seconds.
     pub fn answer(&mut self, study_question: StudyQuestion, keys: &str, value: &str, seconds: u64) {
-        self.note("question", study_question.questionnaire, study_question.question, None);
+        self.add_expected_line("question", study_question.questionnaire, study_question.question, None);
         let before = std::mem::replace(&mut self.spends, TimeCategory::Answering);
         self.wait(seconds);
         self.spends = before;
         self.press_unrecorded(keys);
         let for_ms = seconds * 1000;
-        self.note("dialog", "questions", "confirmed", Some(for_ms));
-        self.note("answer", study_question.questionnaire, study_question.question, Some(for_ms));
+        self.add_expected_line("dialog", "questions", "confirmed", Some(for_ms));
+        self.add_expected_line("answer", study_question.questionnaire, study_question.question, Some(for_ms));
         self.diary.add_answer(study_question, value, for_ms);
     }
 
     pub fn go(&mut self, key: &str, screen: &'static str) {
         self.press_unrecorded(key);
         self.close_view();
-        self.current_view = (screen, self.current_view.0, self.clock.moment());
+        self.current_view = (screen, self.current_view.0, self.clock.time_ns());
     }
 
     /// Opens an object of the screen.
     pub fn select(&mut self, keys: &str, what: &str, which: &str) {
         self.press_unrecorded(keys);
-        self.note("select", what, which, None);
+        self.add_expected_line("select", what, which, None);
     }
 
     fn close_view(&mut self) {
         let (screen, from, since) = self.current_view;
-        let looked = self.since(since);
-        self.note("view", screen, from, Some(looked));
-        self.current_view.2 = self.clock.moment();
+        let looked = self.milliseconds_since(since);
+        self.add_expected_line("view", screen, from, Some(looked));
+        self.current_view.2 = self.clock.time_ns();
     }
 
     /// Opens a dialog, reads it, and closes it.
@@ -171,20 +171,20 @@ impl<'a> ConsoleParticipant<'a> {
         self.press_unrecorded(keys);
         self.wait(seconds);
         self.press_unrecorded("esc");
-        self.note("dialog", what, "cancelled", Some(seconds * 1000));
+        self.add_expected_line("dialog", what, "cancelled", Some(seconds * 1000));
     }
 
     /// Looks up a term on a screen and reads the explanation.
     pub fn look_up(&mut self, keys: &str, term: &str, seconds: u64) {
         let place = self.current_view.0;
-        self.note("help", term, place, None);
+        self.add_expected_line("help", term, place, None);
         self.read_dialog(keys, "explanation", seconds);
     }
 
     pub fn query(&mut self, sql: &str, error: &str) {
         self.press_unrecorded(&format!("'{}' f5 esc", sql.replace(' ', "' _ '")));
-        self.note("draft", "sql", "sent", Some(0));
-        self.note("query", "typed", error, None);
+        self.add_expected_line("draft", "sql", "sent", Some(0));
+        self.add_expected_line("query", "typed", error, None);
         self.diary.queries.push(sql.to_owned());
     }
 
@@ -193,8 +193,8 @@ impl<'a> ConsoleParticipant<'a> {
         self.press_unrecorded(&format!("'{}'", text.replace(' ', "' _ '")));
         self.wait(seconds);
         self.press_unrecorded("ctrl-s");
-        self.note("draft", "notes", "sent", Some(0));
-        self.note("note", "", "", None);
+        self.add_expected_line("draft", "notes", "sent", Some(0));
+        self.add_expected_line("note", "", "", None);
         self.diary.notes.push(text.to_owned());
     }
 
@@ -205,19 +205,19 @@ impl<'a> ConsoleParticipant<'a> {
         self.press_unrecorded(&format!("enter '{why}'"));
         self.wait(thinks);
         self.press_unrecorded("enter f enter");
-        self.note("dialog", "next week", "confirmed", Some((reviews + thinks) * 1000));
-        self.note("draft", "rationale", "sent", Some(0));
+        self.add_expected_line("dialog", "next week", "confirmed", Some((reviews + thinks) * 1000));
+        self.add_expected_line("draft", "rationale", "sent", Some(0));
         self.record_week(why, "form");
     }
 
     /// Records that a week was simulated.
     fn record_week(&mut self, why: &str, via: &str) {
         self.close_view();
-        self.note("advance", via, "", None);
-        self.note("week", "", "", None);
+        self.add_expected_line("advance", via, "", None);
+        self.add_expected_line("week", "", "", None);
         self.diary.weeks.push((why.to_owned(), true));
         if self.diary.weeks.len() as u32 == WEEKS {
-            self.note("end", "horizon", "", None);
+            self.add_expected_line("end", "horizon", "", None);
             (self.spends, self.diary.over) = (TimeCategory::After, true);
         }
     }
@@ -226,7 +226,7 @@ impl<'a> ConsoleParticipant<'a> {
     pub fn report(&mut self, seconds: u64) {
         self.wait(seconds);
         self.press_unrecorded("enter");
-        self.note("dialog", "week report", "cancelled", Some(seconds * 1000));
+        self.add_expected_line("dialog", "week report", "cancelled", Some(seconds * 1000));
     }
 
     /// Sets the price of plan A on the Tools screen.
@@ -243,15 +243,15 @@ impl<'a> ConsoleParticipant<'a> {
 
     fn type_price(&mut self, price: &str) {
         self.press_unrecorded(&format!("enter '{price}' enter ctrl-s"));
-        self.note("draft", "form set_prices", "sent", Some(0));
-        self.note("call", "set_prices", "form", None);
+        self.add_expected_line("draft", "form set_prices", "sent", Some(0));
+        self.add_expected_line("call", "set_prices", "form", None);
     }
 
     /// Reads the final page for a number of seconds.
-    pub fn read_the_end(&mut self, seconds: u64) {
+    pub fn read_final_page(&mut self, seconds: u64) {
         self.wait(seconds);
         self.press_unrecorded("enter");
-        self.note("dialog", "final page", "cancelled", Some(seconds * 1000));
+        self.add_expected_line("dialog", "final page", "cancelled", Some(seconds * 1000));
     }
 
     /// Closes the final page. The console then asks the next participant for a label.
@@ -268,15 +268,15 @@ impl<'a> ConsoleParticipant<'a> {
         self.press_unrecorded("; p");
         self.wait(2);
         self.press_unrecorded(&format!("'{reason}' enter"));
-        self.note("dialog", "reason for stopping the clock", "confirmed", Some(2000));
+        self.add_expected_line("dialog", "reason for stopping the clock", "confirmed", Some(2000));
         self.close_view();
-        self.note("clock", "stopped", "", None);
+        self.add_expected_line("clock", "stopped", "", None);
         self.spends = TimeCategory::Paused;
         self.wait(seconds);
         self.press_unrecorded("enter");
         self.spends = TimeCategory::Active;
-        self.current_view.2 = self.clock.moment();
-        self.note("clock", "started", "", Some(seconds * 1000));
+        self.current_view.2 = self.clock.time_ns();
+        self.add_expected_line("clock", "started", "", Some(seconds * 1000));
     }
 
     /// Presses no key for more than a minute.
@@ -284,22 +284,22 @@ impl<'a> ConsoleParticipant<'a> {
         self.press_unrecorded("down");
         self.spends = TimeCategory::Idle;
         self.wait(60);
-        self.note("session", "idle", "", Some(60_000));
+        self.add_expected_line("session", "idle", "", Some(60_000));
         self.wait(seconds - 60);
         self.press_unrecorded("up");
         self.spends = TimeCategory::Active;
-        self.note("session", "active", "", Some(seconds * 1000));
+        self.add_expected_line("session", "active", "", Some(seconds * 1000));
     }
 
     /// Focuses another window for some seconds.
     pub fn lose_focus(&mut self, seconds: u64) {
         self.console.send(Event::FocusLost);
-        self.note("session", "focus_lost", "", None);
+        self.add_expected_line("session", "focus_lost", "", None);
         self.spends = TimeCategory::Away;
         self.wait(seconds);
         self.console.send(Event::FocusGained);
         self.spends = TimeCategory::Active;
-        self.note("session", "focus_gained", "", None);
+        self.add_expected_line("session", "focus_gained", "", None);
     }
 
     /// Suspends the program for some seconds.
@@ -307,14 +307,14 @@ impl<'a> ConsoleParticipant<'a> {
         self.console.app.suspend();
         self.console.wait_until_idle().expect("nothing to wait for");
         self.close_view();
-        self.note("session", "suspended", "", None);
+        self.add_expected_line("session", "suspended", "", None);
         self.spends = TimeCategory::Away;
         self.wait(seconds);
         self.console.app.resume();
         self.console.wait_until_idle().expect("nothing to wait for");
         self.spends = TimeCategory::Active;
-        self.current_view.2 = self.clock.moment();
-        self.note("session", "resumed", "", None);
+        self.current_view.2 = self.clock.time_ns();
+        self.add_expected_line("session", "resumed", "", None);
     }
 
     /// Exceeds the time limit of a week: receives the warning and types a rationale. The week is filed without the rationale.
@@ -324,15 +324,15 @@ impl<'a> ConsoleParticipant<'a> {
                 / 1000;
         self.stay_active(WEEK_SECONDS - WARNING_SECONDS - spent);
         self.await_limit("1 of 10 min left for this week; then the week is submitted with naive forecasts");
-        self.note("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
+        self.add_expected_line("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
         self.press_unrecorded("n enter 'half'");
         self.assert_shows("half");
         self.assert_shows("1 of 10 min left for this week");
         self.stay_active(WARNING_SECONDS);
         self.await_limit(&format!("Week {} ·", self.diary.week()));
-        self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
-        self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
-        self.note("draft", "rationale", "left", Some(0));
+        self.add_expected_line("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
+        self.add_expected_line("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
+        self.add_expected_line("draft", "rationale", "left", Some(0));
         self.assert_shows("The time for this week ran out: the week was submitted with naive forecasts.");
         self.assert_shows("a week ago the program, at the time limit, forecast");
         self.assert_shows("Your draft was not submitted; it was recorded as a draft.");
@@ -378,13 +378,13 @@ impl<'a> ConsoleParticipant<'a> {
     /// Undoes the previous call.
     pub fn undo(&mut self) {
         self.press_unrecorded("u");
-        self.note("call", "set_prices", "palette", None);
+        self.add_expected_line("call", "set_prices", "palette", None);
     }
 
     /// Types half a rationale, loses the terminal, returns, and restores the text.
     pub fn hang_up_with_text(
         mut self,
-        lab: &Lab,
+        lab: &StudyLab,
         machine: &str,
         text: &'static str,
         seconds: u64,
@@ -395,8 +395,8 @@ impl<'a> ConsoleParticipant<'a> {
         back.console.assert_shows(text);
         back.wait(2);
         back.press_unrecorded("enter");
-        back.note("dialog", "restore texts", "confirmed", Some(2000));
-        back.note("draft", "rationale", "restored", Some(0));
+        back.add_expected_line("dialog", "restore texts", "confirmed", Some(2000));
+        back.add_expected_line("draft", "rationale", "restored", Some(0));
         back
     }
 
@@ -412,17 +412,17 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     fn record_leaving(&mut self, cause: &str) {
-        self.note("session", "closed", cause, None);
+        self.add_expected_line("session", "closed", cause, None);
         self.spends = TimeCategory::Away;
     }
 
     /// Loses the terminal and returns later in a new console.
-    fn hang_up_for(mut self, lab: &Lab, machine: &str, seconds: u64) -> ConsoleParticipant<'a> {
+    fn hang_up_for(mut self, lab: &StudyLab, machine: &str, seconds: u64) -> ConsoleParticipant<'a> {
         self.console.app.handle_message(Message::Signal(1));
         self.console.wait_until_idle().expect("the console exits");
-        self.console.flush_notes();
-        self.note("dialog", "next week", "cancelled", Some(4000));
-        self.note("draft", "rationale", "left", Some(0));
+        self.console.wait_for_jobs();
+        self.add_expected_line("dialog", "next week", "cancelled", Some(4000));
+        self.add_expected_line("draft", "rationale", "left", Some(0));
         self.close_view();
         self.record_leaving("hangup");
         self.wait(seconds);

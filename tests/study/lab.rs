@@ -8,7 +8,7 @@ use novamind::study::Study;
 use crate::support::home::{Home, ProgramOutput};
 
 /// A lab that runs a study on three machines.
-pub struct Lab {
+pub struct StudyLab {
     home: Home,
 }
 
@@ -81,10 +81,10 @@ most = 40
 required = true
 "#;
 
-impl Lab {
+impl StudyLab {
     /// Creates the study and its machines without runs.
-    pub fn new() -> Lab {
-        let lab = Lab { home: Home::new() };
+    pub fn new() -> StudyLab {
+        let lab = StudyLab { home: Home::new() };
         let folder = lab.study();
         fs::create_dir_all(folder.join("questions")).expect("a folder");
         let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");

@@ -15,12 +15,12 @@ mod scripts;
 mod support;
 mod tables;
 
-use lab::Lab;
+use lab::StudyLab;
 use support::python::recompute_measures;
 
 #[test]
 fn tables_match_twelve_scripted_participants() {
-    let lab = Lab::new();
+    let lab = StudyLab::new();
     let mut diaries = scripts::first_machine(&lab);
     diaries.extend(scripts::second_machine(&lab));
     diaries.extend(scripts::third_machine(&lab));

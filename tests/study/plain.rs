@@ -6,11 +6,11 @@ use std::process::{Child, ChildStdin, ChildStdout};
 use std::time::Instant;
 
 use crate::diary::{Diary, ExpectedLine, StudyQuestion, TimeCategory, WEEKS};
-use crate::lab::Lab;
+use crate::lab::StudyLab;
 
 /// The program in plain mode and the diary of its participant.
 pub struct PlainParticipant<'a> {
-    lab: &'a Lab,
+    lab: &'a StudyLab,
     machine: &'static str,
     child: Child,
     lines: ChildStdin,
@@ -22,16 +22,16 @@ pub struct PlainParticipant<'a> {
 
 impl<'a> PlainParticipant<'a> {
     /// Starts the program, enters a label and agrees to the consent text.
-    pub fn arrive(lab: &'a Lab, machine: &'static str, label: &'static str) -> PlainParticipant<'a> {
+    pub fn arrive(lab: &'a StudyLab, machine: &'static str, label: &'static str) -> PlainParticipant<'a> {
         let diary = Diary { label, is_real_time: true, ..Diary::default() };
         let mut plain = PlainParticipant::start(lab, machine, diary);
         plain.send_line("yes");
-        plain.note("start", "baseline", "short");
+        plain.add_expected_line("start", "baseline", "short");
         plain.record_opening();
         plain
     }
 
-    fn start(lab: &'a Lab, machine: &'static str, diary: Diary) -> PlainParticipant<'a> {
+    fn start(lab: &'a StudyLab, machine: &'static str, diary: Diary) -> PlainParticipant<'a> {
         let mut child = lab.program(machine).arg("--plain").spawn().expect("the program starts");
         let lines = child.stdin.take().expect("a pipe");
         let answers = BufReader::new(child.stdout.take().expect("a pipe"));
@@ -45,7 +45,7 @@ impl<'a> PlainParticipant<'a> {
     fn record_opening(&mut self) {
         self.wait_for(" of 28 · baseline");
         self.diary.sittings += 1;
-        self.note("session", "opened", "plain");
+        self.add_expected_line("session", "opened", "plain");
     }
 
     fn send_line(&mut self, line: &str) {
@@ -62,7 +62,7 @@ impl<'a> PlainParticipant<'a> {
         }
     }
 
-    fn note(&mut self, kind: &'static str, what: &str, which: &str) {
+    fn add_expected_line(&mut self, kind: &'static str, what: &str, which: &str) {
         let (what, which) = (what.to_owned(), which.to_owned());
         self.diary.lines.push(ExpectedLine {
             at: 0,
@@ -76,36 +76,36 @@ impl<'a> PlainParticipant<'a> {
 
     pub fn answer(&mut self, study_question: StudyQuestion, typed: &str, value: &str) {
         self.send_line(typed);
-        self.note("question", study_question.questionnaire, study_question.question);
-        self.note("answer", study_question.questionnaire, study_question.question);
+        self.add_expected_line("question", study_question.questionnaire, study_question.question);
+        self.add_expected_line("answer", study_question.questionnaire, study_question.question);
         self.diary.add_answer(study_question, value, 0);
     }
 
     pub fn call(&mut self, tool: &str, arguments: &str) {
         self.send_line(&format!("{tool} {arguments}"));
         self.wait_for(&format!("ok {tool}"));
-        self.note("call", tool, "plain");
+        self.add_expected_line("call", tool, "plain");
     }
 
     pub fn query(&mut self, sql: &str) {
         self.send_line(&format!("sql {sql}"));
-        self.note("query", "typed", "");
+        self.add_expected_line("query", "typed", "");
         self.diary.queries.push(sql.to_owned());
     }
 
     /// Adds a line to the notes.
     pub fn write_note(&mut self, text: &str) {
         self.send_line(&format!("memo {text}"));
-        self.note("note", "", "");
+        self.add_expected_line("note", "", "");
         self.diary.notes.push(format!("{text}\n"));
     }
 
     /// Looks up a term and views the inbox.
     pub fn look_up_and_read_inbox(&mut self, word: &str, term: &str) {
         self.send_line(&format!("explain {word}"));
-        self.note("help", term, "plain");
+        self.add_expected_line("help", term, "plain");
         self.send_line("inbox");
-        self.note("select", "command", "inbox");
+        self.add_expected_line("select", "command", "inbox");
     }
 
     pub fn pause(&mut self, reason: &str) {
@@ -117,8 +117,8 @@ impl<'a> PlainParticipant<'a> {
         let least = u64::try_from(inner.elapsed().as_millis()).unwrap_or(u64::MAX);
         self.send_line("resume");
         self.wait_for("the clock is running");
-        self.note("clock", "stopped", "");
-        self.note("clock", "started", "");
+        self.add_expected_line("clock", "stopped", "");
+        self.add_expected_line("clock", "started", "");
         self.diary.add_bounds(TimeCategory::Paused, least, elapsed_ms(before));
     }
 
@@ -126,11 +126,11 @@ impl<'a> PlainParticipant<'a> {
         self.send_line(&format!("next \"{why}\" naive"));
         let week = self.diary.weeks.len() + 1;
         self.wait_for(&format!("week {week} done"));
-        self.note("advance", "plain", "");
-        self.note("week", "", "");
+        self.add_expected_line("advance", "plain", "");
+        self.add_expected_line("week", "", "");
         self.diary.weeks.push((why.to_owned(), true));
         if self.diary.weeks.len() as u32 == WEEKS {
-            self.note("end", "horizon", "");
+            self.add_expected_line("end", "horizon", "");
             self.diary.over = true;
         }
     }
@@ -139,7 +139,7 @@ impl<'a> PlainParticipant<'a> {
     pub fn quit_and_return(mut self) -> PlainParticipant<'a> {
         let before = Instant::now();
         self.send_line("quit");
-        self.note("session", "closed", "quit");
+        self.add_expected_line("session", "closed", "quit");
         let code = self.child.wait().expect("the program ends");
         assert_eq!(code.code(), Some(0));
         self.reopen(before)
@@ -161,7 +161,7 @@ impl<'a> PlainParticipant<'a> {
         let sent = std::process::Command::new("kill").args(["-HUP", &self.child.id().to_string()]).status();
         assert!(sent.expect("sent").success());
         self.child.wait().expect("the program ends");
-        self.note("session", "closed", "hangup");
+        self.add_expected_line("session", "closed", "hangup");
         self.reopen(before)
     }
 
@@ -179,7 +179,7 @@ impl<'a> PlainParticipant<'a> {
     /// Completes the study.
     pub fn finish(mut self) -> Diary {
         self.wait_for("Thank you");
-        self.note("session", "closed", "quit");
+        self.add_expected_line("session", "closed", "quit");
         assert_eq!(self.child.wait().expect("the program ends").code(), Some(0));
         self.diary
     }

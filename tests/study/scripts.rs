@@ -4,11 +4,11 @@ use novamind::record::clock::{ScriptedClock, parse_nanoseconds};
 
 use crate::console::ConsoleParticipant;
 use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};
-use crate::lab::Lab;
+use crate::lab::StudyLab;
 use crate::plain::PlainParticipant;
 
 /// Plays the scripts of the first machine: a complete session, a pause, a time limit, and absences.
-pub fn first_machine(lab: &Lab) -> Vec<Diary> {
+pub fn first_machine(lab: &StudyLab) -> Vec<Diary> {
     let clock = ScriptedClock::start(parse_nanoseconds("2026-03-02T09:00:00Z"));
     vec![
         play_without_breaks(lab, &clock),
@@ -19,7 +19,7 @@ pub fn first_machine(lab: &Lab) -> Vec<Diary> {
 }
 
 /// Plays a complete session from the first page to the last page.
-fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_without_breaks(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P01", clock);
     player.agree(&[], 30);
     player.start_run();
@@ -44,7 +44,7 @@ fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
 }
 
 /// Stops the clock once, and leaves once for several hours.
-fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_with_breaks(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P02", clock);
     player.agree(&[], 20);
     player.start_run();
@@ -61,7 +61,7 @@ fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
 }
 
 /// Exceeds the time limit of the second week.
-fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_out_of_time(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P03", clock);
     player.agree(&[], 20);
     player.start_run();
@@ -76,7 +76,7 @@ fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
 }
 
 /// Presses no key for several minutes, focuses another window, and suspends the program.
-fn play_with_absences(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_with_absences(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P04", clock);
     player.agree(&[], 20);
     player.start_run();
@@ -106,13 +106,13 @@ fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
             player.answer(WEEK, "2 enter", "second", 5);
         }
     }
-    player.read_the_end(5);
+    player.read_final_page(5);
     player.answer(END, "'guessed' tab", "guessed", 6);
     player.close_final_page()
 }
 
 /// Plays the scripts of the second machine: participants decline, withdraw, mistype the label, and lose the terminal.
-pub fn second_machine(lab: &Lab) -> Vec<Diary> {
+pub fn second_machine(lab: &StudyLab) -> Vec<Diary> {
     let clock = ScriptedClock::start(parse_nanoseconds("2026-03-03T09:00:00Z"));
     vec![
         ConsoleParticipant::arrive(lab, "m2", "P05", &clock).decline(15),
@@ -122,7 +122,7 @@ pub fn second_machine(lab: &Lab) -> Vec<Diary> {
     ]
 }
 
-fn play_and_withdraw(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_and_withdraw(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P06", clock);
     player.agree(&[], 20);
     player.start_run();
@@ -133,7 +133,7 @@ fn play_and_withdraw(lab: &Lab, clock: &ScriptedClock) -> Diary {
 }
 
 /// Enters two wrong labels, runs an invalid query, and undoes a price.
-fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_with_mistakes(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P07", clock);
     player.agree(&["P99", "../x"], 20);
     player.start_run();
@@ -150,7 +150,7 @@ fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
 }
 
 /// Loses the terminal while typing a rationale.
-fn play_with_hang_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
+fn play_with_hang_up(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P08", clock);
     player.agree(&[], 20);
     player.start_run();
@@ -162,7 +162,7 @@ fn play_with_hang_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
 
 /// Plays the scripts of the third machine in plain mode: a pause, a killed program, a closed terminal, and a session
 /// in two parts.
-pub fn third_machine(lab: &Lab) -> Vec<Diary> {
+pub fn third_machine(lab: &StudyLab) -> Vec<Diary> {
     vec![
         play_in_plain_mode(lab),
         play_with_kill(lab),
@@ -171,7 +171,7 @@ pub fn third_machine(lab: &Lab) -> Vec<Diary> {
     ]
 }
 
-fn play_in_plain_mode(lab: &Lab) -> Diary {
+fn play_in_plain_mode(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P09");
     plain.answer(BEFORE, "4", "4");
     plain.call("set_prices", "A=12");
@@ -183,7 +183,7 @@ fn play_in_plain_mode(lab: &Lab) -> Diary {
     finish_plain_session(plain)
 }
 
-fn play_with_kill(lab: &Lab) -> Diary {
+fn play_with_kill(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P10");
     plain.answer(BEFORE, "1", "1");
     plain.play_week("go");
@@ -192,7 +192,7 @@ fn play_with_kill(lab: &Lab) -> Diary {
     finish_plain_session(plain)
 }
 
-fn play_with_closed_terminal(lab: &Lab) -> Diary {
+fn play_with_closed_terminal(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P11");
     plain.answer(BEFORE, "7", "7");
     plain.call("set_prices", "A=10 B=20");
@@ -201,7 +201,7 @@ fn play_with_closed_terminal(lab: &Lab) -> Diary {
     finish_plain_session(plain)
 }
 
-fn play_in_two_sessions(lab: &Lab) -> Diary {
+fn play_in_two_sessions(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P12");
     plain.answer(BEFORE, "2", "2");
     plain.play_week("go");

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::diary::{Diary, ExpectedAnswer, ExpectedLine, TimeCategory, WEEKS};
-use crate::lab::Lab;
+use crate::lab::StudyLab;
 
 /// A row of a table by column.
 type Row = BTreeMap<String, String>;
@@ -25,7 +25,7 @@ fn rows_of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
 }
 
 /// Compares every table with the actions of the scripts.
-pub fn compare_tables(lab: &Lab, diaries: &[Diary]) {
+pub fn compare_tables(lab: &StudyLab, diaries: &[Diary]) {
     let [runs, weeks, events, queries, answers, notes, forecasts] =
         ["runs", "weeks", "events", "queries", "answers", "notes", "forecasts"]
             .map(|table| read_table(&lab.tables_folder(), &format!("{table}.csv")));
@@ -229,7 +229,7 @@ fn expected_event_text(line: &ExpectedLine, real: bool) -> String {
 }
 
 /// Checks that the anonymized tables contain the same runs as the original tables.
-pub fn compare_anonymized_tables(lab: &Lab, diaries: &[Diary]) {
+pub fn compare_anonymized_tables(lab: &StudyLab, diaries: &[Diary]) {
     let public = lab.anonymise();
     for entry in fs::read_dir(&public).expect("a folder").flatten() {
         let text = fs::read_to_string(entry.path()).expect("a text");

@@ -223,7 +223,7 @@ fn every_parameter_is_explained_on_one_page() {
 
 /// Two documents state the length of lessons.
 #[test]
-fn minutes_of_lessons_in_documents_are_those_of_the_lessons() {
+fn documented_lesson_minutes_match_the_lessons() {
     let minutes: Vec<i64> = files(&root().join("configs/lessons"), "toml")
         .iter()
         .filter_map(|path| {

@@ -132,7 +132,7 @@ fn public_items_are_used() {
 }
 
 #[test]
-fn nothing_is_left_unfinished() {
+fn no_code_is_marked_as_unfinished() {
     let words = ["todo!", "unimplemented!", "dbg!", "#[ignore", "FIXME", "XXX"];
     let complaint =
         |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
@@ -196,7 +196,7 @@ fn simulator_uses_no_clock_files_or_unordered_maps() {
 
 /// Re-simulation shows hidden state, so only the crate that checks the permission may import the engine.
 #[test]
-fn only_insight_imports_the_engine_of_sessions() {
+fn only_insight_imports_the_session_engine() {
     // The session crate itself, and crates below it that cannot import it.
     const CRATES_WITHOUT_SESSION: [&str; 8] =
         ["assets", "base", "database", "record", "session", "tools", "voice", "world"];

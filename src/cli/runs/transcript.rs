@@ -25,7 +25,7 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
         )));
     }
     let bytes = std::fs::read(file).map_err(|error| named(error.to_string()))?;
-    let read = ForeignTranscript::read(&bytes).map_err(named)?;
+    let read = ForeignTranscript::parse(&bytes).map_err(named)?;
     let run_options = made_of.with_participant(read.player.as_deref().unwrap_or("transcript"));
     let new_run = run_options.new_run(Mode::Sandbox, context)?;
     let scenario = read.scenario.clone().filter(|_| !made_of.has_scenario());

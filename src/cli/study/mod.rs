@@ -88,6 +88,6 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         StudyCommand::Watch(options) => watch::run(&options, context),
         StudyCommand::Protocol { folder } => protocol::run(&folder, context),
         StudyCommand::Code => code::run(),
-        StudyCommand::Start { folder, play } => play::lead_participant(&folder, &play, context),
+        StudyCommand::Start { folder, play } => play::guide_participant(&folder, &play, context),
     }
 }

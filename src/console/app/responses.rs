@@ -293,7 +293,7 @@ impl App {
         }
         for layer in self.layers.iter_mut() {
             if let Layer::Dialog(dialog) = layer {
-                dialog.set_story(report);
+                dialog.set_run_report(report);
             }
         }
     }

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn idle_starts_after_a_minute_and_ends_with_a_key() {
+    fn idle_period_lasts_from_one_minute_without_input_to_the_next_key() {
         let at = Duration::from_secs;
         let mut watch = PresenceWatch::default();
         watch.start(at(10));

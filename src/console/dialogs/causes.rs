@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn causes_have_bars_and_link_to_the_form_or_the_rows() {
+    fn causes_link_to_the_form_or_the_rows() {
         let company = new_company();
         let mut dialog = dialog_with_answer(Ok(example_causes()));
         for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn dialog_shows_progress_and_esc_closes_it() {
+    fn causes_dialog_shows_progress_until_closed() {
         let company = new_company();
         let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), 9);
         assert!(dialog_text(&dialog, &company, 60, 16).contains("reading the record"));

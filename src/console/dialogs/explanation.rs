@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn last_links_open_the_screens_of_a_term() {
+    fn last_links_of_a_term_open_its_screens() {
         let company = new_company();
         let mut dialog =
             ExplainDialog::for_figure(&figure("runway", None), ParameterNumbers::bundled().into());
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn screens_list_their_terms_and_unknown_terms_show_a_fallback() {
+    fn screen_explanations_list_the_terms_of_the_screen() {
         let company = new_company();
         let shown = dialog_text(
             &ExplainDialog::for_screen(ScreenId::Inbox, ParameterNumbers::bundled().into()),

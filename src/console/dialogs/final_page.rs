@@ -116,7 +116,7 @@ impl Dialog for FinalPage {
         }
     }
 
-    fn set_story(&mut self, report: &Arc<RunReport>) {
+    fn set_run_report(&mut self, report: &Arc<RunReport>) {
         self.story = Some(report.clone());
     }
 
@@ -196,7 +196,7 @@ impl FinalPage {
             parts.push(ranking_lines(canvas, &standing, width, best, roomy));
         }
         parts.push(match &self.story {
-            Some(report) => facts(canvas, &report.measures, width, roomy, published),
+            Some(report) => measure_lines(canvas, &report.measures, width, roomy, published),
             None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],
         });
         if roomy
@@ -332,7 +332,7 @@ fn ranking_lines<'a>(
     lines
 }
 
-fn facts<'a>(
+fn measure_lines<'a>(
     canvas: &Canvas<'_>,
     measures: &BehaviorMeasures,
     width: u16,
@@ -357,7 +357,7 @@ fn facts<'a>(
             first_fitting(measures.channels.as_ref().map_or_else(Vec::new, best_channel_texts), long),
         ),
         ("targeted development", targeted),
-        ("tools", tools(measures, long)),
+        ("tools", tool_use_text(measures, long)),
         (
             "planning",
             first_fitting(
@@ -423,7 +423,7 @@ fn best_channel_texts(skill: &BestTriedChannelSpend) -> Vec<String> {
 }
 
 /// Describes the calls per week and as many of the most used tools as fit.
-fn tools(measures: &BehaviorMeasures, room: usize) -> String {
+fn tool_use_text(measures: &BehaviorMeasures, room: usize) -> String {
     let mut text = format!("{:.1} calls per week", measures.tools.per_week);
     for (tool, calls) in &measures.tools.tools {
         let more = format!(" · {tool} {calls}×");

@@ -127,7 +127,7 @@ pub trait Dialog {
     fn take_answers(&mut self) {}
 
     /// Sets the run report, for dialogs that show it.
-    fn set_story(&mut self, _: &Arc<RunReport>) {}
+    fn set_run_report(&mut self, _: &Arc<RunReport>) {}
 
     /// Sets the debrief of the lesson, for dialogs that show it.
     fn set_debrief(&mut self, _: &Arc<Result<Debrief, Rejection>>) {}

@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_rank_before_texts_and_words_before_letters() {
+    fn matches_are_ranked_by_kind_and_by_words() {
         let mut palette =
             CommandPalette::new(&KeyBindings::bundled(), &new_company(), &QueryLibrary::bundled());
         let mut found = |typed: &str| {
@@ -442,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn recent_tools_are_first_and_unavailable_entries_show_a_reason() {
+    fn unavailable_entries_show_a_reason() {
         let mut session = crate::test_kit::new_session();
         let fresh = CommandPalette::new(
             &KeyBindings::bundled(),

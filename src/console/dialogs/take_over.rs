@@ -99,7 +99,7 @@ mod tests {
     use crate::test_kit::{dialog_action, dialog_text, new_company};
 
     #[test]
-    fn mode_is_chosen_and_confirmation_is_required() {
+    fn take_over_starts_with_the_chosen_mode() {
         let company = new_company();
         let mut dialog = TakeOverDialog::new(84, 13);
         let picture = dialog_text(&dialog, &company, 80, 24);

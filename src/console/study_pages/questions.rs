@@ -435,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn smallest_window_shows_the_choice_and_every_line() {
+    fn every_line_of_a_question_is_reachable_in_the_smallest_window() {
         let company = new_company();
         let words: Vec<String> = (1..=120).map(|at| format!("word{at}.")).collect();
         for form in &all_forms()[1..4] {

@@ -86,7 +86,7 @@ fn assert_contributions_add_up(why: &ChangeExplanation) {
 }
 
 #[test]
-fn changed_settings_rank_first_with_their_branch_difference() {
+fn changed_settings_rank_first_and_equal_branch_differences() {
     let runs = tempfile::tempdir().expect("a folder");
     let control = play_weeks(runs.path(), Mode::Debug, 3, None);
     for (tool, arguments, figure) in [
@@ -181,7 +181,7 @@ fn group_cancellations_add_up_per_cause() {
 }
 
 #[test]
-fn figures_of_a_week_share_simulations() {
+fn questions_about_a_week_share_simulations() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_weeks(runs.path(), Mode::Sandbox, 3, Some(("set_prices", json!({"A": 24}))));
     let mut causes = open_causes(&session);

@@ -75,7 +75,7 @@ fn true_curve_matches_simulated_conversion_within_two_points() {
 }
 
 #[test]
-fn unfinished_run_depends_only_on_studied_estimates() {
+fn explorer_of_an_unfinished_run_depends_only_on_estimates() {
     let hidden = [
         ("group.S1.c_max_std", "1"),
         ("group.S1.q_min_std", "0.3"),

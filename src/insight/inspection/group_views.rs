@@ -35,13 +35,16 @@ impl Inspector<'_> {
         let day = permit.day();
         let seen = self.hidden_day(&permit, day)?;
         let evening = &seen.groups[group];
-        let evening = (evening.active, evening.satisfaction_moments.map(|(satisfaction, _)| satisfaction));
+        let evening = (
+            evening.active,
+            evening.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction),
+        );
         let yesterday = match day {
             1 => None,
             day => Some(self.hidden_day(&permit, day - 1)?.satisfaction[group]),
         };
         let evenings = self.values_of_recent_days(&permit, group, day, |day_end| {
-            day_end.satisfaction_moments.map(|(satisfaction, _)| satisfaction)
+            day_end.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction)
         })?;
         Ok(SatisfactionEquation::new(group, day, seen.satisfaction[group], evening, yesterday, evenings))
     }

@@ -66,7 +66,7 @@ pub(crate) struct GroupDayEnd {
     pub(crate) active: u32,
     pub(crate) reputation: f64,
     /// Mean satisfaction and mean relationship of active subscriptions; `None` without subscriptions.
-    pub(crate) satisfaction_moments: Option<(f64, f64)>,
+    pub(crate) mean_satisfaction_and_relationship: Option<(f64, f64)>,
     /// Number of active subscriptions with an open issue.
     pub(crate) open_issues: u32,
     /// Product quality before the multiplier of the model tier.
@@ -168,7 +168,7 @@ impl DayObserver for HiddenDayRecorder {
         self.lock().today.reputation.add_change(write);
     }
 
-    fn on_reputation_settled(
+    fn after_reputation_changes(
         &self,
         moods: &ByGroup<ReputationContribution>,
         market: &Market,
@@ -246,7 +246,7 @@ fn group_day_end(group: Group, world: &World, params: &Params) -> GroupDayEnd {
         info_level: market.knowledge[group].level.into(),
         active: world.customers.groups[group].active_count(),
         reputation: market.reputation.get(group),
-        satisfaction_moments: mean_satisfaction(world, group),
+        mean_satisfaction_and_relationship: mean_satisfaction(world, group),
         open_issues: blocks().map(Block::open_issues).sum(),
         product_quality: product.quality(group, params),
         budget: snapshot.c_max,

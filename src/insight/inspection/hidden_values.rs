@@ -80,7 +80,7 @@ fn true_group_values(group: Group, seen: &HiddenDay) -> TrueGroupValues {
     TrueGroupValues {
         is_known: seen.known_groups[group],
         reputation: evening.reputation,
-        satisfaction: evening.satisfaction_moments.map(|(satisfaction, _)| satisfaction),
+        satisfaction: evening.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction),
         expected_leads: seen.lead_factors[group].expected(),
         budget: evening.budget,
         quality_floor: evening.quality_floor,

@@ -7,7 +7,7 @@ use novamind_world::market::Market;
 use novamind_world::params::Params;
 use novamind_world::reputation::{
     ReputationBook, ReputationCause, ReputationContribution, ReputationWrite, SpilloverEffect, daily_change,
-    spillover_effect, unrounded_daily_change,
+    daily_change_before_threshold, spillover_effect,
 };
 
 /// The cancellations of a day and their effect on reputation.
@@ -93,7 +93,7 @@ impl ReputationDay {
         self.after = ByGroup::from_fn(|group| market.reputation.get(group));
         for group in Group::all().filter(|group| moods[*group].count > 0) {
             let (mood, change) = (&moods[group], daily_change(&moods[group], reputation));
-            let called = unrounded_daily_change(mood, reputation);
+            let called = daily_change_before_threshold(mood, reputation);
             self.contributions[group] = SubscriberContribution {
                 subscribers: mood.count,
                 requested_change: called,

@@ -30,7 +30,7 @@ fn shared_runs_are_equal_unless_cash_is_between_floors() {
 }
 
 #[test]
-fn baseline_report_shows_one_seed_as_in_the_paper_and_many_with_spread() {
+fn baseline_report_shows_paper_columns_for_one_seed_and_spread_for_many() {
     let grid = PolicyGrid::find(PAPER_GRID).expect("a grid");
     let few: Vec<GridPoint> = [0, 12].map(|at: usize| grid.configurations[at].clone()).into();
     let few = PolicyGrid { configurations: few, ..grid };

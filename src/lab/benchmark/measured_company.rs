@@ -13,7 +13,7 @@ pub const POLICY: &str = "P1a";
 /// Seed of all measured companies.
 pub const SEED: u64 = 42;
 /// Number of weeks after which every subscriber has been billed at least once.
-const SETTLING_WEEKS: u32 = 5;
+const FULL_BILLING_WEEKS: u32 = 5;
 
 /// Where the run of a measured company is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,7 +120,7 @@ impl MeasuredCompany {
 
     /// Plays weeks until every subscriber has been billed once.
     pub fn play_billing_period(&mut self) -> Result<(), BenchError> {
-        for _ in 0..SETTLING_WEEKS {
+        for _ in 0..FULL_BILLING_WEEKS {
             self.measure_week()?;
         }
         Ok(())

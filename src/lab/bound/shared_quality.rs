@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn without_competitors_expectations_stay() {
+    fn expectations_are_constant_without_competitors() {
         let mut params = Params::bundled();
         params.competitor.competitor_events_disabled = true;
         let quality_path = shared_quality_path(&BoundAssumptions::from_paper(3.0), &params);

@@ -47,7 +47,7 @@ impl Interpreter {
                 Ok(self.list_threads(&ThreadSelection { all: true, filter: None }))
             }
             [Argument { key: None, value, .. }] if value.is_u64() => {
-                Ok(self.thread_of_enterprise(value.as_u64().unwrap_or_default()))
+                Ok(self.show_newest_thread(value.as_u64().unwrap_or_default()))
             }
             _ => Err(argument_error(
                 arguments,
@@ -58,7 +58,7 @@ impl Interpreter {
     }
 
     /// Executes `inbox [all] where CONDITION`. `text` is the text after the command and begins at `column`.
-    pub(super) fn inbox_where(&mut self, text: &str, column: usize) -> CommandResponse {
+    pub(super) fn run_inbox_where(&mut self, text: &str, column: usize) -> CommandResponse {
         let before = text.find("where").map_or(0, |at| at + "where".len());
         let (head, condition) = text.split_at(before);
         match Filter::parse(condition) {

@@ -13,7 +13,7 @@ use novamind_tools::{Rejection, ToolId};
 
 impl Interpreter {
     /// Executes `queries`.
-    pub(super) fn queries(&self) -> CommandResponse {
+    pub(super) fn list_queries(&self) -> CommandResponse {
         let queries = self.library.queries();
         let width = queries.iter().map(|query| query.name.chars().count()).max().unwrap_or(0);
         let line = |query: &NamedQuery| format!("{:<width$}  {}", query.name, query.title);
@@ -25,7 +25,7 @@ impl Interpreter {
     }
 
     /// Executes `queries NAME`.
-    pub(super) fn named_query(
+    pub(super) fn run_named_query(
         &mut self,
         name: &str,
         arguments: &[Argument],

@@ -40,7 +40,7 @@ impl Interpreter {
     }
 
     /// Shows the newest thread of an enterprise.
-    pub(super) fn thread_of_enterprise(&mut self, customer: u64) -> CommandResponse {
+    pub(super) fn show_newest_thread(&mut self, customer: u64) -> CommandResponse {
         let newest = format!(
             "{TURNS_SQL} WHERE thread_id = (SELECT max(thread_id) FROM enterprise_turns WHERE customer_id = {customer}) \
              ORDER BY message_id"

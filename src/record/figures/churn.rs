@@ -18,7 +18,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn churn_divides_by_subscribers_before() {
+    fn churn_divides_by_subscribers_before_the_period() {
         assert_eq!(churn(5.0, 200.0), Some(0.025));
         assert_eq!((churn(0.0, 3.0), churn(0.0, 0.0)), (Some(0.0), None));
     }

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::lesson_call::LessonCall;
-use super::measurement::{Measurement, MeasurementFile};
+use super::measurement::{Measurement, RawMeasurement};
 use novamind_tools::ToolId;
 
 /// The contents of a lesson file.
@@ -170,7 +170,7 @@ pub struct LessonStep {
 
 /// A question that the student answers before a step is simulated.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "GuessFile")]
+#[serde(try_from = "RawGuess")]
 pub struct Guess {
     /// Question for the student.
     pub question: String,
@@ -212,7 +212,7 @@ pub enum GuessForm {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct GuessFile {
+struct RawGuess {
     question: String,
     figure: Option<String>,
     sql: Option<String>,
@@ -224,14 +224,14 @@ struct GuessFile {
     told: OutcomeTiming,
 }
 
-impl TryFrom<GuessFile> for Guess {
+impl TryFrom<RawGuess> for Guess {
     type Error = String;
 
-    fn try_from(file: GuessFile) -> Result<Guess, String> {
-        let GuessFile { question, figure, sql, over, unit, choices, answer, told: outcome_timing } = file;
+    fn try_from(file: RawGuess) -> Result<Guess, String> {
+        let RawGuess { question, figure, sql, over, unit, choices, answer, told: outcome_timing } = file;
         let form = match (choices, answer) {
             (None, None) => GuessForm::Number {
-                outcome: Measurement::try_from(MeasurementFile { figure, sql, over })?,
+                outcome: Measurement::try_from(RawMeasurement { figure, sql, over })?,
                 unit: unit.unwrap_or_default(),
             },
             (Some(choices), Some(answer)) if figure.is_none() && sql.is_none() => {
@@ -251,7 +251,7 @@ impl TryFrom<GuessFile> for Guess {
 
 /// A goal that the student should reach in a step.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "GoalFile")]
+#[serde(try_from = "RawGoal")]
 pub struct LessonGoal {
     /// Description of the goal for the student.
     pub text: String,
@@ -297,7 +297,7 @@ impl GoalBound {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct GoalFile {
+struct RawGoal {
     text: String,
     figure: Option<String>,
     sql: Option<String>,
@@ -308,11 +308,11 @@ struct GoalFile {
     unit: Option<String>,
 }
 
-impl TryFrom<GoalFile> for LessonGoal {
+impl TryFrom<RawGoal> for LessonGoal {
     type Error = String;
 
-    fn try_from(file: GoalFile) -> Result<LessonGoal, String> {
-        let GoalFile { text, figure, sql, over, at_least, at_most, relative, unit } = file;
+    fn try_from(file: RawGoal) -> Result<LessonGoal, String> {
+        let RawGoal { text, figure, sql, over, at_least, at_most, relative, unit } = file;
         let bounds = [
             at_least.map(GoalBound::AtLeast),
             at_most.map(GoalBound::AtMost),
@@ -322,7 +322,7 @@ impl TryFrom<GoalFile> for LessonGoal {
         let (Some(bound), None) = (bounds.next(), bounds.next()) else {
             return Err("a goal needs exactly one of at_least, at_most and relative".to_owned());
         };
-        let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
+        let measurement = Measurement::try_from(RawMeasurement { figure, sql, over })?;
         let in_dollars = match unit.as_deref() {
             None => measurement.is_in_dollars(),
             Some("$") if measurement.needs_database() => true,
@@ -334,7 +334,7 @@ impl TryFrom<GoalFile> for LessonGoal {
 
 /// A common mistake that the lesson detects and explains.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "PitfallFile")]
+#[serde(try_from = "RawPitfall")]
 pub struct Pitfall {
     /// Name of the pitfall.
     pub name: String,
@@ -366,7 +366,7 @@ impl PitfallBound {
     }
 
     /// Returns whether a value triggers the pitfall.
-    pub fn is_exceeded_by(self, value: f64) -> bool {
+    pub fn is_triggered_by(self, value: f64) -> bool {
         match self {
             PitfallBound::Above(limit) => value > limit,
             PitfallBound::Below(limit) => value < limit,
@@ -376,7 +376,7 @@ impl PitfallBound {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PitfallFile {
+struct RawPitfall {
     name: String,
     part: Option<usize>,
     figure: Option<String>,
@@ -386,17 +386,17 @@ struct PitfallFile {
     say: String,
 }
 
-impl TryFrom<PitfallFile> for Pitfall {
+impl TryFrom<RawPitfall> for Pitfall {
     type Error = String;
 
-    fn try_from(file: PitfallFile) -> Result<Pitfall, String> {
-        let PitfallFile { name, part, figure, sql, above, below, say } = file;
+    fn try_from(file: RawPitfall) -> Result<Pitfall, String> {
+        let RawPitfall { name, part, figure, sql, above, below, say } = file;
         let bound = match (above, below) {
             (Some(above), None) => PitfallBound::Above(above),
             (None, Some(below)) => PitfallBound::Below(below),
             _ => return Err("a pitfall needs either above or below".to_owned()),
         };
-        let measurement = Measurement::try_from(MeasurementFile { figure, sql, over: None })?;
+        let measurement = Measurement::try_from(RawMeasurement { figure, sql, over: None })?;
         Ok(Pitfall { name, part: part_index(part)?, measurement, bound, say })
     }
 }
@@ -434,7 +434,7 @@ pub const MEASURED_SEEDS: std::ops::RangeInclusive<u64> = 1..=6;
 
 /// A figure that lesson texts insert with `{name}`: the mean of a measurement over [`MEASURED_SEEDS`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "MeasuredFile")]
+#[serde(try_from = "RawMeasuredFigure")]
 pub struct MeasuredFigure {
     /// Name of the figure in lesson texts.
     pub name: String,
@@ -460,7 +460,7 @@ pub struct MeasuredFigure {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MeasuredFile {
+struct RawMeasuredFigure {
     name: String,
     part: Option<usize>,
     text: String,
@@ -477,13 +477,13 @@ struct MeasuredFile {
     parameters: BTreeMap<String, Value>,
 }
 
-impl TryFrom<MeasuredFile> for MeasuredFigure {
+impl TryFrom<RawMeasuredFigure> for MeasuredFigure {
     type Error = String;
 
-    fn try_from(file: MeasuredFile) -> Result<MeasuredFigure, String> {
-        let MeasuredFile { name, part, text, week, value, unit, play, scenario, parameters, .. } = file;
-        let MeasuredFile { figure, sql, over, .. } = file;
-        let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
+    fn try_from(file: RawMeasuredFigure) -> Result<MeasuredFigure, String> {
+        let RawMeasuredFigure { name, part, text, week, value, unit, play, scenario, parameters, .. } = file;
+        let RawMeasuredFigure { figure, sql, over, .. } = file;
+        let measurement = Measurement::try_from(RawMeasurement { figure, sql, over })?;
         let (part, unit) = (part_index(part)?, unit.unwrap_or_default());
         if !matches!(unit.as_str(), "" | "$" | "%" | "day") {
             return Err(format!("the unit must be $, % or day, not {unit}"));
@@ -495,7 +495,7 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
 
 /// Calls at the start of certain weeks of a company.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "ScheduleFile")]
+#[serde(try_from = "RawScheduledCalls")]
 pub struct ScheduledCalls {
     /// Part in which the calls are executed, from 0.
     pub part: usize,
@@ -511,7 +511,7 @@ pub struct ScheduledCalls {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ScheduleFile {
+struct RawScheduledCalls {
     part: Option<usize>,
     week: u32,
     every: Option<u32>,
@@ -519,11 +519,11 @@ struct ScheduleFile {
     calls: Vec<LessonCall>,
 }
 
-impl TryFrom<ScheduleFile> for ScheduledCalls {
+impl TryFrom<RawScheduledCalls> for ScheduledCalls {
     type Error = String;
 
-    fn try_from(file: ScheduleFile) -> Result<ScheduledCalls, String> {
-        let ScheduleFile { part, week, every, until, calls } = file;
+    fn try_from(file: RawScheduledCalls) -> Result<ScheduledCalls, String> {
+        let RawScheduledCalls { part, week, every, until, calls } = file;
         if every == Some(0) || (every.is_none() && until.is_some()) {
             return Err("every must be at least 1 week, and until needs every".to_owned());
         }

@@ -37,16 +37,16 @@ pub enum WeekAggregation {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct MeasurementFile {
+pub(super) struct RawMeasurement {
     pub figure: Option<String>,
     pub sql: Option<String>,
     pub over: Option<String>,
 }
 
-impl TryFrom<MeasurementFile> for Measurement {
+impl TryFrom<RawMeasurement> for Measurement {
     type Error = String;
 
-    fn try_from(file: MeasurementFile) -> Result<Measurement, String> {
+    fn try_from(file: RawMeasurement) -> Result<Measurement, String> {
         let source = match (file.figure.as_deref(), file.sql) {
             (Some("cash"), None) => NumberSource::Cash,
             (Some(name), None) => {
@@ -142,7 +142,7 @@ mod tests {
 
     fn parse(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
         let owned = |text: Option<&str>| text.map(str::to_owned);
-        Measurement::try_from(MeasurementFile { figure: owned(figure), sql: owned(sql), over: owned(over) })
+        Measurement::try_from(RawMeasurement { figure: owned(figure), sql: owned(sql), over: owned(over) })
     }
 
     #[test]

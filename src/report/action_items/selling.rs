@@ -13,7 +13,7 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
 const MIN_WEEKLY_LEADS: u32 = 20;
-const LOW_CONVERSION: f64 = 0.1;
+const MIN_CONVERSION: f64 = 0.1;
 /// Minimum share of the estimated usage that a sufficient quota covers.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
 /// Age at which an estimate counts as outdated, days.
@@ -170,7 +170,7 @@ pub(super) fn groups_without_sales(situation: &DiagnosisContext<'_>) -> Vec<Acti
     let Some(week) = situation.last_group_week().filter(|_| on_sale) else { return Vec::new() };
     let few = |estimates: &&Estimates| {
         let figures = &week[estimates.group];
-        figures.leads >= MIN_WEEKLY_LEADS && figures.conversion().is_some_and(|share| share < LOW_CONVERSION)
+        figures.leads >= MIN_WEEKLY_LEADS && figures.conversion().is_some_and(|share| share < MIN_CONVERSION)
     };
     situation
         .individuals()

@@ -3,7 +3,7 @@
 use novamind_base::formatting::grouped_number;
 
 /// Minimum number of digits before the decimal point with which a number is written in powers of ten.
-const MAX_INTEGER_DIGITS: usize = 16;
+const MIN_SCIENTIFIC_DIGITS: usize = 16;
 
 /// Normalizes the numbers in lines of text.
 pub fn clean_up_numbers(lines: Vec<String>) -> Vec<String> {
@@ -47,7 +47,7 @@ pub fn clean_up_line(text: &str) -> String {
 fn to_scientific(number: &str) -> Option<String> {
     let plain = number.replace(',', "");
     let digits = plain.split('.').next().map_or(0, str::len);
-    let value: f64 = plain.parse().ok().filter(|_| digits >= MAX_INTEGER_DIGITS)?;
+    let value: f64 = plain.parse().ok().filter(|_| digits >= MIN_SCIENTIFIC_DIGITS)?;
     Some(grouped_number(value, 0))
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::PlayerEffort;
-use novamind_record::clock::format_moment;
+use novamind_record::clock::format_timestamp;
 use novamind_record::trajectory::record::{
     Activity, ClosedDays, LimitEvent, Outcome, Reversal, ScreenView, SubmittedForecast,
 };
@@ -109,7 +109,7 @@ impl Timeline {
             let began = places.partition_point(|place| *place <= from).saturating_sub(1);
             self.breaks.push(PlayBreak {
                 day: lines[last].day,
-                from: format_moment(lines[began].at_nanoseconds() + from - places[began]),
+                from: format_timestamp(lines[began].at_nanoseconds() + from - places[began]),
                 to: lines[last].at.clone(),
                 seconds,
             });

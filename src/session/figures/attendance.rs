@@ -475,7 +475,7 @@ mod tests {
     }
 
     #[test]
-    fn idle_time_starts_at_the_last_key() {
+    fn idle_time_starts_at_the_last_key_press() {
         let run = attendance_from_records(&[
             (0, opened_record("console")),
             (660, view_record()),

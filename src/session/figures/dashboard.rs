@@ -58,19 +58,19 @@ pub fn dashboard_text(
     waiting: WaitingLeads,
 ) -> String {
     let mut text = format!("=== Week {} (day {}) ===\n", week_of_day(world.day), world.day);
-    header_block(&mut text, stocks);
+    write_header_block(&mut text, stocks);
     if let Some(week) = week {
-        week_block(&mut text, week);
+        write_week_block(&mut text, week);
     }
-    settings_block(&mut text, world);
-    quality_block(&mut text, world, params);
-    calculations_block(&mut text, calculated);
-    posts_block(&mut text, world, params);
-    inbox_block(&mut text, week, waiting);
+    write_settings_block(&mut text, world);
+    write_quality_block(&mut text, world, params);
+    write_calculations_block(&mut text, calculated);
+    write_posts_block(&mut text, world, params);
+    write_inbox_block(&mut text, week, waiting);
     text
 }
 
-fn header_block(text: &mut String, stocks: &WeekFigures) {
+fn write_header_block(text: &mut String, stocks: &WeekFigures) {
     let _ = writeln!(
         text,
         "Cash: {} | Individual Subscribers: {}",
@@ -84,7 +84,7 @@ fn header_block(text: &mut String, stocks: &WeekFigures) {
     );
 }
 
-fn week_block(text: &mut String, week: &WeekFigures) {
+fn write_week_block(text: &mut String, week: &WeekFigures) {
     let overload = if week.overload_peak > 0.0 { percent(week.overload_peak, 1) } else { "None".to_owned() };
     let outage =
         if week.outage { format!("yes ({} minutes)", week.downtime_minutes) } else { "no".to_owned() };
@@ -127,7 +127,7 @@ fn week_block(text: &mut String, week: &WeekFigures) {
     );
 }
 
-fn settings_block(text: &mut String, world: &World) {
+fn write_settings_block(text: &mut String, world: &World) {
     let core = &world.settings.core;
     let list =
         |value: &dyn Fn(Plan) -> String| Plan::ALL.map(|plan| format!("{plan} {}", value(plan))).join(" | ");
@@ -147,7 +147,7 @@ fn settings_block(text: &mut String, world: &World) {
     );
 }
 
-fn quality_block(text: &mut String, world: &World, params: &Params) {
+fn write_quality_block(text: &mut String, world: &World, params: &Params) {
     let core = &world.settings.core;
     let _ = writeln!(
         text,
@@ -164,7 +164,7 @@ fn quality_block(text: &mut String, world: &World, params: &Params) {
     }
 }
 
-fn calculations_block(text: &mut String, calculated: &[CalculationOutput]) {
+fn write_calculations_block(text: &mut String, calculated: &[CalculationOutput]) {
     if calculated.is_empty() {
         return;
     }
@@ -177,7 +177,7 @@ fn calculations_block(text: &mut String, calculated: &[CalculationOutput]) {
     }
 }
 
-fn posts_block(text: &mut String, world: &World, params: &Params) {
+fn write_posts_block(text: &mut String, world: &World, params: &Params) {
     let week = params.run.days_per_week;
     let posts = world.market.social.own.iter();
     let recent: Vec<&OwnPost> =
@@ -201,7 +201,7 @@ fn posts_block(text: &mut String, world: &World, params: &Params) {
     }
 }
 
-fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: WaitingLeads) {
+fn write_inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: WaitingLeads) {
     let _ = writeln!(text, "\n--- Inbox ---");
     let mut lines = 0;
     if let Some(week) = week.filter(|week| week.threads_opened > 0) {

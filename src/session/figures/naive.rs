@@ -16,12 +16,12 @@ use novamind_world::events::Category;
 const YOUNG_WEEKS: usize = 4;
 /// Ratio of current income to the income four weeks before above which income counts as growing. Below the inverse
 /// ratio, income counts as shrinking.
-const GROWTH_FACTOR: f64 = 1.3;
+const MIN_GROWTH_RATIO: f64 = 1.3;
 /// Number of past errors per horizon that affect the width of an interval.
 const MAX_REMEMBERED_ERRORS: usize = 8;
 /// Weight of past errors in the width of an interval. The width is multiplied by this weight times the root mean
 /// square of past errors (in intervals), if the product is above 1.
-const ERROR_WIDENING_FACTOR: f64 = 1.5;
+const PAST_ERROR_WEIGHT: f64 = 1.5;
 /// Maximum past error that is considered, in intervals.
 const MAX_ERROR_INTERVALS: f64 = 10.0;
 /// Minimum expected cash flow, dollars per day.
@@ -75,8 +75,8 @@ impl GrowthStage {
         match (now > 0.0, before > 0.0) {
             (false, false) => GrowthStage::Idle,
             (true, false) => GrowthStage::Growing,
-            _ if now > before * GROWTH_FACTOR => GrowthStage::Growing,
-            _ if now * GROWTH_FACTOR < before => GrowthStage::Shrinking,
+            _ if now > before * MIN_GROWTH_RATIO => GrowthStage::Growing,
+            _ if now * MIN_GROWTH_RATIO < before => GrowthStage::Shrinking,
             _ => GrowthStage::Steady,
         }
     }
@@ -265,7 +265,7 @@ fn widening_factor(made: &[Hindcast], before: usize) -> f64 {
     let squares: Vec<f64> =
         known.map(|hindcast| hindcast.error_intervals * hindcast.error_intervals).collect();
     let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
-    (ERROR_WIDENING_FACTOR * mean.sqrt()).max(1.0)
+    (PAST_ERROR_WEIGHT * mean.sqrt()).max(1.0)
 }
 
 pub(crate) fn naive_forecasts(

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn describe_error_names_the_side_and_no_negative_zero() {
+    fn describe_error_returns_low_high_or_exact() {
         let texts = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2]
             .map(|outcome| forecast_with_outcome(outcome).describe_error());
         let descriptions = texts.each_ref().map(|text| text.as_deref().unwrap_or_default());

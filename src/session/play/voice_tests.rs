@@ -223,7 +223,7 @@ fn baseline_run_has_a_model_only_if_its_study_names_one() {
 }
 
 #[test]
-fn missing_key_prevents_the_run_and_other_model_is_rejected() {
+fn missing_key_is_rejected_and_other_model_is_not_connected() {
     let runs = tempfile::tempdir().expect("a folder");
     let stub = StubModel::start(StubBehavior::Correct);
     let mut named = stub.configuration(false, true, 30);

@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn receive_joins_partial_lines_and_splits_joined_ones() {
+    fn receive_joins_partial_lines_and_splits_joined_lines() {
         let (mut channel, other) = Channel::pair().expect("a socket");
         let mut other = UnixStream::from(other);
         let mut receive = || channel.receive(Duration::from_millis(5));

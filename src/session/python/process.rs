@@ -237,7 +237,7 @@ os.write(socket, b'{"ask":"vars"}\n')
     }
 
     #[test]
-    fn script_is_canceled_during_a_blocked_write() {
+    fn script_is_cancelled_during_a_blocked_write() {
         let (end, _) = serve_script("time.sleep(600)", Duration::from_secs(600), true);
         assert!(matches!(end, ScriptEnd::Stopped), "{end:?}");
     }

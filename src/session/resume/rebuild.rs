@@ -90,14 +90,14 @@ impl Session {
         let keeping = StoreFunctions {
             may_store: may_store_end,
             store_database: |folder, key| rebuild_database(folder, key, &mut |_, _| {}).is_ok(),
-            store_snapshot: Session::store_end,
+            store_snapshot: Session::store_final_snapshot,
         };
         Session::open_with_cache(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
     /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if the run is in use, or if its
     /// folder cannot be written.
-    fn store_end(&self, folder: &Path) {
+    fn store_final_snapshot(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
             self.write_snapshot(SnapshotTarget::new(folder, self.seal_key()), false);
         }

@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn recover_rejects_intact_runs_and_missing_first_lines() {
+    fn recover_rejects_intact_runs_and_runs_without_a_first_line() {
         let run = record_run(Mode::Sandbox, 1);
         let whole = recover(&run.folder, &SealKey::default()).expect_err("it is whole").to_string();
         assert!(whole.contains("not damaged"), "{whole}");

@@ -117,9 +117,9 @@ impl Tool for GetSocialPosts {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<PostLimit, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<PostLimit, Rejection> {
         let number = |name| {
-            arguments.read(name, |value, name| {
+            arguments.parse_argument(name, |value, name| {
                 json_i64(value).ok_or_else(|| wrong_type_rejection(name, "a whole number"))
             })
         };

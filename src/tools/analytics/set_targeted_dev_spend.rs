@@ -67,7 +67,7 @@ impl Tool for SetTargetedDevSpend {
         )])
     }
 
-    fn read(
+    fn parse_arguments(
         &self,
         view: &ToolContext<'_>,
         arguments: &Arguments,

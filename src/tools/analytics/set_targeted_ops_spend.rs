@@ -131,7 +131,11 @@ impl Tool for SetTargetedOpsSpend {
         }
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<SupportScopes, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<SupportScopes, Rejection> {
         let field = match (arguments.get("by_group"), arguments.get("targeted_spend")) {
             (Some(_), Some(_)) => {
                 let message = "give targeted_spend or by_group, not both";
@@ -141,12 +145,15 @@ impl Tool for SetTargetedOpsSpend {
             (None, _) => "targeted_spend",
         };
         Ok(SupportScopes {
-            by_group: arguments.read(field, |value, name| parse_per_group(value, name, BUDGET, view))?,
-            by_plan: arguments.read("by_plan", |value, name| parse_per_plan(value, name, BUDGET))?,
-            by_group_plan: arguments
-                .read("by_group_plan", |value, name| parse_per_group_plan(value, name, BUDGET, view))?,
+            by_group: arguments
+                .parse_argument(field, |value, name| parse_per_group(value, name, BUDGET, view))?,
+            by_plan: arguments
+                .parse_argument("by_plan", |value, name| parse_per_plan(value, name, BUDGET))?,
+            by_group_plan: arguments.parse_argument("by_group_plan", |value, name| {
+                parse_per_group_plan(value, name, BUDGET, view)
+            })?,
             by_customer: arguments
-                .read("by_customer", |value, name| parse_per_customer(value, name, BUDGET))?,
+                .parse_argument("by_customer", |value, name| parse_per_customer(value, name, BUDGET))?,
         })
     }
 

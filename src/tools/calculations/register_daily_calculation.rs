@@ -59,7 +59,7 @@ impl Tool for RegisterDailyCalculation {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NamedCode, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NamedCode, Rejection> {
         Ok(NamedCode {
             name: text_argument(arguments, "name")?.to_owned(),
             code: text_argument(arguments, "code")?.to_owned(),

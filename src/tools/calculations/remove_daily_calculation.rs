@@ -45,7 +45,7 @@ impl Tool for RemoveDailyCalculation {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
         text_argument(arguments, "name").map(str::to_owned)
     }
 

@@ -49,7 +49,11 @@ impl Tool for GetToolDocumentation {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NameSelection, Rejection> {
+    fn parse_arguments(
+        &self,
+        _: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<NameSelection, Rejection> {
         NameSelection::parse(arguments, "tool_names")
     }
 

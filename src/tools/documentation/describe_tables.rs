@@ -64,7 +64,11 @@ impl Tool for DescribeTables {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NameSelection, Rejection> {
+    fn parse_arguments(
+        &self,
+        _: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<NameSelection, Rejection> {
         NameSelection::parse(arguments, "table_names")
     }
 

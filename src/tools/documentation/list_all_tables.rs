@@ -48,7 +48,7 @@ impl Tool for ListAllTables {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 

@@ -54,7 +54,7 @@ impl Tool for RejectEnterpriseDeal {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
         let elements = parse_elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?;
         let read = |(at, element): (usize, &Value)| {
             let path = format!("deals.{at}");

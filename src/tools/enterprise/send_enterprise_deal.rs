@@ -82,7 +82,11 @@ impl Tool for SendEnterpriseDeal {
         &SPEC
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<Self::Args, Rejection> {
         let elements = parse_elements(arguments.get("deals"), EXAMPLE)?;
         let read = |(at, element): (usize, &Value)| match parse_deal(element, &format!("deals.{at}"), view) {
             Err(ElementError::Call(refusal)) => Err(refusal),

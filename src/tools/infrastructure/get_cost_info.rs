@@ -93,7 +93,7 @@ impl Tool for GetCostInfo {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 

@@ -66,7 +66,7 @@ impl Tool for SetCapacityTier {
         Map::from_iter([("tier".to_owned(), Value::from(settings.core.capacity_tier))])
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
         let given = arguments.get("tier").or_else(|| arguments.get("capacity_tier")).unwrap_or(&Value::Null);
         TIERS.parse_integer(given).ok_or_else(|| {
             Rejection::for_field(

@@ -131,7 +131,7 @@ impl Tool for GetGroupInsights {
         &SPEC
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Group, Rejection> {
+    fn parse_arguments(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Group, Rejection> {
         parse_group_argument(arguments, view)
     }
 

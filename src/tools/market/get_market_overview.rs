@@ -91,7 +91,7 @@ impl Tool for GetMarketOverview {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 

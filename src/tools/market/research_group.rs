@@ -115,7 +115,11 @@ impl Tool for ResearchGroup {
         &SPEC
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<StudyOrder, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<StudyOrder, Rejection> {
         let group = parse_group_argument(arguments, view)?;
         Ok(StudyOrder { group, target: parse_target_level(arguments, group, view)? })
     }

@@ -110,10 +110,10 @@ impl Tool for PostSocialMedia {
         &SPEC
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PostDraft, Rejection> {
+    fn parse_arguments(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PostDraft, Rejection> {
         let content = parse_content(view, arguments)?;
-        let reply_to =
-            arguments.read("reply_to_post_id", |value, name| parse_replied_post(view, value, name))?;
+        let reply_to = arguments
+            .parse_argument("reply_to_post_id", |value, name| parse_replied_post(view, value, name))?;
         Ok(PostDraft { content, reply_to })
     }
 

@@ -89,18 +89,22 @@ impl Tool for SetAdsStrength {
         ])
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<AdStrengths, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<AdStrengths, Rejection> {
         Ok(AdStrengths {
-            global: arguments.read("global_strength", |value, name| {
+            global: arguments.parse_argument("global_strength", |value, name| {
                 json_f64(value).filter(|strength| NumberRange::SHARE.contains(*strength)).ok_or_else(|| {
                     let message = "the global ads strength must be between 0 and 1";
                     Rejection::for_field(name, "global_strength_out_of_range", message)
                 })
             })?,
             by_group: arguments
-                .read("by_group", |value, name| parse_per_group(value, name, STRENGTH, view))?,
+                .parse_argument("by_group", |value, name| parse_per_group(value, name, STRENGTH, view))?,
             by_customer: arguments
-                .read("by_customer", |value, name| parse_per_customer(value, name, STRENGTH))?,
+                .parse_argument("by_customer", |value, name| parse_per_customer(value, name, STRENGTH))?,
         })
     }
 

@@ -98,7 +98,7 @@ impl Tool for SetDailySpend {
         ])
     }
 
-    fn read(
+    fn parse_arguments(
         &self,
         _: &ToolContext<'_>,
         arguments: &Arguments,

@@ -103,14 +103,18 @@ impl Tool for SetLeadPromotion {
         ])
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<LeadDiscounts, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<LeadDiscounts, Rejection> {
         Ok(LeadDiscounts {
-            global: arguments.read("global_promotion", parse_global_discount)?,
+            global: arguments.parse_argument("global_promotion", parse_global_discount)?,
             by_group: arguments
-                .read("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
+                .parse_argument("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
             by_channel: arguments
-                .read("by_channel", |value, name| parse_per_channel(value, name, DISCOUNT))?,
-            by_channel_group: arguments.read("by_channel_group", |value, name| {
+                .parse_argument("by_channel", |value, name| parse_per_channel(value, name, DISCOUNT))?,
+            by_channel_group: arguments.parse_argument("by_channel_group", |value, name| {
                 parse_per_channel_group(value, name, DISCOUNT, view)
             })?,
         })

@@ -111,7 +111,11 @@ impl Tool for SetTargetedAdSpend {
         Map::from_iter([("targeted_spend".to_owned(), to_json(&settings.targeted_ads.targeted_spend))])
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<Self::Args, Rejection> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
         parse_sent_per_channel_group(&*channels_as_outer_keys(given, view)?, "targeted_spend", BUDGET, view)
     }

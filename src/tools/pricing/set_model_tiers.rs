@@ -58,7 +58,11 @@ impl Tool for SetModelTiers {
         plan_values_json(|plan| Value::from(settings.core.tiers[plan]))
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<IndexMap<Plan, u8>, Rejection> {
+    fn parse_arguments(
+        &self,
+        _: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<IndexMap<Plan, u8>, Rejection> {
         parse_per_plan_arguments(arguments, |plan, value| {
             TIERS.parse_integer(value).ok_or_else(|| {
                 let message = format!("model tier of plan {plan} must be {}", TIERS.describe());

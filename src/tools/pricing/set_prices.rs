@@ -58,7 +58,7 @@ impl Tool for SetPrices {
         plan_values_json(|plan| json_number(settings.core.prices[plan]))
     }
 
-    fn read(
+    fn parse_arguments(
         &self,
         _: &ToolContext<'_>,
         arguments: &Arguments,

@@ -104,15 +104,16 @@ impl Tool for SetPromotion {
         ])
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Discounts, Rejection> {
+    fn parse_arguments(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Discounts, Rejection> {
         Ok(Discounts {
-            global: arguments.read("global_promotion", parse_global_discount)?,
+            global: arguments.parse_argument("global_promotion", parse_global_discount)?,
             by_group: arguments
-                .read("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
+                .parse_argument("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
             by_customer: arguments
-                .read("by_customer", |value, name| parse_per_customer(value, name, DISCOUNT))?,
-            by_group_plan: arguments
-                .read("by_group_plan", |value, name| parse_per_group_plan(value, name, DISCOUNT, view))?,
+                .parse_argument("by_customer", |value, name| parse_per_customer(value, name, DISCOUNT))?,
+            by_group_plan: arguments.parse_argument("by_group_plan", |value, name| {
+                parse_per_group_plan(value, name, DISCOUNT, view)
+            })?,
         })
     }
 

@@ -82,7 +82,7 @@ impl Tool for SetUsageQuotas {
         plan_values_json(|plan| json_number(settings.core.quotas[plan].units()))
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
         let sent_numbers: Vec<SentNumber> = Plan::ALL
             .into_iter()
             .map(|plan| parse_quota(plan, arguments.get(plan.id())))

@@ -71,7 +71,7 @@ impl Tool for ListResearchProjects {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 

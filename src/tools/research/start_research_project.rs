@@ -87,7 +87,7 @@ impl Tool for StartResearchProject {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
         let given = arguments.get("tier").unwrap_or(&Value::Null);
         TIERS.parse_integer(given).ok_or_else(|| {
             let message = format!("R&D tier {given} does not exist; the tiers are {}", TIERS.describe());

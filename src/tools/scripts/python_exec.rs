@@ -66,9 +66,9 @@ impl Tool for PythonExec {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Script, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Script, Rejection> {
         let code = text_argument(arguments, "code")?.to_owned();
-        let seconds = arguments.read("timeout_seconds", |value, name| {
+        let seconds = arguments.parse_argument("timeout_seconds", |value, name| {
             json_f64(value).filter(|seconds| *seconds > 0.0 && *seconds <= MAX_SCRIPT_SECONDS).ok_or_else(
                 || wrong_type_rejection(name, &format!("a number above 0, at most {MAX_SCRIPT_SECONDS}")),
             )

@@ -57,7 +57,7 @@ impl Tool for RegisterScript {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NamedCode, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NamedCode, Rejection> {
         let name = text_argument(arguments, "name")?.trim();
         if name.is_empty() {
             return Err(Rejection::for_field("name", "script_name_blank", "the script needs a name"));

@@ -53,7 +53,7 @@ impl Tool for RunScript {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
         script_name(arguments)
     }
 

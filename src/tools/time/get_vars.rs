@@ -46,7 +46,7 @@ impl Tool for GetVars {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 

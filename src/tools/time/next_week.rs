@@ -79,7 +79,11 @@ impl Tool for NextWeek {
         &SPEC
     }
 
-    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<WeekArguments, Rejection> {
+    fn parse_arguments(
+        &self,
+        view: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<WeekArguments, Rejection> {
         let given = |name| arguments.get(name).unwrap_or(&Value::Null);
         Ok(WeekArguments {
             rationale: parse_rationale(given("rationale"))?,

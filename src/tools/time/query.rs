@@ -62,7 +62,7 @@ impl Tool for Query {
         &SPEC
     }
 
-    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<(), Rejection> {
+    fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<(), Rejection> {
         text_argument(arguments, "sql").map(|_| ())
     }
 

@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn symbols_have_paths_and_letters_have_none() {
+    fn only_drawing_symbols_have_paths() {
         let drawn = |sign| symbol_path(sign, 0.0, 0.0, (8.0, 16.0));
         assert_eq!(drawn('a'), None);
         assert_eq!(drawn('…'), None);

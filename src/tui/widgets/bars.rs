@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_is_left_of_positive_bars_and_between_mixed_signs() {
+    fn zero_line_separates_negative_and_positive_bars() {
         // The name needs 4 columns, the value 5 and the gaps 3, which leaves 20 columns for the bars.
         let positive = scale(&[10.0, 5.0, 0.01, 0.0], 32);
         assert_eq!(positive.cells(10.0), (1, 20));
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_accept_no_space_and_non_finite_values() {
+    fn bars_fit_any_width_with_non_finite_values() {
         for width in 0..20 {
             let narrow = scale(&[-3.0, f64::NAN, f64::INFINITY, 1e300], width);
             let (from, length) = narrow.cells(1e300);

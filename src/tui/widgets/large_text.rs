@@ -92,11 +92,11 @@ mod tests {
     #[test]
     fn large_text_falls_back_without_space() {
         let drawn = |figure: &str, size| {
-            render_rows(30, size_rows(size), |canvas, area| {
+            render_rows(30, letter_rows(size), |canvas, area| {
                 draw_large_text(canvas, area, figure, Role::Text, size)
             })
         };
-        fn size_rows(size: PointSize) -> u16 {
+        fn letter_rows(size: PointSize) -> u16 {
             size.rows()
         }
         assert_eq!(

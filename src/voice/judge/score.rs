@@ -57,7 +57,7 @@ impl GroupJudge<'_> {
             || features.has_misconduct
             || (features.attacks_competitors && !technical);
         let (unbelieved, hype) =
-            (self.false_claim_penalty(&contradicted), self.hype_penalty(!supported.is_empty()));
+            (self.false_claim_penalty_share(&contradicted), self.hype_penalty(!supported.is_empty()));
         let bashing =
             if technical { law.bashing_with_numbers } else { law.bashing + law.bashing_formal * profile.f };
         let repeated = (self.case.overlap - law.repetition_from) / (1.0 - law.repetition_from);
@@ -248,7 +248,7 @@ impl GroupJudge<'_> {
 
     /// Returns the share of the penalty for false claims that applies, 0..=1. The share is smaller for a group without
     /// subscribers.
-    fn false_claim_penalty(&self, contradicted: &[String]) -> f64 {
+    fn false_claim_penalty_share(&self, contradicted: &[String]) -> f64 {
         let readers = self.case.circumstances.groups[self.group].subscribers;
         match (contradicted.is_empty(), readers > 0) {
             (true, _) => 0.0,

@@ -339,7 +339,7 @@ fn every_group_has_posts_with_positive_and_negative_effect() {
 }
 
 #[test]
-fn events_count_fully_for_a_week_and_half_in_the_next() {
+fn event_weight_halves_after_a_week() {
     let of = |name: &str| examples().into_iter().find(|example| example.name == name).expect("an example");
     let timing = |example: &Example, event: LiveEvent, age: u32| {
         let facts = JudgeContext { live_events: vec![(event, age)], ..example.facts.clone() };

@@ -161,7 +161,7 @@ mod tests {
     const COMPLETE_SETTINGS: &str = "endpoint = \"http://127.0.0.1:11434/v1/\"\nmodel = \"llama3\"\n";
 
     #[test]
-    fn settings_have_defaults_and_the_stamp_has_no_key() {
+    fn recorded_settings_exclude_the_key() {
         let settings =
             ModelSettings::parse("voice.toml", &format!("{COMPLETE_SETTINGS}key_variable = \"MODEL_KEY\"\n"));
         let settings = settings.expect("settings");

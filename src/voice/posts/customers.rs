@@ -16,7 +16,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
 });
 
 /// Number of days for which an author counts as a new customer.
-const SETTLED_AFTER_DAYS: u32 = 30;
+const NEW_CUSTOMER_DAYS: u32 = 30;
 const VETERAN_AFTER_DAYS: u32 = 120;
 /// One author out of this many casual authors writes without capital letters.
 const LOWERCASE_AUTHOR_INTERVAL: u32 = 9;
@@ -67,8 +67,8 @@ pub(super) fn context(author: &PostAuthor, opinion: &Opinion, tone: Sentiment, p
         )
         .with_optional("downtime", wording::outage_span(opinion.downtime_minutes))
         .with_optional("seats", company.then(|| wording::approximate_seats(opinion.seats)))
-        .with_tag("new", days <= SETTLED_AFTER_DAYS)
-        .with_tag("settled", days > SETTLED_AFTER_DAYS && days <= VETERAN_AFTER_DAYS)
+        .with_tag("new", days <= NEW_CUSTOMER_DAYS)
+        .with_tag("settled", days > NEW_CUSTOMER_DAYS && days <= VETERAN_AFTER_DAYS)
         .with_tag("veteran", days > VETERAN_AFTER_DAYS)
         .with_tag("rose", opinion.cause == PostCause::Improved)
         .with_tag("fell", opinion.cause == PostCause::Declined)

@@ -36,7 +36,7 @@ pub trait DayObserver: Send + Sync {
     }
 
     /// Called after the last reputation change of the day, which applies the subscribers' contributions.
-    fn on_reputation_settled(
+    fn after_reputation_changes(
         &self,
         _moods: &ByGroup<ReputationContribution>,
         _market: &Market,

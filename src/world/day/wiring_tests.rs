@@ -49,7 +49,7 @@ impl TestRun {
     }
 
     /// Simulates `days` days, changes the parameters, and simulates one more day.
-    fn day_after(
+    fn simulate_day_with_changed_params(
         days: u32,
         params: &Params,
         change: impl FnOnce(&mut Params),
@@ -83,7 +83,11 @@ fn set_outage_probability(params: &mut Params, certain: bool) {
 #[test]
 fn outage_affects_issues_satisfaction_and_reputation() {
     let params = Params::bundled();
-    let of = |certain| TestRun::day_after(40, &params, |params| set_outage_probability(params, certain));
+    let of = |certain| {
+        TestRun::simulate_day_with_changed_params(40, &params, |params| {
+            set_outage_probability(params, certain)
+        })
+    };
     let ((quiet, calm, _), (broken, down, _)) = (of(false), of(true));
     assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
     assert_eq!(calm.total_usage, down.total_usage, "all other conditions are equal");
@@ -126,8 +130,9 @@ fn outage_increases_churn_only_if_the_penalty_applies_everywhere() {
         params.fidelity.service_penalty = penalty;
         // Use a penalty that is large enough to affect decisions.
         params.quality.service_outage_weight = 0.5;
-        let (play, figures, _) =
-            TestRun::day_after(44, &params, |params| set_outage_probability(params, certain));
+        let (play, figures, _) = TestRun::simulate_day_with_changed_params(44, &params, |params| {
+            set_outage_probability(params, certain)
+        });
         let ended = play.facts.endings.iter().filter(|ending| !ending.group.is_enterprise());
         assert_eq!(ended.count() as u32, figures.cancellations);
         figures.cancellations
@@ -144,7 +149,7 @@ fn overload_increases_churn_on_the_same_day() {
         params.fidelity.service_penalty = ServicePenalty::Everywhere;
         // Use a penalty that is large enough to affect decisions.
         params.quality.service_overload_weight = 0.5;
-        let (_, figures, _) = TestRun::day_after(44, &params, |params| {
+        let (_, figures, _) = TestRun::simulate_day_with_changed_params(44, &params, |params| {
             set_outage_probability(params, false);
             params.capacity_tier.iter_mut().for_each(|tier| tier.capacity_units = capacity_units);
         });
@@ -178,7 +183,7 @@ fn calendar_factors_apply_by_day() {
             params.calendar.monthly[65 % 30] *= monthly;
             params.calendar.weekly[65 % 7] *= weekly;
         };
-        TestRun::day_after(64, &Params::bundled(), change).1.total_usage as f64
+        TestRun::simulate_day_with_changed_params(64, &Params::bundled(), change).1.total_usage as f64
     };
     assert_eq!(day_65(1.0, 1.0), day_65(3.0, 1.0));
     let half = day_65(1.0, 0.5) / day_65(1.0, 1.0);

@@ -160,7 +160,7 @@ fn unanswered_threat_loses_the_subscriber() {
 }
 
 #[test]
-fn settled_threat_suspends_payment_until_it_ends() {
+fn threat_suspends_payment_until_a_deal() {
     let mut kit = kit_with_unhappy_subscriber();
     kit.run_day(29);
     let suspended = |run: &EnterpriseDayResult| run.suspended.contains(&2);

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn discovered_group_has_a_snapshot_of_that_day() {
+    fn discovered_group_has_a_snapshot_of_the_discovery_day() {
         let params = Params::bundled();
         let mut market = Market::initial(&params);
         market.drift.global_quality = 0.12;

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn lead_promotions_raise_conversion_and_ongoing_ones_do_not() {
+    fn lead_promotions_raise_conversion_but_ongoing_promotions_do_not() {
         let (params, s1, none) = (Params::bundled(), sample("S1"), ByPlan([0.0; 3]));
         let list = s1.choose(&same_offers(20.0, 0.4), 0.0, &none, &params);
         let promoted = s1.choose(&same_offers(20.0, 0.4), 8.0, &none, &params);

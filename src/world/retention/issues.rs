@@ -168,7 +168,7 @@ pub fn allocate_resolutions(
 
 /// Results of an update of a block's issues.
 #[derive(Debug, PartialEq, Eq)]
-pub struct SettledIssues {
+pub struct IssueUpdates {
     /// Whether any issue was open at the start of the day.
     pub any_open: bool,
     /// Numbers of the resolved issues.
@@ -178,18 +178,18 @@ pub struct SettledIssues {
 }
 
 /// Resolves, ages and opens issues of a block. No row may have been removed since `issue_batch` was created.
-pub fn settle(block: &mut Block, issue_batch: &IssueBatch, day: &DayContext<'_>) -> SettledIssues {
+pub fn update_issues(block: &mut Block, issue_batch: &IssueBatch, day: &DayContext<'_>) -> IssueUpdates {
     let &DayContext { service, params, .. } = day;
     let outage = service.outage;
-    SettledIssues {
+    IssueUpdates {
         any_open: !issue_batch.open.is_empty(),
-        resolved: settle_open_issues(block, issue_batch, outage, params),
+        resolved: update_open_issues(block, issue_batch, outage, params),
         opened: open_new_issues(block, issue_batch, params),
     }
 }
 
 /// Records the results of all blocks as facts.
-pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
+pub fn record_issues(by_block: Vec<IssueUpdates>, facts: &mut Facts) {
     for settled_issues in by_block {
         facts.issues_aged |= settled_issues.any_open;
         facts.issues_resolved.extend(settled_issues.resolved);
@@ -198,7 +198,7 @@ pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
 }
 
 /// Resolves or ages the open issues of a block. Returns the numbers of the resolved issues.
-fn settle_open_issues(
+fn update_open_issues(
     block: &mut Block,
     issue_batch: &IssueBatch,
     outage: bool,
@@ -318,7 +318,7 @@ mod tests {
         let settled = with_day_context(&morning(3), &settings, &quiet, (&params, &streams), |day| {
             let mut calls = customers.sweep(|group, number, block| find_issues(group, number, block, day));
             allocate_resolutions(&mut calls, &settings, customers, &mut issue_desk, day);
-            customers.sweep_with(calls, |_, _, block, issue_batch| settle(block, &issue_batch, day))
+            customers.sweep_with(calls, |_, _, block, issue_batch| update_issues(block, &issue_batch, day))
         });
         record_issues(settled, &mut facts);
         (facts, issue_desk)

@@ -22,7 +22,7 @@ impl WatchedTables {
         self.0.entry(table).or_default().push(row);
     }
 
-    fn watch(&mut self, report: &DayReport<'_>) {
+    fn add_expected_rows(&mut self, report: &DayReport<'_>) {
         let (xray, day) = (report.xray.expect("a debug run"), integer(report.figures.day));
         let (world, params) = (xray.world(), xray.params());
         for group in Group::all() {
@@ -95,10 +95,12 @@ impl WatchedTables {
     }
 }
 
-fn watched_week(session: &mut Session, watched: &mut WatchedTables) {
+fn advance_watched_week(session: &mut Session, watched: &mut WatchedTables) {
     let forecasts = session.company().naive_forecasts();
     session
-        .advance("wait", &forecasts, Via::Script, &mut |report: &DayReport<'_>| watched.watch(report))
+        .advance("wait", &forecasts, Via::Script, &mut |report: &DayReport<'_>| {
+            watched.add_expected_rows(report)
+        })
         .expect("a week");
 }
 
@@ -110,7 +112,7 @@ fn hidden_tables_match_the_state_of_each_day() {
     let mut watched = WatchedTables::default();
     // Queries the tables in several weeks, because each query extends the tables.
     for (week, asks) in (1..=20).zip([true, false, false, true, false, false, false].into_iter().cycle()) {
-        watched_week(&mut session, &mut watched);
+        advance_watched_week(&mut session, &mut watched);
         if !asks && week != 20 {
             continue;
         }

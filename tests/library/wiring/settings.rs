@@ -68,7 +68,7 @@ fn settings(session: &Session) -> String {
 }
 
 #[test]
-fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
+fn undo_and_redo_restore_and_report_every_setting() {
     for tool in setting_tools() {
         let mut session = create(Storage::Memory, &[]);
         let [first, second] = two_calls(tool);
@@ -105,12 +105,12 @@ fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
 }
 
 #[test]
-fn the_change_review_names_every_number_that_was_set() {
+fn change_review_lists_every_changed_number() {
     for tool in setting_tools() {
         let mut session = create(Storage::Memory, &[]);
         call_tool(&mut session, tool, two_calls(tool)[1].clone());
         let mut expected = Vec::new();
-        leaves(&two_calls(tool)[1], &mut expected);
+        collect_numbers(&two_calls(tool)[1], &mut expected);
         let mut values: Vec<f64> =
             session.company().setting_changes().iter().map(|change| change.new).collect();
         // Zeros are excluded, because an unchanged zero is not a change.
@@ -126,16 +126,16 @@ fn the_change_review_names_every_number_that_was_set() {
     }
 }
 
-fn leaves(value: &Value, found: &mut Vec<f64>) {
+fn collect_numbers(value: &Value, found: &mut Vec<f64>) {
     match value {
-        Value::Object(map) => map.values().for_each(|value| leaves(value, found)),
+        Value::Object(map) => map.values().for_each(|value| collect_numbers(value, found)),
         Value::Number(number) => found.extend(number.as_f64()),
         _ => {}
     }
 }
 
 #[test]
-fn every_core_setting_has_its_column() {
+fn core_settings_are_written_to_their_columns() {
     let mut session = create(Storage::Memory, &[]);
     for tool in ["set_prices", "set_model_tiers", "set_usage_quotas", "set_daily_spend", "set_capacity_tier"]
     {

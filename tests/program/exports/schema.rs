@@ -156,7 +156,7 @@ fn trajectory_lines(folder: &Path) -> Vec<Value> {
 }
 
 /// Records every kind of user activity except decisions, as in the examples of the schema.
-fn note_every_activity(run: &mut Session) {
+fn record_every_activity(run: &mut Session) {
     use novamind::record::trajectory::record::*;
     let root = schema();
     let example = |kind: &str| root.pointer(&format!("/$defs/{kind}/examples/0")).expect(kind).clone();
@@ -198,7 +198,7 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     run.call("research_market", &json!({}), Via::Policy).expect("research");
     run.query("SELECT count(*) FROM ledger").expect("a count");
     run.query("SELECT 1 FROM nowhere").expect_err("no table");
-    note_every_activity(&mut run);
+    record_every_activity(&mut run);
     run.set_notes("größer").expect("a memo");
     let calculation = json!({"name": "cash now", "code": "SELECT sum(amount) FROM ledger"});
     run.call("register_daily_calculation", &calculation, Via::Script).expect("a calculation");

@@ -48,7 +48,7 @@ fn export(home: &Home) -> std::path::PathBuf {
 }
 
 /// Plays a run with every kind of activity line. The player leaves and returns.
-fn run_with_all_activity_lines(home: &Home) {
+fn play_run_with_all_activity_lines(home: &Home) {
     let storage = Storage::Runs(home.runs());
     let new = NewRun {
         days: Some(14),
@@ -151,7 +151,7 @@ fn independent_script_reproduces_every_measure() {
     let program_output = home.play(&["--days", "28", "--seed", "7"], FOUR_WEEKS);
     assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
     played_run(&home, "P01");
-    run_with_all_activity_lines(&home);
+    play_run_with_all_activity_lines(&home);
     let out = export(&home);
     let runs = read_table(&out.join("runs.csv"));
     let over = runs.iter().find(|row| row["ended"] == "horizon").expect("a run that is over");
@@ -243,7 +243,7 @@ fn exported_texts_are_escaped() {
 #[test]
 fn anonymized_tables_can_be_linked_only_with_the_secret() {
     let home = Home::new();
-    run_with_all_activity_lines(&home);
+    play_run_with_all_activity_lines(&home);
     played_run(&home, "Ada Lovelace");
     let out = export(&home);
     let place = |name: &str| text(&home.0.path().join(name));
@@ -332,7 +332,7 @@ fn anonymized_tables_can_be_linked_only_with_the_secret() {
 #[test]
 fn loading_scripts_read_the_tables() {
     let home = Home::new();
-    run_with_all_activity_lines(&home);
+    play_run_with_all_activity_lines(&home);
     played_run(&home, "=P01");
     let out = export(&home);
     let runs = read_table(&out.join("runs.csv"));

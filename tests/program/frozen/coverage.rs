@@ -47,7 +47,7 @@ struct CommandHelp {
 }
 
 impl CommandHelp {
-    fn read(text: &str) -> CommandHelp {
+    fn parse(text: &str) -> CommandHelp {
         let mut help = CommandHelp::default();
         let (mut section, mut option) = ("", None::<String>);
         for line in text.lines() {
@@ -92,7 +92,7 @@ impl CommandHelp {
 fn collect_expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     let program_output = home.run(&[path, &["--help"]].concat());
     assert_eq!(program_output.exit_code, 0, "{path:?}: {}", program_output.stderr);
-    let help = CommandHelp::read(&program_output.stdout);
+    let help = CommandHelp::parse(&program_output.stdout);
     let name = path.join(" ");
     if help.commands.is_empty() {
         found.insert(name.clone());

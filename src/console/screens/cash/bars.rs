@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_end_at_eighths_and_cells_contain_two_categories() {
+    fn bar_segments_end_at_eighths_of_a_cell() {
         let scale = BarScale { above: 3, below: 3, dollars: 80.0 };
         let mut amounts = [0.0; CATEGORY_COUNT];
         (amounts[0], amounts[1]) = (90.0, 40.0);
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn net_is_drawn_below_its_week_with_a_sign() {
+    fn net_result_is_drawn_below_its_week() {
         let ledger = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&crate::test_kit::played_session(6)));
         let picture: String =
             draw_bars_to_buffer("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();

@@ -126,7 +126,7 @@ fn forecasts_are_scored_once_due() {
 }
 
 #[test]
-fn mean_covers_at_most_four_weeks() {
+fn four_week_mean_covers_at_most_four_weeks() {
     let ledger = WeeklyLedger::from_company(&DisplayedCompany::from_session(&played_session(6)));
     for (week, weeks) in [(6, vec![3, 4, 5, 6]), (4, vec![1, 2, 3, 4]), (2, vec![1, 2]), (1, vec![1])] {
         let mean = ledger.four_week_mean(week);

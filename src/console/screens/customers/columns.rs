@@ -282,7 +282,7 @@ fn statement(what: GroupColumn, group: Group, week: u32, day: u32) -> Option<Str
     })
 }
 
-pub fn figure_named(head: &str, group: Group, company: &DisplayedCompany) -> Option<Figure> {
+pub fn figure_with_heading(head: &str, group: Group, company: &DisplayedCompany) -> Option<Figure> {
     let column = visible_columns(company).position(|(_, text, _)| *text == head)?;
     figure(group, column, company)
 }

@@ -211,8 +211,8 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
          ORDER BY day DESC",
         i64::from(company.observation.day) - 28
     );
-    let revenue = super::columns::figure_named("billed/mo", group, company);
-    let churn = super::columns::figure_named("churn 30d", group, company);
+    let revenue = super::columns::figure_with_heading("billed/mo", group, company);
+    let churn = super::columns::figure_with_heading("churn 30d", group, company);
     let explained = churn.as_ref().and_then(|figure| figure.week_quantity);
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [

@@ -125,7 +125,7 @@ fn table_figures_equal_their_rows() {
             ("use/day", facts.sum(|held| held.units), "sum(usage_units)"),
         ] {
             let sql =
-                columns::figure_named(head, *group, &company).and_then(|figure| figure.sql).expect(head);
+                columns::figure_with_heading(head, *group, &company).and_then(|figure| figure.sql).expect(head);
             let made = query_figure(&mut session, &sql, what);
             assert!((made - shown).abs() < 0.02, "{group}, {head}: {shown}, sum of the rows {made}: {sql}");
         }

@@ -98,13 +98,13 @@ impl Pane<Customers> for WeeksPane {
     fn draw_with_border(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let [stock, flows] =
             Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(placement.area);
-        self.draw_stock(customers, canvas, PanePlacement { area: stock, ..placement }, context);
+        self.draw_subscriptions(customers, canvas, PanePlacement { area: stock, ..placement }, context);
         draw_framed(self, customers, canvas, PanePlacement { area: flows, ..placement }, context);
     }
 }
 
 impl WeeksPane {
-    fn draw_stock(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    fn draw_subscriptions(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let Some(group) = customers.group(context.company) else { return };
         let held = points(customers.data.facts_of_group(group).subscriptions_by_week(context.company.observation.week));
         let values: Vec<f64> = held.iter().map(|point| point.1).collect();

@@ -106,7 +106,7 @@ fn report_shows_estimates_with_ranges() {
 }
 
 #[test]
-fn known_groups_open_customers_and_unknown_groups_are_explained() {
+fn only_known_groups_open_the_customers_screen() {
     let (_, company, mut screen) = played_screen::<Market>(1);
     let group = company.observation.known_groups[2];
     screen.set_focused_pane(MarketPane::News);
@@ -166,7 +166,7 @@ fn small_window_shows_groups_and_report() {
 }
 
 #[test]
-fn unpublished_days_are_shaded_and_competitor_news_marked() {
+fn economy_chart_marks_unpublished_days_and_competitor_news() {
     let (mut session, company, mut screen) = played_screen::<Market>(12);
     let rivals = screen.news.iter().filter(|item| item.competitor.is_some()).count();
     assert!(rivals > 0 && rivals < screen.news.len(), "{rivals} of {}", screen.news.len());

@@ -273,7 +273,7 @@ impl StartMenu {
             (Action::NewRun, _) => self.open_form(),
             (_, MenuPage::Home) if self.runs.is_none() => self.deferred_actions.push(action),
             (Action::ContinueRun, _) => return self.open_latest(),
-            (Action::ReplayRun, MenuPage::Home) => return self.replay(self.runs().first()),
+            (Action::ReplayRun, MenuPage::Home) => return self.replay_effects(self.runs().first()),
             (_, MenuPage::Runs) => return self.handle_runs_action(action),
             (Action::Close | Action::Discard, MenuPage::Compare) => self.page = MenuPage::Runs,
             (Action::Close | Action::Discard, _) => self.go_home(),

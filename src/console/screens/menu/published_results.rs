@@ -123,7 +123,7 @@ mod tests {
     use crate::screens::menu::tests::summary;
 
     #[test]
-    fn own_runs_are_ranked_by_cash() {
+    fn own_runs_are_ranked_among_published_results() {
         let finished = |id: &str, cash: f64, days: u32, ended: Option<RunEndReason>| RunSummary {
             cash,
             days,

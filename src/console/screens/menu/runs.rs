@@ -103,7 +103,7 @@ impl StartMenu {
                     .into_iter()
                     .collect();
             }
-            Action::ReplayRun => return self.replay(self.selected_run()),
+            Action::ReplayRun => return self.replay_effects(self.selected_run()),
             Action::MarkRun => return self.toggle_mark(),
             Action::CompareRuns => return self.open_comparison(),
             Action::EndRun => {
@@ -122,7 +122,7 @@ impl StartMenu {
     }
 
     /// Returns the effects that open a run in playback.
-    pub(super) fn replay(&self, run: Option<&RunSummary>) -> Vec<Effect> {
+    pub(super) fn replay_effects(&self, run: Option<&RunSummary>) -> Vec<Effect> {
         let replay = |run: &RunSummary| {
             let recorded = RecordSource::Run(run.id.clone());
             vec![Effect::Request(Request::Replay { recorded, goal: SeekTarget::First, follow: false })]

@@ -18,7 +18,7 @@ use self::figures::METRICS;
 use self::news::NewsItem;
 use super::ScreenState;
 use super::panes::{Pane, PaneScreen, draw_pane};
-use super::product::model::{ServiceDay, projects, parse_service_days};
+use super::product::model::{ServiceDay, parse_projects, parse_service_days};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use novamind_database::QueryResult;
@@ -76,7 +76,7 @@ impl ScreenState for Overview {
         match reading {
             Reading::Service => self.days = parse_service_days(rows),
             Reading::WeekNotices => self.notices = news::notice_items(rows),
-            _ => self.research = news::research_items(&projects(rows), context.company.observation.day),
+            _ => self.research = news::research_items(&parse_projects(rows), context.company.observation.day),
         }
         self.rebuild_news(context.company);
     }

@@ -86,7 +86,7 @@ fn selected_figure_title_has_name_and_weeks() {
 }
 
 #[test]
-fn every_need_opens_its_object_and_has_source_rows() {
+fn every_action_item_opens_its_object_and_has_source_rows() {
     let mut session = session_with_negotiations();
     let company = DisplayedCompany::from_session(&session);
     let mut screen: Overview = loaded_screen(&mut session, &company);
@@ -124,7 +124,7 @@ fn every_selection_has_a_term_or_tool() {
 }
 
 #[test]
-fn waiting_threads_need_lists_those_threads() {
+fn waiting_threads_item_queries_the_waiting_threads() {
     let mut session = session_with_negotiations();
     let company = DisplayedCompany::from_session(&session);
     let need = company.action_items.iter().find(|need| need.problem == Problem::Threads).expect("threads wait");
@@ -150,7 +150,7 @@ fn proposed_call_fills_the_form() {
 }
 
 #[test]
-fn needs_are_not_truncated_if_they_fit() {
+fn action_items_are_not_truncated_if_they_fit() {
     let (_, company, screen) = played_screen::<Overview>(0);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
         let text = screen_text(&screen, &company, width, height);

@@ -119,10 +119,10 @@ impl ScreenState for Product {
     fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, context: &ScreenContext<'_>) {
         match reading {
             Reading::Service => self.days = model::parse_service_days(rows),
-            Reading::Research => self.projects = model::projects(rows),
+            Reading::Research => self.projects = model::parse_projects(rows),
             Reading::Subscribers => self.sales.set_subscribers(rows),
             Reading::Usage => self.sales.set_usage(rows),
-            Reading::OpenIssues => self.issues = Some(model::issues(rows)),
+            Reading::OpenIssues => self.issues = Some(model::parse_issues(rows)),
             _ => {}
         }
         self.plans = model::plans(&self.sales, context.company);

@@ -126,7 +126,7 @@ pub fn last_week(days: &[ServiceDay]) -> Option<(f64, f64)> {
 pub type IssueAges = [f64; 4];
 
 /// Parses the numbers of open issues by group and age.
-pub fn issues(rows: &QueryResult) -> BTreeMap<String, IssueAges> {
+pub fn parse_issues(rows: &QueryResult) -> BTreeMap<String, IssueAges> {
     let ages = |row: &Vec<novamind_database::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
 }
@@ -149,7 +149,7 @@ pub struct Project {
 }
 
 /// Parses the R&D projects, the newest first.
-pub fn projects(rows: &QueryResult) -> Vec<Project> {
+pub fn parse_projects(rows: &QueryResult) -> Vec<Project> {
     let project = |row: &Vec<novamind_database::Cell>| Project {
         id: text_at(row, 0).to_owned(),
         tier: number_at(row, 1) as u32,

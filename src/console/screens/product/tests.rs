@@ -173,7 +173,7 @@ fn utilization_is_usage_divided_by_capacity() {
 }
 
 #[test]
-fn outage_minutes_add_up_to_the_title() {
+fn outage_minutes_add_up_to_the_total_in_the_title() {
     let day = |day: u32, downtime: f64| ServiceDay { day, downtime_minutes: downtime, capacity: 1.0, ..ServiceDay::default() };
     let days: Vec<ServiceDay> = (1..=28).map(|at| day(at, if at % 10 == 0 { 30.0 } else { 0.0 })).collect();
     assert!(service::summary(&days)[0].contains("outage 60 min in 28 days"));

@@ -8,7 +8,7 @@ use novamind_database::{QueryResult, number_at, text_at};
 pub use novamind_worker::posts::{Post, PostKind};
 
 /// Parses the player's posts from a query result.
-pub fn own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
+pub fn parse_own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
     let to_own_post = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();

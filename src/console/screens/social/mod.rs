@@ -251,7 +251,7 @@ impl ScreenState for Social {
     }
 
     fn apply_rows(&mut self, _: Reading, rows: &QueryResult, _: &ScreenContext<'_>) {
-        self.own_posts = feed::own_posts(rows);
+        self.own_posts = feed::parse_own_posts(rows);
         self.rebuild_feed();
     }
 

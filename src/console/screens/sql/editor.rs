@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn offsets_are_bytes_and_support_wide_characters() {
+    fn error_offsets_are_converted_to_cursor_positions() {
         let mut editor = QueryEditor::default();
         editor.replace("SELECT 'é日',\n  wrong FROM ledger");
         editor.mark_error("SELECT 'é日',\n  ".len());

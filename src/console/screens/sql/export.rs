@@ -63,7 +63,7 @@ impl ExportMenu {
 }
 
 /// Returns the effects that export rows in a format.
-pub fn export_rows(way: Action, rows: &QueryResult) -> Vec<Effect> {
+pub fn export_effects(way: Action, rows: &QueryResult) -> Vec<Effect> {
     match way {
         Action::ExportCsv => match values::to_csv(rows) {
             Ok(bytes) => vec![Effect::Write("query-0001.csv".to_owned(), bytes)],
@@ -108,15 +108,15 @@ mod tests {
 
     #[test]
     fn oversized_clipboard_text_is_rejected_with_its_size() {
-        let small = export_rows(Action::CopyTabs, &result(3, 2));
+        let small = export_effects(Action::CopyTabs, &result(3, 2));
         assert!(matches!(&small[..], [Effect::Copy(text), Effect::ShowStatus(notice)]
             if text == "a\nxxx\nxxx\n" && notice == "Copied 2 rows with tabs, 0.0 KB"));
-        let large = export_rows(Action::CopyMarkdown, &result(1000, 90));
+        let large = export_effects(Action::CopyMarkdown, &result(1000, 90));
         assert!(matches!(&large[..], [Effect::ShowError(text)] if text.starts_with("88.")), "{large:?}");
     }
 
     #[test]
-    fn list_moves_and_every_export_has_a_key() {
+    fn export_menu_selects_formats_by_row_and_key() {
         let mut list = ExportMenu::default();
         assert_eq!(list.select_export(Action::Up), None);
         list.select_export(Action::Down);

@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn default_chart_uses_text_as_x_and_first_number_as_y() {
+    fn default_chart_plots_the_first_numeric_column() {
         let rows = leads_result();
         let plot = ResultChart::for_rows(&rows, None).expect("a chart");
         assert_eq!(plot, ResultChart { kind: ChartKind::Bar, x_column: Some(0), y_columns: vec![1] });
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_cycle_and_series_are_added() {
+    fn keys_change_columns_and_add_series() {
         let rows = leads_result();
         let mut plot = ResultChart::for_rows(&rows, None).expect("a chart");
         plot.next_y(&rows);

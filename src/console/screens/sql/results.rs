@@ -150,7 +150,7 @@ impl ResultView {
 
     /// Returns the effects that export the displayed rows.
     pub fn export(&self, way: Action) -> Vec<Effect> {
-        self.visible_rows().map_or_else(Vec::new, |rows| export::export_rows(way, &rows))
+        self.visible_rows().map_or_else(Vec::new, |rows| export::export_effects(way, &rows))
     }
 
     fn open_chart(&mut self) -> Vec<Effect> {

@@ -159,7 +159,7 @@ fn introduction_statements_run() {
 }
 
 #[test]
-fn history_is_searched_and_escape_keeps_the_editor() {
+fn history_search_inserts_earlier_statements() {
     let mut company = new_company();
     company.past_queries = vec!["SELECT 'of yesterday'".to_owned()];
     let mut screen = Sql::default();
@@ -359,7 +359,7 @@ fn screen_is_drawn_at_every_size() {
 }
 
 #[test]
-fn running_query_shows_its_time_and_named_query_focuses_results() {
+fn running_query_shows_its_elapsed_time() {
     let company = new_company();
     let mut screen = Sql::default();
     screen.edit_and_run("SELECT wrong FROM ledger");

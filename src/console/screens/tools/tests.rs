@@ -33,7 +33,7 @@ fn form_after_keys(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
 }
 
 #[test]
-fn enter_edits_a_cell_and_arrows_move_on() {
+fn down_arrow_continues_typing_in_the_next_cell() {
     let (_, effects) =
         form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
     let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else {
@@ -71,7 +71,7 @@ fn copying_an_empty_cell_shows_an_error() {
 }
 
 #[test]
-fn tab_keeps_the_typed_value_and_forms_open_at_the_first_cell() {
+fn tab_keeps_the_typed_value() {
     let (mut tools, _) =
         form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab"]);
     let form = tools.visible_form().expect("a form");
@@ -97,7 +97,7 @@ fn leaving_the_form_keeps_the_draft() {
 }
 
 #[test]
-fn digits_start_a_number_and_letters_do_nothing() {
+fn only_digits_start_typing_in_number_cells() {
     let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "enter", "2"]);
     assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
     let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "esc"]);
@@ -192,7 +192,7 @@ fn copy_down_fills_the_column() {
 }
 
 #[test]
-fn unchanged_form_is_not_sent_and_invalid_cell_is_named() {
+fn submitting_an_unchanged_or_invalid_form_shows_an_error() {
     let (_, effects) = form_after_keys(ToolId::SetPrices, &["ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("Nothing has changed")));
     let (_, effects) = form_after_keys(ToolId::SetPrices, &["enter", "1", "-", "ctrl-s"]);

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn curves_follow_their_line_and_are_flat_for_equal_values() {
+    fn sparkline_is_drawn_after_its_line() {
         let curve = InspectionCurve { line_index: 1, values_by_day: vec![0.10001, 0.10002, f64::NAN, 0.10004] };
         let lines = vec!["head".to_owned(), "R reputation".to_owned()];
         let found = InspectionAnswer { lines, curves: vec![curve], ..InspectionAnswer::default() };

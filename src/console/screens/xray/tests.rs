@@ -36,7 +36,7 @@ fn asked_day(effects: &[Effect]) -> Option<u32> {
 }
 
 #[test]
-fn questions_are_sent_one_at_a_time_newest_next() {
+fn questions_are_sent_one_at_a_time() {
     let mut session = played_session(2);
     let company = inspectable(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
@@ -76,7 +76,7 @@ fn day_navigation_stops_at_the_first_and_last_day() {
 }
 
 #[test]
-fn queued_commands_run_next_and_confirmed_ones_are_kept() {
+fn confirmed_commands_stay_queued() {
     let mut session = played_session(2);
     let company = inspectable(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
@@ -103,7 +103,7 @@ fn queued_commands_run_next_and_confirmed_ones_are_kept() {
 }
 
 #[test]
-fn input_accepts_existing_days_with_or_without_a_target() {
+fn input_accepts_only_simulated_days() {
     let mut session = played_session(2);
     let company = inspectable(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);

@@ -76,7 +76,7 @@ impl Session {
         let from = weeks.saturating_sub(1) * self.params().run.days_per_week;
         for pitfall in standing.lesson.plan.pitfalls.iter().filter(is_open) {
             let value = measure(&pitfall.measurement, self, from).ok().flatten();
-            if value.is_some_and(|value| pitfall.bound.is_exceeded_by(value)) {
+            if value.is_some_and(|value| pitfall.bound.is_triggered_by(value)) {
                 let about = LessonNote::new(LessonEvent::Pitfall, step as u32 + 1);
                 let (name, bound) = (Some(pitfall.name.clone()), Some(pitfall.bound.limit()));
                 let _ = self.record_lesson_event(LessonNote { name, value, bound, ..about });

@@ -50,7 +50,7 @@ fn every_marker_draws_the_same_curve() {
 }
 
 #[test]
-fn bands_are_shaded_and_names_have_separate_rows() {
+fn curve_names_have_separate_rows() {
     let lines = [
         Curve::from_values(&[1.0, 2.0, 3.0], Role::Text).with_name("one"),
         Curve::from_values(&[1.0, 2.0, 3.0], Role::Text).with_name("two"),
@@ -70,7 +70,7 @@ fn bands_are_shaded_and_names_have_separate_rows() {
 }
 
 #[test]
-fn charts_accept_no_points_and_extreme_values() {
+fn charts_without_points_or_with_extreme_values_are_drawn() {
     let nothing = drawn(&plot(&[], None), 60, 8, Marker::Braille);
     assert!(nothing[0].starts_with("no data"));
     let one =

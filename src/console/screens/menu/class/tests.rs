@@ -91,7 +91,7 @@ fn page_text(page: &ClassPage, width: u16, height: u16) -> String {
 }
 
 #[test]
-fn up_and_down_highlight_another_student() {
+fn up_and_down_keys_highlight_another_student() {
     let mut page = page(12);
     let first = page_text(&page, 120, 39);
     for part in

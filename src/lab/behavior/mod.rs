@@ -69,12 +69,12 @@ fn note_versions(lines: &[Line]) -> Vec<NoteVersion> {
 const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
     ("survival", "", "life, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
-    ("ad spend on the best measured channel", "", "ads on best tried"),
+    ("ad spend on the best channel, as measured", "", "ads on best tried"),
     ("targeted share of development", "", "targeted dev."),
     ("forecast error of the first four weeks", "28", "4-week error, first weeks"),
-    ("state-changing calls a week", "", "calls a week"),
-    ("evenness of tool use", "", "evenness of tool use"),
-    ("planning words", "", "planning words per 100"),
+    ("calls that act, a week", "", "calls a week"),
+    ("evenness of tools", "", "evenness of tool use"),
+    ("words of planning in 100", "", "planning words per 100"),
     ("\"if\" in rationales", "", "\"if\", rationales"),
     ("\"if\" in notes", "", "\"if\", notes"),
 ];

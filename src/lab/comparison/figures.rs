@@ -121,16 +121,28 @@ pub const FIGURES: &[ComparedFigure] = &[
         |run| Some(run.total.time.active_seconds() / 60.0),
         no_range,
     ),
-    compared_figure("median seconds per week", "", "seconds", |run| run.median_week_seconds, no_range),
+    compared_figure("seconds for a week, median", "", "seconds", |run| run.median_week_seconds, no_range),
     compared_figure(
-        "state-changing calls a week",
+        "calls that act, a week",
         "",
         "per week",
         |run| count_per_week(run, run.measures.tools.calls),
         || published_range("turns a week of each agent", |agent| Some(agent.turns_per_week)),
     ),
-    compared_figure("all calls a week", "", "per week", |run| count_per_week(run, run.total.calls), no_range),
-    compared_figure("queries a week", "", "per week", |run| count_per_week(run, run.total.queries), no_range),
+    compared_figure(
+        "all calls, a week",
+        "",
+        "per week",
+        |run| count_per_week(run, run.total.calls),
+        no_range,
+    ),
+    compared_figure(
+        "queries, a week",
+        "",
+        "per week",
+        |run| count_per_week(run, run.total.queries),
+        no_range,
+    ),
     compared_figure("refused calls", "", "count", |run| Some(f64::from(run.total.refused)), no_range),
     compared_figure(
         "decisions",
@@ -147,7 +159,7 @@ pub const FIGURES: &[ComparedFigure] = &[
         no_range,
     ),
     compared_figure(
-        "ad spend on the best measured channel",
+        "ad spend on the best channel, as measured",
         "",
         "share",
         |run| run.measures.channels.as_ref().and_then(|skill| skill.share),
@@ -223,14 +235,14 @@ pub const FIGURES: &[ComparedFigure] = &[
         no_range,
     ),
     compared_figure(
-        "words per rationale",
+        "words of a rationale",
         "",
         "words",
         |run| Some(run.measures.planning.words_each),
         no_range,
     ),
     compared_figure(
-        "planning words",
+        "words of planning in 100",
         "",
         "per 100 words",
         |run| run.wording.planning_per_hundred(),
@@ -238,7 +250,7 @@ pub const FIGURES: &[ComparedFigure] = &[
     ),
     compared_figure("\"if\" in rationales", "", "count", |run| Some(run.wording.ifs as f64), no_range),
     compared_figure("\"if\" in notes", "", "count", |run| Some(run.notes.wording?.ifs as f64), no_range),
-    compared_figure("evenness of tool use", "", "share", |run| run.measures.tools.evenness, no_range),
+    compared_figure("evenness of tools", "", "share", |run| run.measures.tools.evenness, no_range),
 ];
 
 fn random_channel_range() -> Option<PublishedRange> {
@@ -252,7 +264,7 @@ pub(super) fn group_rows(runs: &[Logbook]) -> Vec<ComparisonRow> {
     let by_run: Vec<_> = runs.iter().map(ads).collect();
     let groups: BTreeSet<&str> = by_run.iter().flatten().map(|group_ads| group_ads.group.as_str()).collect();
     let row = |group: &str| ComparisonRow {
-        figure: "ad spend on the best measured channel".to_owned(),
+        figure: "ad spend on the best channel, as measured".to_owned(),
         of: group.to_owned(),
         unit: "share",
         values: by_run

@@ -8,13 +8,13 @@ use novamind_record::trajectory::record::RunEndReason;
 /// Columns, most important first: name of the figure, horizon and heading.
 const COLUMNS: [(&str, &str, &str); 10] = [
     ("final cash", "", "cash"),
-    ("state-changing calls a week", "", "calls a week"),
+    ("calls that act, a week", "", "calls a week"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
     ("targeted share of development", "", "targeted dev."),
     ("forecast error", "28", "4-week error"),
-    ("planning words", "", "planning words per 100"),
-    ("queries a week", "", "queries a week"),
-    ("evenness of tool use", "", "evenness of tool use"),
+    ("words of planning in 100", "", "planning words per 100"),
+    ("queries, a week", "", "queries a week"),
+    ("evenness of tools", "", "evenness of tool use"),
     ("minutes played", "", "minutes"),
     ("forecast coverage", "28", "4-week coverage"),
 ];

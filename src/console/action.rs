@@ -409,7 +409,7 @@ actions! {
         HoldFactor "hold" "fix" "Fix the selected factor of the leads at a value and show the expected leads, or release the factor."
         TypeCommand "ask" "command" "Type a plain-mode command: find, who, diff or set. set changes a parameter of a debug run, after confirmation."
         RunDays "run-days" "run" "Type how many days of a debug run to simulate; the simulation stops on the first day on which a breakpoint becomes true."
-        BreakpointHistory "look-back" "history" "Show the days on which the condition of each breakpoint became true or false."
+        BreakpointHistory "look-back" "history" "Show since which day the condition of each breakpoint has been true or false."
         RemoveBreakpoint "remove-breakpoint" "remove" "Remove the selected breakpoint."
     }
     Dialog {

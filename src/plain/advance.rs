@@ -360,7 +360,7 @@ mod tests {
         assert_eq!(parse_next_week_input(&[], &session, true), Ok(NextWeekInput::Ask));
         let nothing = parse_next_week_input(&[], &session, false).expect("it is read");
         let refused = advance_week(&mut session, nothing).to_text();
-        assert!(refused.contains("write next \"WHY\"; help"), "{refused}");
+        assert!(refused.contains("Type: next \"WHY\"."), "{refused}");
         let filing = parse_next_week_input(&[argument("because")], &session, false).expect("it is filed");
         assert!(advance_week(&mut session, filing).is_success());
     }

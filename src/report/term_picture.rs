@@ -141,7 +141,7 @@ fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
 /// Draws the share of a cohort that remains after each week at last week's churn.
 fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
     let Some(churn) = last_week_churn(weeks) else {
-        let caption = "Churn is unknown until a week with subscribers has run.".to_owned();
+        let caption = "Churn is unknown until a week that started with subscribers has run.".to_owned();
         return TermPicture { caption, drawing: None };
     };
     let left = |week: u32| (f64::from(week), libm::pow(1.0 - churn, f64::from(week)));

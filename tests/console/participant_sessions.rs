@@ -477,7 +477,7 @@ fn naive_forecasts_are_labeled() {
         console.press("enter");
         console.assert_shows("Required, and saved with the run.");
         console.press("'test' enter");
-        console.assert_shows("f fills empty cells: the last four weeks continue");
+        console.assert_shows("f fills empty cells: the cash flow of the last four");
         console.press("f");
         let screen = console.screen();
         assert!(screen.contains("marked as naive forecasts") && !screen.contains("back-tests"), "{screen}");

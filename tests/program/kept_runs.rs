@@ -94,9 +94,9 @@ fn why_shows_causes_without_hidden_state() {
         let trajectory = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("lines");
         let looks: Vec<&str> = trajectory.lines().filter(|line| line.contains("\"kind\":\"xray\"")).collect();
         if mode == "baseline" {
-            let refused = answers
-                .iter()
-                .all(|answer| answer.contains("refused not_in_this_mode: why and what-if re-simulate"));
+            let refused = answers.iter().all(|answer| {
+                answer.contains("refused not_in_this_mode: an unfinished baseline run rejects")
+            });
             assert!(refused && looks.is_empty(), "{}", program_output.stdout);
             continue;
         }

@@ -413,7 +413,7 @@ fn best_channel_texts(skill: &BestTriedChannelSpend) -> Vec<String> {
         (Some(share), Some((group, best))) => {
             let channel = best.channel.replace('_', " ");
             let share = percent(share, 0);
-            vec![format!("{share} · {}: {channel}, best of {} tried", group.group, group.tried), share]
+            vec![format!("{share} · {}: {channel} of {} tried", group.group, group.tried), share]
         }
         _ if skill.groups.iter().all(|group| group.tried == 1) => {
             vec!["– · no group had more than one channel".to_owned(), "– · one channel per group".to_owned()]

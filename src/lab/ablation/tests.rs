@@ -70,7 +70,10 @@ fn first_50_days_have_no_competitors_or_drift() {
     assert_eq!(runs[12][..4], ["short", "the probe", "hard", "2"]);
     assert_eq!(runs[1][7], results.by_arm[0][0].cash.to_string());
     let text = exhibit.to_text(100);
-    assert!(text.contains("neither competitors nor drift") && text.contains("identical in 2 of 2"), "{text}");
+    assert!(
+        text.contains("neither competitors nor drift") && text.contains("identical for 2 of 2"),
+        "{text}"
+    );
     let named: Vec<&str> = short_run_policies().expect("policies").iter().map(|(name, _)| *name).collect();
     assert_eq!(named, ["the paper's baseline", "ads from day 0"]);
 }

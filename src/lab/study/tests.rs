@@ -99,7 +99,7 @@ fn invalid_studies_name_line_and_key() {
                 "{begin}\n[[overrides]]\nname = \"a\"\nset = {{ \"leads.saturation_base\" = 12 }}\n[grid]\nleads.saturation_base = [1, 2]\n"
             ),
             Some(9),
-            ["leads.saturation_base", "vary it either there"],
+            ["leads.saturation_base", "set the parameter either there or in the grid"],
         ),
         (
             format!("{begin}\n[[overrides]]\nname = \"a\"\n[[overrides]]\nname = \"b\"\n"),

@@ -39,8 +39,7 @@ fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
         "guesses_right", "", "correct guesses among choices" => super::guesses::count_correct_guesses(row.view, row.run);
         "pitfalls", "", "names of the pitfalls triggered, in order" => row.run.evidence.pitfalls.join(" ");
         "cash", "", "final cash, dollars" => format_optional(row.run.evidence.cash.last().map(|(_, cash)| *cash));
-        "of_good", "", "score relative to the reference play on the same seed: 1 means equal; empty if there is no \
-         score" => format_optional(row.view.score_share(row.run));
+        "of_good", "", "score relative to the reference play on the same seed: 1 means equal; empty if there is no reference value" => format_optional(row.view.score_share(row.run));
         "verdict", "", "finished, not finished, altered, twice, other lesson, other hand-out or unknown; only finished runs \
          are ranked" => row.run.verdict.label();
     };

@@ -100,7 +100,7 @@ pub fn describe_drift(drift_state: &DriftState) -> Vec<String> {
     ];
     let mut head = vec!["group", "all groups", "own", "expectation", "budget, $"];
     if next_day.is_some() {
-        head.extend(["next expectation", "next budget, $"]);
+        head.extend(["next drift: expectation", "next drift: budget, $"]);
     }
     let row = |state: &GroupDriftState| {
         let mut row = vec![

@@ -326,7 +326,7 @@ fn export_rejects_damaged_runs_and_omits_incomplete_lines() {
     let text = String::from_utf8(good).expect("text");
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
     let (archive, output) = export_run(&home, &run, "bad.tar");
-    output.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "Lines 1 to 2 are valid"]);
+    output.assert_fails(3, &["trajectory.jsonl, line 3", "its checksum", "Lines 1 to 2 are valid"]);
     assert!(!archive.exists());
     let hidden = |entry: &PathBuf| {
         entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".novamind"))
@@ -441,7 +441,7 @@ fn reports_summarize_sessions_and_compare_runs() {
     let object: Value = serde_json::from_str(&object).expect("JSON");
     let figures = object["comparison"]["figures"].as_array().expect("figures");
     let figure = |name: &str| figures.iter().find(|row| row["figure"] == name).expect(name)["values"].clone();
-    let share = figure("ad spend on the best measured channel");
+    let share = figure("ad spend on the best channel, as measured");
     assert_eq!(share[0], share[1], "the same decisions");
     let truly = figure("ad spend on the truly best channel");
     assert!(truly[0].is_null() && truly[1].is_number(), "only a run that is over tells: {truly}");

@@ -148,8 +148,8 @@ fn damaged_trajectory_is_rejected_with_its_line_and_not_changed() {
     let (id, good) = (run_id(&folder), read_bytes(&folder, "trajectory.jsonl"));
     assert_eq!(split_lines(&good).len(), 10);
     let cases: [(Damage, &[&str]); 9] = [
-        (|bytes| flip_byte_after(bytes, 4, "\"B\":"), &["line 4", "its sum", "Lines 1 to 3 are valid"]),
-        (|bytes| flip_byte_after(bytes, 1, "\"seed\":"), &["line 1", "its sum"]),
+        (|bytes| flip_byte_after(bytes, 4, "\"B\":"), &["line 4", "its checksum", "Lines 1 to 3 are valid"]),
+        (|bytes| flip_byte_after(bytes, 1, "\"seed\":"), &["line 1", "its checksum"]),
         (|bytes| flip_byte_after(bytes, 9, "\"cash\":"), &["line 9", "changed", "Lines 1 to 8 are valid"]),
         (|bytes| flip_byte_after(bytes, 10, "\"at\":\"202"), &["line 10", "changed", "recover"]),
         (
@@ -191,7 +191,7 @@ fn modified_figure_is_detected_without_the_database() {
     flip_byte_after(&mut bytes, 9, "\"cash\":");
     fs::write(folder.join("trajectory.jsonl"), &bytes).expect("written");
     fs::remove_file(folder.join("world.db")).expect("gone");
-    home.run(&["replay", &run_id(&folder), "--verify"]).assert_fails(3, &["line 9", "its sum"]);
+    home.run(&["replay", &run_id(&folder), "--verify"]).assert_fails(3, &["line 9", "its checksum"]);
 }
 
 #[test]

@@ -190,7 +190,7 @@ impl WeekResimulation {
                 )
             }
         };
-        let edits = Edits { dropped_lines: dropped, fixed_inputs: fixed_inputs, ..Edits::default() };
+        let edits = Edits { dropped_lines: dropped, fixed_inputs, ..Edits::default() };
         let outcome =
             simulate_branch(&self.start, &self.steps, &edits, self.after.final_state.world.day, go_on)?;
         // The figures of a week that ended early cannot be compared with the figures of a complete week.

@@ -111,7 +111,7 @@ impl Enterprise {
             reputation,
             on_reputation_write: on_write,
             day,
-            context: context,
+            context,
             facts,
             result: EnterpriseDayResult::default(),
         };

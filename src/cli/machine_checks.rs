@@ -74,7 +74,7 @@ pub fn report_failures(items: &[CheckItem]) -> Result<(), Failure> {
     }
 }
 
-/// Checks that the wall clock runs evenly and is not years behind.
+/// Checks that the wall clock does not jump relative to the monotonic clock and is not years behind.
 pub fn check_clock() -> Result<String, String> {
     let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     const BUILT_AFTER: u64 = 1_760_000_000;

@@ -254,7 +254,7 @@ actions! {
         Help "help" "help" "List the keys that work here, the focused pane first."
         Changes "changes" "changes" "Show the settings that changed this week."
         Undo "undo" "undo" "Undo the last setting of this week; c lists the changes."
-        Redo "redo" "redo" "Redo the last undone setting."
+        Redo "redo" "redo" "Redo the last undone change."
         FocusNext "focus-next" "next pane" "Move to the next pane."
         FocusPrevious "focus-previous" "previous pane" "Move to the previous pane."
         Report "report" "last week" "Show the report of the last week again."
@@ -477,7 +477,7 @@ actions! {
     }
     Decisions {
         OmitDecision "drop-decision" "leave out" "Omit the selected call, or restore it; remove an added decision."
-        AddDecision "add-decision" "add decision" "Add a decision: a call, a factor for a call, or a tool whose settings stay unchanged."
+        AddDecision "add-decision" "add decision" "Add a decision: a new call, a factor for the values of a tool, or a tool whose settings stay unchanged."
         NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or add one; up to three are compared."
         SimulateBranches "simulate-branches" "simulate" "Simulate the run with your decisions unchanged and with each alternative."
     }

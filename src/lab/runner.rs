@@ -302,7 +302,7 @@ pub(super) fn decide_with_answers(
     Ok(())
 }
 
-/// Simulates a week, or the days up to the stop day. `watch` observes every day.
+/// Simulates a week, or the days up to the stop day. Calls `watch` after each simulated day.
 pub(super) fn advance_week(
     policy: &Policy,
     seed: u64,

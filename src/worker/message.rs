@@ -138,7 +138,7 @@ pub enum Response {
     ReportFilesReady(Vec<(&'static str, String)>),
     /// Files were written, with a message, or writing failed.
     FilesWritten(Result<String, String>),
-    /// The run was closed, with the error if saving failed.
+    /// The run was closed. Contains the error if saving failed.
     Closed(Option<String>),
     /// A response to a request in a study.
     Study(StudyResponse),

@@ -134,7 +134,7 @@ fn check_turn_rows() {
         let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
         assert!(query_number(run, &sql) > 0.0, "{kind}");
     }
-    // Turns are numbered without gaps. Only two offers of one call can have the same number.
+    // Turns are numbered without gaps. Two turns can have the same number only if they are offers of the same call.
     assert_no_rows(
         run,
         "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",

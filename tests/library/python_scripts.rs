@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use crate::support::company::{advance_week, call_tool};
 
 /// Starts a run, or returns `None` if python3 is not available and the test is skipped.
-fn run_with_python(storage: Storage) -> Option<Session> {
+fn create_run_if_python_is_available(storage: Storage) -> Option<Session> {
     let tried = Command::new("python3").args(["-c", ""]).output();
     if !tried.is_ok_and(|done| done.status.success()) {
         return None;
@@ -48,7 +48,7 @@ fn assert_fails(session: &mut Session, code: &str, parts: &[&str]) {
 
 #[test]
 fn script_queries_and_prints() {
-    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let Some(mut session) = create_run_if_python_is_available(Storage::Memory) else { return };
     let hash = session.state_hash();
     let asked = session.company().query_history().to_vec();
     let output = run_script(
@@ -85,7 +85,7 @@ fn script_queries_and_prints() {
 
 #[test]
 fn failed_script_reports_its_error_and_changes_nothing() {
-    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let Some(mut session) = create_run_if_python_is_available(Storage::Memory) else { return };
     let hash = session.state_hash();
     let code = "print('so far')\ndef half(x):\n    return x / 0\nhalf(1)";
     assert_fails(
@@ -112,7 +112,7 @@ fn failed_script_reports_its_error_and_changes_nothing() {
 
 #[test]
 fn python_queries_have_the_limits_of_queries() {
-    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let Some(mut session) = create_run_if_python_is_available(Storage::Memory) else { return };
     for (sql, part) in [
         ("SELECT c_max FROM customers", "there is no column c_max"),
         ("SELECT * FROM customer_state", "table customer_state is not accessible"),
@@ -145,7 +145,7 @@ fn python_queries_have_the_limits_of_queries() {
 
 #[test]
 fn scripts_cannot_block_the_run() {
-    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let Some(mut session) = create_run_if_python_is_available(Storage::Memory) else { return };
     for code in [
         "print('begun')\nwhile True: pass",
         "print('begun')\nimport time\ntime.sleep(600)",
@@ -175,7 +175,7 @@ fn scripts_cannot_block_the_run() {
 #[cfg(target_os = "linux")]
 #[test]
 fn scripts_are_sandboxed_on_linux() {
-    let Some(mut session) = run_with_python(Storage::Memory) else { return };
+    let Some(mut session) = create_run_if_python_is_available(Storage::Memory) else { return };
     let begun = Instant::now();
     assert_fails(&mut session, "hog = []\nwhile True: hog.append(bytearray(50 << 20))", &["MemoryError"]);
     assert!(begun.elapsed() < Duration::from_secs(30));
@@ -216,7 +216,9 @@ fn scripts_are_sandboxed_on_linux() {
 #[test]
 fn replay_uses_recorded_script_output() {
     let runs = tempfile::tempdir().expect("a folder");
-    let Some(mut session) = run_with_python(Storage::Runs(runs.path().to_owned())) else { return };
+    let Some(mut session) = create_run_if_python_is_available(Storage::Runs(runs.path().to_owned())) else {
+        return;
+    };
     let folder = session.folder().expect("a folder").to_owned();
     // The output of this script differs on every execution.
     let code = "# python\nimport time\nprint(query('SELECT count(*) AS n FROM ledger'), time.time_ns())";

@@ -226,7 +226,7 @@ fn customer_view_matches_the_tables() {
                 assert_eq!(query_column(&mut session, &sql), [f64::from(since)], "customer {customer}");
                 *seen.entry("with an issue").or_insert(0) += 1;
             }
-            // The view of an earlier day is a prefix of the full view.
+            // The view of an earlier day contains at most one day.
             let shown = view.signup.day + 1;
             if shown <= last_day {
                 let earlier = individual_view(&mut session, customer, Some(shown));

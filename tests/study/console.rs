@@ -153,7 +153,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.current_view = (screen, self.current_view.0, self.clock.time_ns());
     }
 
-    /// Opens an object of the screen.
+    /// Opens an object on the screen.
     pub fn select(&mut self, keys: &str, what: &str, which: &str) {
         self.press_unrecorded(keys);
         self.add_expected_line("select", what, which, None);

@@ -1,4 +1,4 @@
-//! Questions about a change: a figure of the company or of a group, and a week.
+//! Questions about why a figure of the company or of a group changed in a week.
 
 use std::fmt;
 use std::str::FromStr;

@@ -114,7 +114,7 @@ fn rejected_call_is_reported_and_other_calls_are_kept() {
 #[test]
 fn fixed_inputs_apply_and_simulation_can_be_stopped() {
     let fixed_inputs = FixedInputs { from: 36, economy: true, ..FixedInputs::default() };
-    let outcome = simulate_week_with(Edits { fixed_inputs: fixed_inputs, ..Edits::default() });
+    let outcome = simulate_week_with(Edits { fixed_inputs, ..Edits::default() });
     let mut past = RecordedRun::open(&recorded_run_path("development")).expect("a run");
     let eve =
         past.snapshot_at(35, &mut continue_progress).expect("the recorded state").expect("it is not stopped");

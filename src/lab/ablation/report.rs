@@ -35,7 +35,7 @@ pub struct ShortRun<'a> {
 /// Length of a short run in days. Competitors and drift start later.
 pub const SHORT_DAYS: u32 = 50;
 
-/// Starting cash of a short run in dollars, with which final cash is compared.
+/// Starting cash of a short run, dollars. Final cash is compared with this amount.
 const SHORT_RUN_START_CASH: f64 = 1e6;
 
 /// Returns the tables and graphs of the ablation: subscribers on `day`, final figures, differences between adjacent

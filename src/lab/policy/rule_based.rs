@@ -64,7 +64,9 @@ impl RuleBased {
             .chain(amounts(&self.spend).map(|dollars| ("spend", dollars)))
             .find(|(_, dollars)| !is_amount(dollars));
         match wrong {
-            Some((key, dollars)) => Err(format!("`{key}` must be dollars a day, not {dollars}")),
+            Some((key, dollars)) => {
+                Err(format!("`{key}` must be an amount of 0 or more dollars a day, not {dollars}"))
+            }
             None => Ok(self),
         }
     }

@@ -75,7 +75,7 @@ impl Interpreter {
     }
 }
 
-/// Returns the output of a script, line by line.
+/// Returns the response to a script: its standard output, then its standard error.
 pub(super) fn script_response(tool: ToolId, answer: &novamind_tools::Answer) -> CommandResponse {
     let data = answer.to_json();
     let part = |name: &str| data[name].as_str().unwrap_or_default().trim_end().to_owned();

@@ -153,7 +153,7 @@ impl Interpreter {
     fn adopt(&mut self, question: &WhatIfQuestion, column: usize) -> Result<CommandResponse, ParseError> {
         if question.futures.is_some() || question.until.is_some() {
             let text =
-                "adopt cannot be combined with until or futures, because the branch is always played to the day of this run"
+                "adopt cannot be combined with until or futures, because the branch is always played to the current day of this run"
                     .to_owned();
             return Err(ParseError { text, column });
         }

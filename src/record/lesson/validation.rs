@@ -14,7 +14,7 @@ pub(super) struct LessonDefect {
     pub problem: String,
 }
 
-/// Returns the first inconsistency of a parsed lesson.
+/// Returns the first defect in a parsed lesson.
 pub(super) fn find_defect(lesson: &Lesson) -> Option<LessonDefect> {
     let plan = &lesson.plan;
     let wrong = |place: &str, key, problem: String| LessonDefect { place: place.to_owned(), key, problem };

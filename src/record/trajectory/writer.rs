@@ -269,7 +269,7 @@ impl TrajectoryWriter {
     }
 }
 
-/// Returns the path for a copy of the confirmed lines next to a trajectory.
+/// Returns a path next to a trajectory, for a copy of its confirmed lines.
 fn copy_path(path: &Path) -> PathBuf {
     let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
     path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))

@@ -19,7 +19,7 @@ pub fn describe_writes(figure_writes: &FigureWrites) -> Vec<String> {
     }
     let row = |write: &FigureWrite| {
         let amount = format_amount(*target, write.amount());
-        vec![describe_source(write), amount, value(write.after), write_notes(*target, write)]
+        vec![describe_source(write), amount, value(write.after), explain_write(*target, write)]
     };
     lines.extend(indented_table(&["by", "amount", "after", ""], &writes.iter().map(row).collect::<Vec<_>>()));
     clean_up_numbers(lines)
@@ -60,7 +60,7 @@ fn subscription_end_cause_name(cause: EndCause) -> &'static str {
 }
 
 /// Describes how the amount of a write was computed, and whether a limit applied.
-fn write_notes(target: WriteTarget, write: &FigureWrite) -> String {
+fn explain_write(target: WriteTarget, write: &FigureWrite) -> String {
     let how = match write.source {
         WriteSource::Reputation(ReputationCause::Spillover(spill)) => {
             format!("{:+.9} of {} × {} × {}", spill.change, spill.source, spill.weight, spill.factor)

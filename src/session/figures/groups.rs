@@ -18,7 +18,7 @@ pub struct PaidLeads {
     pub leads: u32,
     /// Advertising spending, dollars.
     pub spend: f64,
-    /// Individuals among the leads who signed up and were billed on the same day.
+    /// Individuals among the leads who signed up and were billed on the day of their arrival.
     pub billed: u32,
 }
 

@@ -150,7 +150,7 @@ impl Session {
     }
 }
 
-/// Starts the database. Uses the existing contents only if `sound` is true.
+/// Starts the database. Uses the existing contents only if `sound` is true, that is, the file passed its integrity check.
 pub(crate) fn open_projector(
     folder: &Path,
     access: Access,

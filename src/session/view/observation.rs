@@ -151,7 +151,7 @@ impl CompanyView<'_> {
             committed_before: self.daily_cost(&self.history.week_actions.settings),
             runway_weeks: self.runway_weeks(&pace),
             subscribers: closing.individual_subscribers,
-            companies: self.active_companies(),
+            companies: self.active_enterprise_count(),
             seats: closing.enterprise_seats,
             known_groups: Group::all()
                 .filter(|group| self.simulation.world.market.is_known(*group))
@@ -243,7 +243,7 @@ impl CompanyView<'_> {
         waiting
     }
 
-    fn active_companies(&self) -> u32 {
+    fn active_enterprise_count(&self) -> u32 {
         let enterprise = Group::all().filter(|group| group.is_enterprise());
         enterprise.map(|group| self.simulation.world.customers.groups[group].active_count()).sum()
     }

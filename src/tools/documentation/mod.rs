@@ -20,7 +20,7 @@ pub enum NameSelection {
 }
 
 impl NameSelection {
-    /// Parses a name or a list of names. `all`, alone or in the list, and a missing argument select all names.
+    /// Parses a name or a list of names. `all` (alone or in a list) selects all names, and so does a missing argument.
     pub(super) fn parse(arguments: &Arguments, field: &'static str) -> Result<NameSelection, Rejection> {
         let wrong = || wrong_type_rejection(field, "a name, a list of names, or all");
         match arguments.get(field) {

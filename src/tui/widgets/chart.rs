@@ -19,7 +19,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// Role that determines the color of the curve.
     pub role: Role,
-    /// Whether single points are drawn instead of a line.
+    /// Whether separate points are drawn instead of a line.
     pub is_scatter: bool,
     /// Name that is drawn at the end of the curve if there is space, or an empty text.
     pub name: &'static str,

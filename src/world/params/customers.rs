@@ -241,7 +241,7 @@ pub struct IndividualPersona {
     pub usage_thresholds: [f64; 3],
     /// Labels for usage, lowest first.
     pub usage_labels: [String; 4],
-    /// Upper bounds of the budget labels, as factors of the group mean.
+    /// Upper bounds of the budget labels, as multiples of the group mean.
     pub budget_factors: [f64; 2],
     /// Labels for budget, lowest first.
     pub budget_labels: [String; 3],

@@ -3,7 +3,7 @@
 use super::check::parameters;
 
 parameters! {
-    /// Daily update of satisfaction (`docs/mechanics/retention/satisfaction.md`).
+    /// Parameters of the daily update of satisfaction (`docs/mechanics/retention/satisfaction.md`).
     pub struct Satisfaction {
         /// Weight of today's satisfaction in the moving average.
         pub satisfaction_ema_alpha: f64 where 0.0..=1.0,

@@ -41,7 +41,7 @@ impl SupportPool {
         }
     }
 
-    fn contains_group(self, group: Group) -> bool {
+    fn contains_all_issues_of(self, group: Group) -> bool {
         matches!(self, SupportPool::AllIssues)
             || matches!(self, SupportPool::Group(pool_group) if pool_group == group)
     }
@@ -122,7 +122,7 @@ impl ResolutionRound<'_> {
             calls.filter(|(_, batch)| pool.only_group().is_none_or(|group| group == batch.group))
         {
             let of_group = &mut members[issue_batch.group];
-            if pool.contains_group(issue_batch.group) && !issue_batch.solved.contains(&true) {
+            if pool.contains_all_issues_of(issue_batch.group) && !issue_batch.solved.contains(&true) {
                 of_group.add_block(number, issue_batch.open.len() as u32);
                 continue;
             }

@@ -48,7 +48,7 @@ fn validate(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
                 value.as_str().is_none_or(|text| is_hexadecimal(text, rule.as_str().expect("a pattern")))
             }
             "format" => value.as_str().is_none_or(|text| OffsetDateTime::parse(text, &Rfc3339).is_ok()),
-            "required" => property_names(rule).iter().all(|name| value.get(name).is_some()),
+            "required" => strings_in_array(rule).iter().all(|name| value.get(name).is_some()),
             "properties" => {
                 for (name, property) in rule.as_object().expect("properties") {
                     inner.extend(
@@ -92,12 +92,12 @@ fn validate(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
     }
 }
 
-fn property_names(rule: &Value) -> Vec<&str> {
+fn strings_in_array(rule: &Value) -> Vec<&str> {
     rule.as_array().into_iter().flatten().filter_map(Value::as_str).collect()
 }
 
 fn allowed_types(rule: &Value) -> Vec<&str> {
-    rule.as_str().map_or_else(|| property_names(rule), |one| vec![one])
+    rule.as_str().map_or_else(|| strings_in_array(rule), |one| vec![one])
 }
 
 fn has_type(value: &Value, name: &str) -> bool {
@@ -283,7 +283,7 @@ fn invalid_lines_violate_the_schema() {
     for kind in line_kinds(&root) {
         let value = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
         let example: Map<String, Value> = value["examples"][0].as_object().expect("an example").clone();
-        for name in property_names(&value["required"]) {
+        for name in strings_in_array(&value["required"]) {
             let mut without = example.clone();
             without.remove(name);
             assert!(!line_problems(&root, &without.into()).is_empty(), "{kind} without {name}");

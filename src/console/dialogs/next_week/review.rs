@@ -62,7 +62,7 @@ fn lines(
     let money = money.flat_map(|line| wrap(&line, width));
     lines.extend(money.map(|line| TextLine::from(canvas.span(line, Role::Text))));
     lines.push(TextLine::default());
-    lines.push(head("Changes since the last week", canvas));
+    lines.push(head("Settings changed since last week", canvas));
     for change in &seen.changes {
         lines.push(TextLine::from(vec![
             canvas.span(format!("  {:<32} ", change.setting.to_string()), Role::Text),

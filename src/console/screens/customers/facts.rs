@@ -191,7 +191,7 @@ fn source_lines(company: &DisplayedCompany, facts: &GroupFacts, group: Group) ->
             Some(known) => known.name(),
             None => source.as_str(),
         };
-        let title = format!("leads of {group} from {source} in 12 weeks");
+        let title = format!("leads of {group} from {source} in the last 12 weeks");
         lines.push(figure_line(format!("  {source}"), figures, title, "acquisition-source", Some(sql)));
     }
     lines

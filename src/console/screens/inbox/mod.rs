@@ -337,7 +337,7 @@ impl ScreenState for Inbox {
     fn handle_response(&mut self, news: &Response, context: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
             Response::ToolCalled(_, Ok(answer), _) => {
-                let effects = self.handle_sent(answer);
+                let effects = self.handle_send_result(answer);
                 self.rules_form = None;
                 self.update_threads(context.company);
                 effects

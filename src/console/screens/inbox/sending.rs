@@ -138,7 +138,7 @@ impl Inbox {
     }
 
     /// Clears the drafts and marks of all processed threads.
-    pub(super) fn handle_sent(&mut self, answer: &Answer) -> Vec<Effect> {
+    pub(super) fn handle_send_result(&mut self, answer: &Answer) -> Vec<Effect> {
         let (offered, results) = match answer {
             Answer::SendEnterpriseDeal(answer) => (true, &answer.results),
             Answer::RejectEnterpriseDeal(answer) => (false, &answer.results),

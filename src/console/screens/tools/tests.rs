@@ -359,7 +359,7 @@ fn matrix_shows_totals_and_marks_hidden_columns() {
 }
 
 #[test]
-fn form_keys_name_enter_for_editing() {
+fn form_hints_say_that_enter_edits_the_value() {
     let (tools, _) = form_after_keys(ToolId::SetPrices, &[]);
     let text = screen_text(&tools, &new_company(), 120, 37);
     assert!(text.contains("enter edit the value") && !text.contains("type a number"), "{text}");

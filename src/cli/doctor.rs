@@ -161,8 +161,10 @@ fn describe_colors() -> String {
 /// Checks that runs can be written, without creating their folder.
 fn check_runs_folder(runs: &Path) -> Result<String, String> {
     let ancestor = existing_ancestor(runs);
-    check_writable(ancestor)?;
     let name = abbreviate_home_folder(runs);
+    check_writable(ancestor).map_err(|problem| {
+        format!("{name} cannot be written ({problem}); give another folder with --runs-dir")
+    })?;
     if ancestor != runs {
         return Ok(format!("{name} does not exist yet; the first run creates it"));
     }

@@ -117,7 +117,6 @@ fn check_simulation((days, expected): KnownHash) -> Result<String, String> {
 }
 
 fn describe_terminal() -> Result<String, String> {
-    let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let mut words =
         vec![variable("TERM").map_or("TERM is not set".to_owned(), |name| format!("TERM={name}"))];
     words.extend(variable("TERM_PROGRAM").map(|name| format!("TERM_PROGRAM={name}")));
@@ -143,7 +142,6 @@ fn describe_terminal() -> Result<String, String> {
 
 /// Lists the variables that select colors. On a terminal, also shows samples of 16 and of 16 million colors.
 fn describe_colors() -> String {
-    let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let depth =
         variable("COLORTERM").map_or("COLORTERM is not set".to_owned(), |name| format!("COLORTERM={name}"));
     if variable("NO_COLOR").is_some() {
@@ -191,10 +189,13 @@ fn check_settings(configuration: &Configuration) -> Result<String, String> {
     KeyBindings::with_user_file(configuration).map_err(|error| error.to_string())?;
     let theme = Preferences::load(configuration).theme;
     themes::find_theme(theme.as_deref().unwrap_or("dark"), configuration)?;
+    for name in configuration.toml_names("themes") {
+        themes::find_theme(&name, configuration)?;
+    }
     for scenario in configuration.scenario_names() {
         configuration.load_scenario(&scenario).map_err(|error| error.to_string())?;
     }
-    Ok(format!("{name}: keys, theme and scenarios are valid"))
+    Ok(format!("{name}: keys, themes and scenarios are valid"))
 }
 
 /// Returns a path with `~` for the user's home folder, so that a report does not contain the user's name.
@@ -204,6 +205,12 @@ fn abbreviate_home_folder(path: &Path) -> String {
         Some(rest) => format!("~/{}", rest.display()),
         None => path.display().to_string(),
     }
+}
+
+/// Returns the value of an environment variable without control characters, or `None` if it is empty.
+fn variable(name: &str) -> Option<String> {
+    let value = std::env::var(name).ok().filter(|value| !value.is_empty())?;
+    Some(value.replace(char::is_control, "\u{fffd}"))
 }
 
 #[cfg(test)]

@@ -58,7 +58,10 @@ impl CheckItem {
     /// Returns the line of a report: verdict, name and explanation.
     pub fn line(&self) -> String {
         let verdict = if self.verdict() == "wrong" { "WRONG" } else { self.verdict() };
-        format!("  {verdict:<5} {:<11} {}\n", self.name, self.text())
+        // Paths and variables can contain line breaks and escape sequences, with which a line could be forged.
+        let text: String =
+            self.text().replace(|letter: char| letter.is_control() && self.name != "colors", "\u{fffd}");
+        format!("  {verdict:<5} {:<11} {text}\n", self.name)
     }
 }
 
@@ -96,8 +99,9 @@ pub fn check_clock() -> Result<String, String> {
 pub fn check_writable(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
-    let tried = std::fs::write(&probe, b"check").and_then(|()| std::fs::remove_file(&probe));
-    tried.map_err(|error| format!("{}: {error}", folder.display()))
+    let tried = std::fs::write(&probe, b"check");
+    let removed = std::fs::remove_file(&probe);
+    tried.and(removed).map_err(|error| format!("{}: {error}", folder.display()))
 }
 
 /// Checks the free space that the system reports.

@@ -51,6 +51,19 @@ struct ScenarioFile {
     world: Table,
 }
 
+/// Largest configuration file in bytes.
+const MAX_FILE_BYTES: u64 = 16 << 20;
+
+/// Reads a regular file of limited size. Devices and pipes can have no end.
+fn read_small_file(path: &Path) -> std::io::Result<String> {
+    let found = std::fs::metadata(path)?;
+    if !found.is_file() || found.len() > MAX_FILE_BYTES {
+        let problem = format!("not a regular file of at most {} MB", MAX_FILE_BYTES >> 20);
+        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, problem));
+    }
+    std::fs::read_to_string(path)
+}
+
 /// Name of the default scenario.
 pub const DEFAULT_SCENARIO: &str = "default";
 
@@ -83,7 +96,7 @@ impl Configuration {
     pub fn read_file(&self, relative: impl AsRef<Path>) -> Result<Option<ParameterSource>, RunError> {
         let Some(folder) = &self.folder else { return Ok(None) };
         let path = folder.join(relative);
-        match std::fs::read_to_string(&path) {
+        match read_small_file(&path) {
             Ok(text) => Ok(Some(ParameterSource { name: path.display().to_string(), text })),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(RunError::Io { path, error }),
@@ -289,6 +302,20 @@ impl Configuration {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn read_file_rejects_files_without_end() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let configuration = Configuration { folder: Some(folder.path().to_owned()), voice: None };
+        let huge = std::fs::File::create(folder.path().join("keys.toml")).expect("a file");
+        huge.set_len(MAX_FILE_BYTES + 1).expect("a sparse file");
+        std::fs::create_dir(folder.path().join("a.toml")).expect("a folder");
+        for name in ["keys.toml", "a.toml"] {
+            let error = configuration.read_file(name).expect_err(name).to_string();
+            assert!(error.contains("not a regular file"), "{error}");
+        }
+        assert_eq!(configuration.read_file("b.toml").expect("no file"), None);
+    }
 
     #[test]
     fn bundled_scenarios_have_valid_parameters() {

@@ -53,10 +53,14 @@ def listed():
     return [dict(error, number=number) for number, error in enumerate(errors, 1)]
 
 
+def manifest_of(path):
+    """Returns the manifest of the crate of a source file."""
+    return next(folder / "Cargo.toml" for folder in path.parents if (folder / "Cargo.toml").exists())
+
+
 def crate_of(path):
     """Returns the name of the crate of a source file."""
-    folder = next(folder for folder in path.parents if (folder / "Cargo.toml").exists())
-    return tomllib.loads((folder / "Cargo.toml").read_text())["package"]["name"]
+    return tomllib.loads(manifest_of(path).read_text())["package"]["name"]
 
 
 def plant(texts, error):
@@ -83,7 +87,7 @@ def sources(errors):
     changed = {path: text for path, text in texts.items() if text != original[path]}
     base = ROOT / "src/base"
     # Every crate with a mutant needs the crate of the switch.
-    for manifest in (folder / "Cargo.toml" for path in list(changed) for folder in path.parents if (folder / "Cargo.toml").exists()):
+    for manifest in {manifest_of(path) for path in changed}:
         text = manifest.read_text()
         if manifest.parent not in (ROOT, base) and "novamind-base.workspace" not in text:
             changed[manifest] = text.replace("[dependencies]\n", "[dependencies]\nnovamind-base.workspace = true\n", 1)

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use crate::error::RunError;
+use crate::files::open_regular_file;
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources, line_of_key};
 
@@ -56,12 +57,12 @@ const MAX_FILE_BYTES: u64 = 16 << 20;
 
 /// Reads a regular file of limited size. Devices and pipes can have no end.
 fn read_small_file(path: &Path) -> std::io::Result<String> {
-    let found = std::fs::metadata(path)?;
-    if !found.is_file() || found.len() > MAX_FILE_BYTES {
+    let file = open_regular_file(path)?;
+    if file.metadata()?.len() > MAX_FILE_BYTES {
         let problem = format!("not a regular file of at most {} MB", MAX_FILE_BYTES >> 20);
         return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, problem));
     }
-    std::fs::read_to_string(path)
+    std::io::read_to_string(file)
 }
 
 /// Name of the default scenario.

@@ -4,7 +4,7 @@ use super::NegotiationContext;
 use crate::customers::columns::Subscriber;
 use crate::customers::curve::Curve;
 use crate::identifiers::{ByPlan, Group};
-use crate::params::ServicePenalty;
+use crate::params::{EnterpriseQualityCap, ServicePenalty};
 use crate::quality::{
     QualityTerms, delivered_quality, perceived_quality, quota_demand, quota_factor, relationship_as_read,
     relationship_bonus,
@@ -16,13 +16,17 @@ impl NegotiationContext<'_> {
     pub(super) fn negotiation_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
         let product = self.product.quality(group, self.day.params);
         let quality = &self.day.params.quality;
+        let maximum = match self.day.params.fidelity.enterprise_quality_cap {
+            EnterpriseQualityCap::One => quality.negotiation_quality_max,
+            EnterpriseQualityCap::None => f64::INFINITY,
+        };
         ByPlan::from_fn(|plan| {
             let demand = quota_demand(row.usage_rate, row.usage_rate, self.day.params);
             let quota =
                 if active { quota_factor(self.day.morning.quotas[plan], demand, quality) } else { 1.0 };
             let delivered = delivered_quality(product, 0.0, 0.0, self.day.morning.multipliers[plan]);
             self.perceived_plan_quality(group, row, delivered, 0.0, quota)
-                .clamp(quality.negotiation_quality_min, quality.negotiation_quality_max)
+                .clamp(quality.negotiation_quality_min, maximum)
         })
     }
 

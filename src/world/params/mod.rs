@@ -39,7 +39,12 @@ use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
 /// Keys that were added after runs had been recorded. Each element is table, key, and the default value as JSON, which
 /// results in the earlier behavior.
-const ADDED_KEYS: [(&str, &str, &str); 1] = [("fidelity", "insight_noise", "\"independent\"")];
+const ADDED_KEYS: [(&str, &str, &str); 4] = [
+    ("fidelity", "insight_noise", "\"independent\""),
+    ("fidelity", "renewal_price", "\"list\""),
+    ("fidelity", "enterprise_quality_cap", "\"one\""),
+    ("fidelity", "interface", "\"release_1\""),
+];
 
 parameters! {
     /// All parameters, one field per table of the files in `configs/world`.

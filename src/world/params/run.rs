@@ -105,6 +105,12 @@ pub struct Fidelity {
     pub deal_price_ceiling: bool,
     /// Random draws of the errors of estimates.
     pub insight_noise: InsightNoise,
+    /// List price of the current plan in an individual's billing decision.
+    pub renewal_price: RenewalPrice,
+    /// Upper limit of the quality that enterprises perceive in a negotiation.
+    pub enterprise_quality_cap: EnterpriseQualityCap,
+    /// Generation of the released interface.
+    pub interface: Interface,
 }
 
 /// Formula of the participation curve.
@@ -196,6 +202,38 @@ pub enum InsightNoise {
     /// One sequence of draws for each group, which is the same in every run, at every level and on every day, as in
     /// the released simulator.
     Release,
+}
+
+/// List price of the current plan in an individual's billing decision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RenewalPrice {
+    /// Today's list price, as in release 1. A price increase makes subscribers leave who would not pay it.
+    List,
+    /// The lower of today's list price and the list price stored with the subscription, as in release 2.
+    LowerOfListAndStored,
+}
+
+/// Upper limit of the quality that enterprises perceive in a negotiation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EnterpriseQualityCap {
+    /// `quality.negotiation_quality_max`, as in release 1.
+    One,
+    /// No upper limit, as in release 2.
+    None,
+}
+
+/// Generation of the released interface: columns of tables, results of tools, texts of notifications and HTTP routes
+/// (`docs/known-differences.md#the-two-releases`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Interface {
+    /// The release of 28 July 2026.
+    #[serde(rename = "release_1")]
+    Release1,
+    /// The release of August 2026.
+    #[serde(rename = "release_2")]
+    Release2,
 }
 
 /// Recorded series that are replayed instead of being drawn (`docs/mechanics/randomness.md#recorded-series`).

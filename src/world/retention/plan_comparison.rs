@@ -6,13 +6,14 @@ use crate::customers::columns::Block;
 use crate::customers::curve::{Curve, required_quality};
 use crate::customers::drift::Expectation;
 use crate::identifiers::{ByPlan, Group, Plan};
-use crate::params::{Params, ServicePenalty};
+use crate::params::{Params, RenewalPrice, ServicePenalty};
 use crate::quality::{QualityTerms, perceived_quality, quota_demand, quota_factor, relationship_bonus};
 
 /// Prices and qualities of the plans for an individual, and the individual's requirements.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanComparison {
-    /// Today's list prices less the ongoing discounts, dollars per month.
+    /// List prices less the ongoing discounts, dollars per month. The list prices are today's, or for the current plan
+    /// the stored price if that is lower and `fidelity.renewal_price` says so.
     pub prices: ByPlan<f64>,
     /// Terms of the perceived quality of each plan.
     pub experiences: ByPlan<QualityTerms>,
@@ -40,7 +41,12 @@ pub fn compare_plans(
     };
     let prices = ByPlan::from_fn(|plan| {
         let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
-        (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
+        let list = morning.core.prices[plan];
+        let listed = match params.fidelity.renewal_price {
+            RenewalPrice::LowerOfListAndStored if plan == block.plan[at] => list.min(block.listed_price[at]),
+            _ => list,
+        };
+        (listed - discount).max(params.billing.effective_price_min)
     });
     let quality = &params.quality;
     let rate = block.usage_rate[at];

@@ -117,6 +117,11 @@ mod tests {
         let worst = |row: &mut Subscriber| (row.relationship, row.open_issue_days) = (0.0, 2);
         assert_near(quality(&kit, &worst, false), [0.705, 0.790, 0.875]);
         assert_near(quality(&kit, &|row| row.relationship = 1.0, false), [1.0; 3]);
+        kit.params.fidelity.enterprise_quality_cap = EnterpriseQualityCap::None;
+        assert_near(quality(&kit, &|row| row.relationship = 1.0, false), [1.215, 1.3, 1.385]);
+        let hopeless = |row: &mut Subscriber| (row.relationship, row.open_issue_days) = (0.4, 90);
+        assert_near(quality(&kit, &hopeless, false), [-1.0; 3]);
+        kit.params.fidelity.enterprise_quality_cap = EnterpriseQualityCap::One;
         kit.settings.ads_strength.global = 0.5;
         assert_near(quality(&kit, &|_| {}, false), [0.7057709848, 0.7907709848, 0.8757709848]);
         kit.settings.ads_strength.global = 0.0;

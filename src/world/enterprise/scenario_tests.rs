@@ -160,6 +160,21 @@ fn unanswered_threat_loses_the_subscriber() {
 }
 
 #[test]
+fn lost_subscriber_damages_the_reputation_once_without_reappearing_threads() {
+    let mut kit = kit_with_unhappy_subscriber();
+    kit.params.fidelity.reappearing_threads = false;
+    run_days(&mut kit, 4..=10);
+    assert_eq!(kit.run_day(11).lost.len(), 1, "seven days after the threat of day 4");
+    assert_eq!((kit.facts.endings.len(), kit.facts.endings[0].cause), (1, EndCause::PriceSensitivity));
+    let reputation = kit.reputation.get(kit.group);
+    for day in 12..=16 {
+        assert!(kit.run_day(day).lost.is_empty(), "day {day}");
+        assert_eq!(kit.reputation.get(kit.group), reputation, "day {day}");
+    }
+    assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
+}
+
+#[test]
 fn threat_suspends_payment_until_a_deal() {
     let mut kit = kit_with_unhappy_subscriber();
     kit.run_day(29);

@@ -509,3 +509,25 @@ fn open_lead_threads(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::customers::traits::draw_traits;
+    use crate::random::Streams;
+
+    #[test]
+    fn stored_curve_contains_drift_only_if_drift_is_counted_at_every_read() {
+        let mut params = Params::bundled();
+        let group = Group::at(0).expect("S1");
+        let mut traits = draw_traits(group, 1, 1.0, &params, &Streams::new(1));
+        (traits.curve.q_min, traits.curve.q_max, traits.curve.c_max) = (0.1, 0.55, 50.0);
+        let expectation = Expectation { quality: 0.25, c_max: 2.0 };
+        let (drifted, _) = curve_and_demand_with(expectation, &traits, &params);
+        let values = |curve: Curve| (curve.q_min, curve.q_max, curve.c_max);
+        assert_eq!(values(drifted), (0.35, 0.8, 52.0), "the curve with which the lead decides");
+        assert_eq!(values(stored_curve(&traits, &drifted, &params)), (0.35, 0.8, 52.0));
+        params.fidelity.drift_counted = DriftCounted::Once;
+        assert_eq!(values(stored_curve(&traits, &drifted, &params)), (0.1, 0.55, 50.0));
+    }
+}

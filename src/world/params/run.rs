@@ -228,10 +228,10 @@ pub enum EnterpriseQualityCap {
 /// (`docs/known-differences.md#the-two-releases`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interface {
-    /// The release of 28 July 2026.
+    /// The release of 28 July 2026, revision d2b7b32.
     #[serde(rename = "release_1")]
     Release1,
-    /// The release of August 2026.
+    /// The later revision 538ad2b7.
     #[serde(rename = "release_2")]
     Release2,
 }

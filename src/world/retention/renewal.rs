@@ -304,8 +304,17 @@ mod tests {
         willingness: f64,
         check: impl FnOnce(&RenewalContext<'_>) -> R,
     ) -> R {
-        let (params, streams) = (Params::bundled(), Streams::new(1));
-        with_day_context(day, settings, &ServiceDay::without_load(), (&params, &streams), |day| {
+        with_renewal_context_of(&Params::bundled(), day, settings, willingness, check)
+    }
+
+    fn with_renewal_context_of<R>(
+        params: &Params,
+        day: &Morning,
+        settings: &Settings,
+        willingness: f64,
+        check: impl FnOnce(&RenewalContext<'_>) -> R,
+    ) -> R {
+        with_day_context(day, settings, &ServiceDay::without_load(), (params, &Streams::new(1)), |day| {
             check(&RenewalContext {
                 day,
                 involuntary: ByGroup::default(),
@@ -375,6 +384,35 @@ mod tests {
                 assert!((quality - 0.484657359).abs() < 1e-9);
                 let choice = weighing.choice(judgement.day.params);
                 assert_eq!(choice.is_some(), stays, "list price {list}");
+            });
+        }
+    }
+
+    #[test]
+    fn current_plan_is_evaluated_at_the_lower_of_list_and_stored_price() {
+        use crate::params::RenewalPrice::{List, LowerOfListAndStored};
+        for (rule, list, promotion, prices, stays) in [
+            (List, 45.0, 0.0, [45.0, 45.0, 45.0], false),
+            (LowerOfListAndStored, 45.0, 0.0, [45.0, 20.0, 45.0], true),
+            (LowerOfListAndStored, 45.0, 8.0, [37.0, 12.0, 37.0], true),
+            (LowerOfListAndStored, 15.0, 0.0, [15.0, 15.0, 15.0], true),
+        ] {
+            let mut params = Params::bundled();
+            params.fidelity.renewal_price = rule;
+            let mut day = morning(31);
+            day.product[group()] = 0.2 + 0.3;
+            day.multipliers = ByPlan([0.0, 0.9, 0.0]);
+            day.quotas = ByPlan([1e9; 3]);
+            day.core.prices = ByPlan([list; 3]);
+            let mut settings = Settings::initial(&params);
+            settings.promotion.global = promotion;
+            let mut block = Block::default();
+            block.push(Subscriber { plan: Plan::B, listed_price: 20.0, start_day: 1, ..subscriber(1) });
+            with_renewal_context_of(&params, &day, &settings, 1.0, |judgement| {
+                let comparison = compare_plans(group(), &block, 0, judgement);
+                assert_eq!(comparison.prices.0, prices, "{rule:?}, list price {list}");
+                let expected = stays.then_some(Plan::B);
+                assert_eq!(comparison.choice(&params), expected, "{rule:?}, list price {list}");
             });
         }
     }

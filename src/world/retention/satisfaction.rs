@@ -238,6 +238,7 @@ mod tests {
     use crate::identifiers::Plan;
     use crate::morning::Morning;
     use crate::morning::tests::morning;
+    use crate::params::DriftCounted;
     use crate::random::Streams;
     use crate::retention::{refresh_required, remembered_budget};
     use crate::settings::Settings;
@@ -354,5 +355,16 @@ mod tests {
         assert_eq!(row.effective_c_max, 52.0);
         let instant = next_satisfaction(row, &day, service, &AdsStrength::default()) / 0.1;
         assert!((instant - -0.127399581).abs() < 1e-8, "{instant}");
+        // If drift is counted once, a bill stores the customer's budget without drift, so satisfaction does not change.
+        let mut once = params;
+        once.fidelity.drift_counted = DriftCounted::Once;
+        row.effective_c_max = remembered_budget(row.c_max, 2.0, &once);
+        assert_eq!(row.effective_c_max, 50.0);
+        let unchanged = next_satisfaction(row, &day, service, &AdsStrength::default());
+        assert_eq!(unchanged.to_bits(), moved.to_bits());
+        // The budget of a poor customer is stored as is under release 2, which has no minimum.
+        assert_eq!(remembered_budget(12.0, 2.0, &once), 15.0);
+        once.billing.billing_c_max_min = 0.0;
+        assert_eq!(remembered_budget(12.0, 2.0, &once), 12.0);
     }
 }

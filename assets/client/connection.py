@@ -170,7 +170,7 @@ def checked(answer: Dict[str, Any]) -> Dict[str, Any]:
         NovamindError: the response is a rejection.
     """
     if answer.get("success") is False:
-        raise NovamindError(str(answer.get("error")), answer.get("code"), answer.get("field"))
+        raise NovamindError(str(answer.get("message") or answer.get("error")), answer.get("code"), answer.get("field"))
     return answer
 
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import sys
 from typing import Any, Dict, Optional
+from urllib.parse import quote
 
 from . import analytics, enterprise, infrastructure, market, marketing, pricing, research, scripts
 from .connection import Connection, NovamindError, call, checked, default, new_id, request
@@ -26,6 +27,7 @@ __all__ = [
     "Client", "Connection", "NovamindError",
     "analytics", "enterprise", "infrastructure", "market", "marketing", "pricing", "research", "scripts",
     "current_day", "dashboard", "game_status", "get_vars", "naive_predictions", "next_week", "query",
+    "request_status",
 ]
 
 
@@ -103,6 +105,19 @@ class Client:
             body["expected_day"] = expected_day
         return checked(self.connection.request("POST", "/next-week", body))
 
+    def request_status(self, request_id: str) -> Dict[str, Any]:
+        """Returns request_id, status (unknown, pending or completed), and the result of a completed request.
+
+        Only runs with the interface of release 2 have this function.
+
+        Raises:
+            NovamindError: the run has the interface of release 1.
+        """
+        answer = self.connection.request("GET", "/requests/" + quote(request_id, safe=""))
+        if "status" not in answer:
+            raise NovamindError(str(answer.get("error")))
+        return answer
+
     def naive_predictions(self, spread: float = 0.1) -> Dict[str, Dict[str, float]]:
         """Returns placeholder forecasts: today's cash, plus and minus ``spread`` as a share of it."""
         cash = float(self.game_status()["cash"])
@@ -117,4 +132,5 @@ dashboard = _default.dashboard
 game_status = _default.game_status
 query = _default.query
 next_week = _default.next_week
+request_status = _default.request_status
 naive_predictions = _default.naive_predictions

@@ -7,6 +7,7 @@
 mod agent_page;
 mod announcement;
 mod client;
+mod committed;
 mod current_request;
 mod http;
 mod inspect_log;
@@ -16,6 +17,7 @@ mod openapi;
 mod remote;
 mod request;
 mod request_handler;
+mod request_id;
 mod schema;
 mod transcript;
 mod worker;

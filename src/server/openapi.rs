@@ -2,11 +2,18 @@
 
 use serde_json::{Map, Value, json};
 
+use super::request_id::needs_request_id;
 use super::schema;
 use novamind_tools::{ParameterNumbers, ToolId};
 
 /// Returns the OpenAPI document.
-pub fn document(numbers: &ParameterNumbers) -> Value {
+///
+/// `is_release_2` selects the interface of release 2.
+pub fn document(numbers: &ParameterNumbers, is_release_2: bool) -> Value {
+    let mut paths = paths(numbers);
+    if is_release_2 {
+        describe_release_2(&mut paths);
+    }
     json!({
         "openapi": "3.1.0",
         "info": {
@@ -14,7 +21,7 @@ pub fn document(numbers: &ParameterNumbers) -> Value {
             "version": env!("CARGO_PKG_VERSION"),
             "description": "One run of a simulated company. Requests are answered one after the other.",
         },
-        "paths": paths(numbers),
+        "paths": paths,
         "components": { "schemas": schemas(numbers) },
     })
 }
@@ -52,6 +59,34 @@ fn paths(numbers: &ParameterNumbers) -> Value {
             "delete": post_operation("Delete a script", script, "removed"),
         },
     })
+}
+
+/// Changes the description of the paths to the interface of release 2.
+fn describe_release_2(paths: &mut Value) {
+    let require_id = |schema: &mut Value| match &mut schema["required"] {
+        Value::Array(fields) => fields.push(schema::REQUEST_ID.into()),
+        other => *other = json!([schema::REQUEST_ID]),
+    };
+    let body = "/requestBody/content/application~1json/schema";
+    if let Some(schema) = paths["/next-week"]["post"].pointer_mut(body) {
+        require_id(schema);
+    }
+    let calls = paths["/call"]["post"].pointer_mut(&format!("{body}/oneOf"));
+    for schema in calls.and_then(Value::as_array_mut).into_iter().flatten() {
+        let tool = schema["properties"]["tool"]["const"].as_str().unwrap_or_default();
+        if needs_request_id(tool) {
+            schema["properties"][schema::REQUEST_ID] = schema::request_id_schema();
+            require_id(schema);
+        }
+    }
+    let refusal = |summary: &str, status: &str, code: &str| json!({ "summary": summary, "responses": { status: { "description": format!("always {code}") } } });
+    let gone = refusal("Not supported", "410", "daily_scripts_unsupported");
+    paths["/daily-scripts"] = json!({ "get": gone, "post": gone, "delete": gone });
+    paths["/reinitialize"] = json!({ "post": refusal("Not supported", "403", "game_reset_forbidden") });
+    let mut status = get_operation("Status of a request: unknown, pending or completed with its result");
+    status["parameters"] =
+        json!([{ "name": "id", "in": "path", "required": true, "schema": { "type": "string" } }]);
+    paths["/requests/{id}"] = json!({ "get": status });
 }
 
 fn get_operation(summary: &str) -> Value {

@@ -11,6 +11,9 @@ use serde_json::{Value, json};
 use tokio::net::TcpStream;
 
 use super::announcement::Announcement;
+use super::http::new_token;
+use super::request_id::needs_request_id;
+use novamind_record::error::RunError;
 use novamind_record::folder::lock::is_locked;
 
 /// Time limit for the health check. A working server responds immediately, even during a week.
@@ -29,6 +32,8 @@ pub struct RemoteServer {
     pub port: u16,
     /// Token for requests, if the server requires a token.
     pub token: Option<String>,
+    /// Whether the run has the interface of release 2.
+    has_release_2: bool,
 }
 
 /// A response of a server.
@@ -53,12 +58,21 @@ impl RemoteServer {
             Some(file) => Some(std::fs::read_to_string(file).ok()?.trim().to_owned()),
             None => None,
         };
-        let remote = RemoteServer { port: announcement.port?, announcement, token };
+        let mut remote = RemoteServer { port: announcement.port?, announcement, token, has_release_2: false };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
         // A server with too many connections rejects the health check and does not name its run. The server also
         // rejects the actual request.
         let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
+        remote.has_release_2 = health.body["interface"] == "release_2";
         (is_full || health.status == 200 && health.body["run"] == run).then_some(remote)
+    }
+
+    /// Returns a new request id if a call of the tool needs one.
+    ///
+    /// # Errors
+    /// The system returns no random numbers.
+    pub fn new_request_id(&self, tool: &str) -> Result<Option<String>, RunError> {
+        (self.has_release_2 && needs_request_id(tool)).then(new_token).transpose()
     }
 
     /// Sends a GET request.

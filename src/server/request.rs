@@ -67,6 +67,11 @@ pub enum ApiRequest {
         /// Request id, or null.
         request_id: Value,
     },
+    /// Request for the status and the response of the request with an id.
+    RequestStatus {
+        /// Id of the request in question.
+        id: String,
+    },
     /// Request for the notes of the run.
     Notes,
 }
@@ -107,6 +112,18 @@ impl ApiRequest {
             return ApiRequest::Query { sql: fields.remove("sql").unwrap_or(Value::Null) };
         }
         ApiRequest::Call { tool: name.to_owned(), args: fields.into(), request_id }
+    }
+
+    /// Returns the id with which the session stores the response, or `None` if the response is not stored.
+    pub fn stored_id(&self) -> Option<&str> {
+        match self {
+            ApiRequest::NextWeek { request_id, .. } => request_id.as_str(),
+            ApiRequest::Call { tool, request_id, .. } => {
+                let is_stored = find(tool).is_none_or(|tool| tool.spec().id.takes_request_id());
+                request_id.as_str().filter(|_| is_stored)
+            }
+            _ => None,
+        }
     }
 
     /// Returns whether the request only runs a script or a statement. Such a request changes nothing and can be stopped.

@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::request::{ApiRequest, ApiResponse, ResponseStatus};
-use novamind_record::trajectory::record::{QuerySource, Via};
-use novamind_session::{Session, WeekRequest, rows_to_json};
+use novamind_record::trajectory::record::{Outcome, QuerySource, Via};
+use novamind_session::{IdempotentResponse, Session, WeekRequest, WeekResult, rows_to_json};
 use novamind_tools::{NotebookSection, Rejection, ToolId};
 
 /// Tools that ignore null arguments, because older programs send null for omitted arguments.
@@ -38,6 +38,7 @@ pub fn handle_request(session: &mut Session, request: ApiRequest, via: Via) -> A
             save_script(session, &json!({ "name": name, "code": content }), &request_id, via)
         }
         ApiRequest::DeleteDailyScript { name, request_id } => delete_script(session, name, &request_id, via),
+        ApiRequest::RequestStatus { id } => request_status(session, &id),
         ApiRequest::Notes => match session.notes() {
             Ok(text) => ApiResponse::tool_data(json!({ "text": text })),
             Err(error) => ApiResponse::invalid_request(ResponseStatus::Failed, "not_read", error.to_string()),
@@ -57,8 +58,12 @@ fn handle_call(
     {
         fields.retain(|_, value| !value.is_null());
     }
-    // The released simulator treats the arguments as the map by group, so a call without arguments clears this map.
-    if tool == ToolId::SetTargetedOpsSpend.name() && args.as_object().is_some_and(Map::is_empty) {
+    // Release 1 treats the arguments as the map by group, so a call without arguments clears this map. In release 2 the
+    // call changes nothing.
+    if tool == ToolId::SetTargetedOpsSpend.name()
+        && args.as_object().is_some_and(Map::is_empty)
+        && !session.has_release_2_interface()
+    {
         args = json!({ "targeted_spend": {} });
     }
     match session.call_once(tool, &args, via, request_id) {
@@ -73,20 +78,37 @@ fn handle_call(
 fn handle_next_week(session: &mut Session, request: &WeekRequest<'_>, via: Via) -> ApiResponse {
     match session.advance_once(request, via) {
         Err(refusal) => ApiResponse::rejected(ResponseStatus::BadRequest, refusal),
-        Ok(week) => {
-            let mut fields = Map::from_iter([
-                ("day".to_owned(), week.figures.day.into()),
-                ("dashboard".to_owned(), week.dashboard.clone().into()),
-                ("cash".to_owned(), novamind_base::formatting::json_number(week.figures.cash)),
-                ("figures".to_owned(), Value::Object(week.figures.to_json())),
-                ("ended".to_owned(), json!(week.ended)),
-            ]);
-            if let Some(remark) = week.remark {
-                fields.insert("remark".to_owned(), remark.into());
-            }
-            ApiResponse::success(fields)
-        }
+        Ok(week) => week_response(&week),
     }
+}
+
+fn week_response(week: &WeekResult) -> ApiResponse {
+    let mut fields = Map::from_iter([
+        ("day".to_owned(), week.figures.day.into()),
+        ("dashboard".to_owned(), week.dashboard.clone().into()),
+        ("cash".to_owned(), novamind_base::formatting::json_number(week.figures.cash)),
+        ("figures".to_owned(), Value::Object(week.figures.to_json())),
+        ("ended".to_owned(), json!(week.ended)),
+    ]);
+    if let Some(remark) = &week.remark {
+        fields.insert("remark".to_owned(), remark.clone().into());
+    }
+    ApiResponse::success(fields)
+}
+
+/// Returns the status of the request with an id, and the response of a completed request.
+fn request_status(session: &Session, id: &str) -> ApiResponse {
+    let Some(stored) = session.stored_response(id) else {
+        return ApiResponse::with_body(json!({ "request_id": id, "status": "unknown" }));
+    };
+    let response = match stored {
+        IdempotentResponse::Call(Outcome::Accepted(answer)) => ApiResponse::tool_data(answer.clone()),
+        IdempotentResponse::Call(Outcome::Rejected(refusal)) => {
+            ApiResponse::rejected(ResponseStatus::Done, refusal.clone())
+        }
+        IdempotentResponse::Week(week) => week_response(week),
+    };
+    ApiResponse::with_body(json!({ "request_id": id, "status": "completed", "result": response.body }))
 }
 
 fn handle_query(session: &mut Session, sql: &Value) -> ApiResponse {
@@ -112,7 +134,8 @@ fn query_error_status(code: &str) -> ResponseStatus {
     }
 }
 
-fn game_status(session: &Session) -> ApiResponse {
+/// Returns the day, the cash, the subscribers, the last day, and how the run ended.
+pub fn game_status(session: &Session) -> ApiResponse {
     let seen = session.company().observe();
     ApiResponse::with_body(json!({
         "day": seen.day,

@@ -20,14 +20,15 @@ pub fn retry_fields(tool: ToolId) -> Map<String, Value> {
         );
     }
     if tool.takes_request_id() {
-        let description =
-            "A unique text for each request. Send it again to retry; the request runs only once";
-        fields.insert(
-            REQUEST_ID.to_owned(),
-            json!({ "type": "string", "minLength": 1, "maxLength": 128, "description": description }),
-        );
+        fields.insert(REQUEST_ID.to_owned(), request_id_schema());
     }
     fields
+}
+
+/// Returns the schema of a request id.
+pub fn request_id_schema() -> Value {
+    let description = "A unique text for each request. Send it again to retry; the request runs only once";
+    json!({ "type": "string", "minLength": 1, "maxLength": 128, "description": description })
 }
 
 /// Returns the specifications of all tools, in the order of the catalog.

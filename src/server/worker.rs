@@ -10,6 +10,7 @@ use std::thread::JoinHandle;
 use serde_json::Value;
 use tokio::sync::oneshot;
 
+use super::committed::CommittedState;
 use super::current_request::CurrentRequest;
 use super::request::{ApiRequest, ApiResponse, ResponseStatus};
 use super::request_handler::handle_request;
@@ -54,8 +55,10 @@ impl SessionWorker {
         let (sender, receiver) = channel();
         let advancing = PendingWeeks::default();
         let running = CurrentRequest::default();
+        let committed = session.has_release_2_interface().then(|| CommittedState::new(&session));
         let handle = SessionHandle {
             sender,
+            committed: committed.clone(),
             advancing: advancing.clone(),
             asked: Arc::default(),
             running: running.clone(),
@@ -68,6 +71,7 @@ impl SessionWorker {
             session: Some(session),
             door,
             running: running.clone(),
+            committed,
         };
         let thread = std::thread::spawn(move || owned.run(&receiver, &advancing));
         (SessionWorker { thread, running, run, folder }, handle)
@@ -93,6 +97,7 @@ impl SessionWorker {
 #[derive(Clone)]
 pub struct SessionHandle {
     sender: Sender<QueuedRequest>,
+    committed: Option<CommittedState>,
     advancing: PendingWeeks,
     /// Number of sent requests.
     asked: Arc<AtomicU64>,
@@ -100,6 +105,11 @@ pub struct SessionHandle {
 }
 
 impl SessionHandle {
+    /// Returns the state after the last executed request, if the run has the interface of release 2.
+    pub fn committed(&self) -> Option<&CommittedState> {
+        self.committed.as_ref()
+    }
+
     /// Sends a request and waits for the response. If the caller stops waiting, a script or statement is stopped, but
     /// a week is still simulated to its end.
     pub async fn send(&self, request: ApiRequest) -> ApiResponse {
@@ -165,6 +175,8 @@ struct WorkerState {
     model: Option<ModelSettings>,
     door: InterfaceInfo,
     running: CurrentRequest,
+    /// State that the server reports during a request, if the run has the interface of release 2.
+    committed: Option<CommittedState>,
 }
 
 impl WorkerState {
@@ -185,7 +197,7 @@ impl WorkerState {
                 });
                 self.running.begin(number, request.runs_code(), interrupt);
             }
-            let answer = self.respond(request);
+            let answer = self.respond_and_commit(request);
             self.running.end();
             if is_week {
                 advancing.end();
@@ -208,6 +220,19 @@ impl WorkerState {
             !session.notebook().statements(NotebookSection::Calculation).entries().is_empty()
         };
         self.session.as_ref().is_some_and(kept)
+    }
+
+    /// Executes a request. During a request that can change the run, the committed state names the request.
+    fn respond_and_commit(&mut self, request: ApiRequest) -> ApiResponse {
+        let committed = self.committed.clone().filter(|state| {
+            let id = request.stored_id();
+            id.inspect(|id| state.begin(id)).is_some()
+        });
+        let response = self.respond(request);
+        if let Some(state) = committed {
+            state.commit(self.session.as_ref());
+        }
+        response
     }
 
     fn respond(&mut self, request: ApiRequest) -> ApiResponse {

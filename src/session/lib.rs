@@ -27,6 +27,7 @@ pub use archive::{
     is_run_id, read_seal_key, write_seal_key,
 };
 pub use company::hidden_state::HiddenState;
+pub use company::idempotency::IdempotentResponse;
 pub use company::reports::{DayReport, WeekResult};
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
@@ -69,7 +70,7 @@ pub use novamind_world::settings::{CoreSettings, Settings};
 pub use permission::{INSPECTION_REJECTED, can_inspect};
 pub use play::drafts::{DraftFile, DraftTexts};
 pub use play::extension::Extension;
-pub use play::idempotent::WeekRequest;
+pub use play::idempotent::{WeekRequest, request_id};
 pub use play::lesson::judging::measure;
 pub use play::lesson::progress::{lesson_step, weeks_passed};
 pub use play::lesson::reference::{PartPlay, play_part, play_part_with_hooks};

@@ -132,6 +132,27 @@ fn command_with_a_repeated_request_id_runs_once() {
 }
 
 #[test]
+fn release_2_command_generates_and_prints_its_request_id() {
+    let shell = AgentShell::new();
+    shell.run_json(&["new", "--seed", "7", "--days", "28", "--mode", "sandbox", "--scenario", "release-2"]);
+    let first = shell.run_agent(&["call", "set_prices", "--A", "12"]);
+    assert_eq!(first.exit_code, 0, "{}", first.stderr);
+    let printed: Value = serde_json::from_str(&first.stderr).expect("one line of JSON");
+    let id = printed["request_id"].as_str().expect("an id");
+    let again = shell.run_json(&["--request-id", id, "call", "set_prices", "--A", "12"]);
+    assert_eq!(again, serde_json::from_str::<Value>(&first.stdout).expect("JSON"));
+    shell
+        .run_agent(&["--request-id", id, "call", "set_prices", "--A", "13"])
+        .assert_fails(5, &["request_id_payload_mismatch (request_id): this request_id belongs"]);
+    // Reads need no id.
+    shell.run_json(&["call", "get_vars"]);
+    let filed = json!({ "rationale": "on", "predictions": predictions() }).to_string();
+    let week = shell.run_agent(&["next-week", &filed]);
+    assert!(week.exit_code == 0 && week.stderr.contains("request_id"), "{}", week.stderr);
+    shell.run_json(&["stop"]);
+}
+
+#[test]
 fn killed_server_is_restarted() {
     let shell = AgentShell::new();
     let first = shell.create_run();

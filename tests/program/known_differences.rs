@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::interfaces::{NEW_RUN_OPTIONS, Server, predictions};
+use crate::release_2::release_2_options;
 use crate::support::home::Home;
 
 /// Commands that play a company with individuals and enterprises.
@@ -356,6 +357,69 @@ const CALL_EXAMPLES: [Example; 15] = [
     }),
 ];
 
+/// Starts a server of a new run with the interface of release 2, and calls `example` with its folders.
+fn with_release_2_server(example: impl FnOnce(&Home, Server)) {
+    let home = Home::new();
+    let server = Server::start(&home, &release_2_options());
+    example(&home, server);
+}
+
+/// Returns a request for a week with an id.
+fn week_with_id(rationale: &str, id: &str) -> Value {
+    json!({ "rationale": rationale, "predictions": predictions(), "request_id": id })
+}
+
+const RELEASE_2_EXAMPLES: [Example; 5] = [
+    ("loses the game if its server ends", |_| {
+        with_release_2_server(|home, server| {
+            let week = week_with_id("on", "w");
+            let first = server.post("/next-week", &week);
+            drop(server);
+            // The server is killed directly after it recorded the request.
+            let file = home.only_run().join("trajectory.jsonl");
+            let text = std::fs::read_to_string(&file).expect("a trajectory");
+            let at = text.find("\"kind\":\"advance\"").expect("a week");
+            let end = at + text[at..].find('\n').expect("its end") + 1;
+            std::fs::write(&file, &text[..end]).expect("a file");
+            let _ = std::fs::remove_file(home.only_run().join("snapshot.bin"));
+            std::fs::remove_file(home.only_run().join("world.db")).expect("a database");
+            let server = Server::start(home, &["--run", "latest"]);
+            assert_eq!(server.get("/requests/w")["status"], "completed");
+            assert_eq!(server.post("/next-week", &week), first);
+        });
+    }),
+    ("shows no dashboard after", |_| {
+        with_release_2_server(|home, server| {
+            let (_, week) = server.post("/next-week", &week_with_id("on", "w"));
+            drop(server);
+            let server = Server::start(home, &["--run", "latest"]);
+            assert_eq!(server.get("/dashboard"), json!({ "dashboard": week["dashboard"], "day": 7 }));
+        });
+    }),
+    ("answers a body that is not JSON", |_| {
+        with_release_2_server(|_, server| {
+            let (status, answer) = server.request_with_head("POST", "/call", "host: localhost\r\n", "{");
+            assert_eq!((status, &answer["error"]), (400, &json!("invalid_request_payload")), "{answer}");
+        });
+    }),
+    ("checks the rationale and the forecasts", |_| {
+        with_release_2_server(|_, server| {
+            let (status, answer) = server.post("/next-week", &json!({}));
+            assert_eq!((status, &answer["error"]), (200, &json!("request_id_required")), "{answer}");
+            let (status, answer) = server.post("/next-week", &week_with_id("", "w"));
+            assert_eq!((status, &answer["code"]), (400, &json!("rationale_missing")), "{answer}");
+        });
+    }),
+    ("lists the changing requests", |_| {
+        with_release_2_server(|home, server| {
+            server.post("/next-week", &week_with_id("on", "first-week"));
+            let file = home.only_run().join("trajectory.jsonl");
+            let text = std::fs::read_to_string(file).expect("a trajectory");
+            assert_contains(&text, &["\"request_id\":\"first-week\""]);
+        });
+    }),
+];
+
 const TIME_EXAMPLES: [Example; 2] = [
     ("continues after its last day", |stage| {
         let answers = stage.play(&["--days", "8"], "next naive\nnext naive\nset_prices A=5\nnext naive\n");
@@ -503,6 +567,7 @@ fn every_known_difference_has_a_passing_example() {
         &PLAYER_ACTION_EXAMPLES,
         &AGENT_ACTION_EXAMPLES,
         &CALL_EXAMPLES,
+        &RELEASE_2_EXAMPLES,
         &TIME_EXAMPLES,
         &QUERY_EXAMPLES,
         &DASHBOARD_EXAMPLES,

@@ -103,6 +103,55 @@ else:
     assert_eq!((price(&home), price(&other)), (Some(15.into()), Some(14.into())));
 }
 
+#[test]
+fn client_plays_a_run_of_release_2() {
+    let home = Home::new();
+    let Some(client) = write_client(&home) else { return };
+    let server = Server::start(&home, &crate::release_2::release_2_options());
+    run_python(
+        &home,
+        &client,
+        server.port,
+        "
+import novamind
+from novamind import analytics, market, pricing, scripts
+pricing.set_prices(A=10, B=20)
+market.research_market()
+scripts.register_script(name='s', code='SELECT 1')
+scripts.run_script(name='s')
+assert analytics.set_targeted_ops_spend()['total_extra_per_day'] == 0
+assert novamind.dashboard() == ''
+call = novamind.Connection().call
+first = call('set_prices', {'A': 11}, request_id='a b/c')
+assert novamind.request_status('a b/c') == {
+    'request_id': 'a b/c', 'status': 'completed', 'result': {'success': True, 'data': first}}
+assert novamind.request_status('other')['status'] == 'unknown'
+try:
+    call('set_prices', {'A': 12}, request_id='a b/c')
+except novamind.NovamindError as error:
+    assert error.code == 'request_id_payload_mismatch' and 'earlier request' in str(error), error
+else:
+    raise SystemExit('not refused')
+assert novamind.next_week('on', novamind.naive_predictions())['day'] == 7 == novamind.current_day()
+",
+    );
+    let first_release = Server::start(&home, &NEW_RUN_OPTIONS);
+    run_python(
+        &home,
+        &client,
+        first_release.port,
+        "
+import novamind
+try:
+    novamind.request_status('x')
+except novamind.NovamindError as error:
+    assert 'no route' in str(error), error
+else:
+    raise SystemExit('not refused')
+",
+    );
+}
+
 /// Reads the head and the body of an HTTP message.
 fn read_message(stream: &mut TcpStream) -> Vec<u8> {
     let mut bytes = Vec::new();

@@ -35,7 +35,8 @@ pub fn check_response(reply: &ServerResponse) -> Result<(), Failure> {
     }
     let word = |field: &str| reply.body[field].as_str();
     let code = word("code").unwrap_or("error");
-    let message = word("error").unwrap_or("the server gave no reason");
+    // In release 2, `error` can be the code, and `message` explains it.
+    let message = word("message").or(word("error")).unwrap_or("the server gave no reason");
     let field = word("field").map(|field| format!(" ({field})")).unwrap_or_default();
     let exit = match (reply.status, code) {
         (_, "run_over") => RUN_OVER,

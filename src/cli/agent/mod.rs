@@ -88,12 +88,23 @@ impl Options {
         }
     }
 
-    /// Adds the request id to the body.
-    fn with_request_id(&self, mut body: Value) -> Value {
-        if let Some(id) = &self.request_id {
+    /// Sends a call of a tool with its request id, and prints the response. If the call needs an id and the command
+    /// names none, generates an id and prints it to standard error, so that the user can retry.
+    fn print_call(
+        &self,
+        remote: &RemoteServer,
+        path: &str,
+        tool: &str,
+        mut body: Value,
+    ) -> Result<(), Failure> {
+        let id = match &self.request_id {
+            Some(id) => Some(id.clone()),
+            None => remote.new_request_id(tool)?.inspect(|id| eprintln!("{}", json!({ "request_id": id }))),
+        };
+        if let Some(id) = id {
             body["request_id"] = json!(id);
         }
-        body
+        print_response(remote, path, Some(&body))
     }
 }
 
@@ -104,20 +115,19 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         AgentCommand::Status => print_response(&connect(named, context)?.1, "/game-status", None),
         AgentCommand::Dashboard => print_response(&connect(named, context)?.1, "/dashboard", None),
         AgentCommand::NextWeek { words, expected_day } => {
-            let mut filed = options.with_request_id(parse_next_week(words)?);
+            let mut filed = parse_next_week(words)?;
             if let Some(day) = expected_day {
                 filed["expected_day"] = json!(day);
             }
-            print_response(&connect(named, context)?.1, "/next-week", Some(&filed))
+            options.print_call(&connect(named, context)?.1, "/next-week", "next_week", filed)
         }
         AgentCommand::Query { sql } => {
             let asked = json!({ "sql": read_text(sql)? });
             print_response(&connect(named, context)?.1, "/query", Some(&asked))
         }
         AgentCommand::Call { tool, arguments } => {
-            let asked = options
-                .with_request_id(json!({ "tool": tool, "args": parse_tool_arguments(tool, arguments)? }));
-            print_response(&connect(named, context)?.1, "/call", Some(&asked))
+            let asked = json!({ "tool": tool, "args": parse_tool_arguments(tool, arguments)? });
+            options.print_call(&connect(named, context)?.1, "/call", tool, asked)
         }
         AgentCommand::Python { words } => {
             let (agent_run, remote) = connect(named, context)?;

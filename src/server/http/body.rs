@@ -28,6 +28,11 @@ impl BodyFields {
         self.fields.remove(name).unwrap_or(Value::Null)
     }
 
+    /// Returns a field of the body, or null if the field is missing.
+    pub fn get(&self, name: &str) -> &Value {
+        self.fields.get(name).unwrap_or(&Value::Null)
+    }
+
     /// Returns the remaining fields of the body.
     pub fn into_remaining(self) -> Value {
         self.fields.into()

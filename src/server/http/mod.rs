@@ -2,6 +2,7 @@
 
 mod body;
 mod guard;
+mod release_2;
 mod routes;
 mod shutdown;
 
@@ -21,6 +22,8 @@ use tokio::sync::Semaphore;
 use super::announcement::Announcement;
 use super::request::{ApiResponse, ResponseStatus};
 use super::worker::{InterfaceInfo, OnDefect, SessionWorker};
+pub(super) use guard::new_token;
+
 use guard::RequestGuard;
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::Via;

@@ -14,8 +14,10 @@ use tokio::sync::Notify;
 
 use super::body::{BodyFields, read_object};
 use super::guard::RequestGuard;
+use super::release_2;
 use crate::openapi;
 use crate::request::{ApiRequest, ApiResponse, ResponseStatus};
+use crate::schema::REQUEST_ID;
 use crate::worker::SessionHandle;
 use novamind_database::tables;
 use novamind_tools::describe::{ToolDocument, document_tool};
@@ -23,8 +25,8 @@ use novamind_tools::{CATALOGUE, ParameterNumbers, ToolId};
 
 /// State that all routes share.
 #[derive(Clone)]
-struct RouteState {
-    handle: SessionHandle,
+pub(super) struct RouteState {
+    pub(super) handle: SessionHandle,
     guard: Arc<RequestGuard>,
     numbers: Arc<ParameterNumbers>,
     served: ServedRun,
@@ -39,6 +41,17 @@ pub struct ServedRun {
     pub stop: Arc<Notify>,
 }
 
+impl RouteState {
+    fn has_release_2(&self) -> bool {
+        self.handle.committed().is_some()
+    }
+
+    /// Converts a response to the form of the run's interface.
+    fn converted(&self, response: ApiResponse) -> ApiResponse {
+        if self.has_release_2() { release_2::convert(response) } else { response }
+    }
+}
+
 /// Returns a router with all routes, which the guard protects.
 pub fn router(
     handle: SessionHandle,
@@ -46,21 +59,17 @@ pub fn router(
     numbers: Arc<ParameterNumbers>,
     served: ServedRun,
 ) -> Router {
+    let generation = match handle.committed() {
+        Some(committed) => release_2::router(committed),
+        None => release_1_router(),
+    };
     let door = RouteState { handle, guard: Arc::new(guard), numbers, served };
     Router::new()
+        .merge(generation)
         .route("/health", get(health))
-        .route("/vars", get(|door: State<RouteState>| handle_read(door, ApiRequest::CurrentDay)))
-        .route("/dashboard", get(|door: State<RouteState>| handle_read(door, ApiRequest::Dashboard)))
-        .route("/game-status", get(|door: State<RouteState>| handle_read(door, ApiRequest::GameStatus)))
         .route("/call", post(call))
         .route("/next-week", post(next_week))
         .route("/query", post(query))
-        .route(
-            "/daily-scripts",
-            get(|door: State<RouteState>| handle_read(door, ApiRequest::DailyScripts))
-                .post(save_script)
-                .delete(delete_script),
-        )
         .route("/tools", get(tools))
         .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
         .route("/openapi.json", get(openapi_document))
@@ -71,6 +80,20 @@ pub fn router(
         .with_state(door)
 }
 
+/// Returns the routes that release 2 does not have, or answers differently.
+fn release_1_router() -> Router<RouteState> {
+    Router::new()
+        .route("/vars", get(|door: State<RouteState>| handle_read(door, ApiRequest::CurrentDay)))
+        .route("/dashboard", get(|door: State<RouteState>| handle_read(door, ApiRequest::Dashboard)))
+        .route("/game-status", get(|door: State<RouteState>| handle_read(door, ApiRequest::GameStatus)))
+        .route(
+            "/daily-scripts",
+            get(|door: State<RouteState>| handle_read(door, ApiRequest::DailyScripts))
+                .post(save_script)
+                .delete(delete_script),
+        )
+}
+
 async fn check_access(State(door): State<RouteState>, request: HttpRequest, next: Next) -> Response {
     match door.guard.rejection_for(request.headers()) {
         None => next.run(request).await,
@@ -79,7 +102,11 @@ async fn check_access(State(door): State<RouteState>, request: HttpRequest, next
 }
 
 async fn health(State(door): State<RouteState>) -> Response {
-    json_response(StatusCode::OK, &json!({ "status": "ok", "run": door.served.run }))
+    let mut body = json!({ "status": "ok", "run": door.served.run });
+    if door.has_release_2() {
+        body["interface"] = "release_2".into();
+    }
+    json_response(StatusCode::OK, &body)
 }
 
 async fn shut_down(State(door): State<RouteState>) -> Response {
@@ -99,7 +126,7 @@ async fn tools(State(door): State<RouteState>) -> Response {
 }
 
 async fn openapi_document(State(door): State<RouteState>) -> Response {
-    json_response(StatusCode::OK, &openapi::document(&door.numbers))
+    json_response(StatusCode::OK, &openapi::document(&door.numbers, door.has_release_2()))
 }
 
 async fn handle_read(State(door): State<RouteState>, request: ApiRequest) -> Response {
@@ -114,6 +141,11 @@ async fn handle_with_body(
 ) -> Response {
     match read_object(body).await {
         Ok(mut fields) => {
+            if tool == ToolId::NextWeek && door.has_release_2() {
+                let refusal =
+                    release_2::rejection(tool.name(), fields.get(REQUEST_ID), fields.rejection.as_ref());
+                fields.rejection = refusal;
+            }
             let request = match fields.rejection.take() {
                 Some(refusal) => ApiRequest::RejectedCall {
                     tool: tool.name().to_owned(),
@@ -122,16 +154,16 @@ async fn handle_with_body(
                 },
                 None => request(fields),
             };
-            to_http_response(&door.handle.send(request).await)
+            to_http_response(&door.converted(door.handle.send(request).await))
         }
-        Err(wrong) => close_connection(to_http_response(&wrong)),
+        Err(wrong) => close_connection(to_http_response(&door.converted(wrong))),
     }
 }
 
 async fn call(State(door): State<RouteState>, body: Body) -> Response {
     let mut fields = match read_object(body).await {
         Ok(fields) => fields,
-        Err(wrong) => return close_connection(to_http_response(&wrong)),
+        Err(wrong) => return close_connection(to_http_response(&door.converted(wrong))),
     };
     // Convert a name of another type to text, so that the tool is rejected as unknown.
     let tool = match fields.take("tool") {
@@ -147,11 +179,17 @@ async fn call(State(door): State<RouteState>, body: Body) -> Response {
     if let (Value::Object(args), day @ Value::Number(_)) = (&mut args, fields.take("expected_day")) {
         args.entry("expected_day").or_insert(day);
     }
-    let request = match fields.rejection.take() {
+    let request_id = fields.take(REQUEST_ID);
+    let mut refusal = fields.rejection.take();
+    if door.has_release_2() {
+        let sent = if request_id.is_null() { &args[REQUEST_ID] } else { &request_id };
+        refusal = release_2::rejection(&tool, sent, refusal.as_ref()).or(refusal);
+    }
+    let request = match refusal {
         Some(refusal) => ApiRequest::RejectedCall { tool, args, refusal },
-        None => ApiRequest::from_tool_call(&tool, args, fields.take("request_id")),
+        None => ApiRequest::from_tool_call(&tool, args, request_id),
     };
-    to_http_response(&door.handle.send(request).await.into_tool_response())
+    to_http_response(&door.converted(door.handle.send(request).await.into_tool_response()))
 }
 
 async fn next_week(State(door): State<RouteState>, body: Body) -> Response {
@@ -200,7 +238,7 @@ fn status_code(status: ResponseStatus) -> StatusCode {
     }
 }
 
-fn to_http_response(answer: &ApiResponse) -> Response {
+pub(super) fn to_http_response(answer: &ApiResponse) -> Response {
     let mut response = json_response(status_code(answer.status), &answer.body);
     if answer.status == ResponseStatus::Busy {
         response.headers_mut().insert(header::RETRY_AFTER, header::HeaderValue::from_static("1"));
@@ -214,6 +252,6 @@ fn close_connection(mut response: Response) -> Response {
     response
 }
 
-fn json_response(status: StatusCode, body: &Value) -> Response {
+pub(super) fn json_response(status: StatusCode, body: &Value) -> Response {
     (status, [(header::CONTENT_TYPE, "application/json")], body.to_string()).into_response()
 }

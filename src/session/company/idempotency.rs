@@ -9,10 +9,12 @@ use super::reports::WeekResult;
 use novamind_record::trajectory::record::{Call, Outcome, RequestId, RunEndReason};
 use novamind_tools::Rejection;
 
-/// The stored response to a request.
+/// The stored response to a request with an id.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum IdempotentResponse {
+pub enum IdempotentResponse {
+    /// The outcome of a tool call.
     Call(Outcome),
+    /// The result of a week.
     Week(Box<WeekResult>),
 }
 
@@ -69,6 +71,11 @@ impl IdempotentResponses {
                 week.ended = Some(ended);
             }
         }
+    }
+
+    /// Returns the stored response to the request with an id, or `None` if no request has the id.
+    pub(crate) fn find_by_id(&self, id: &str) -> Option<&IdempotentResponse> {
+        self.by_id.get(id).map(|(_, response)| response)
     }
 
     /// Returns the stored response to a request, or `None` if the request is new.

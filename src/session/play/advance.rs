@@ -98,6 +98,8 @@ impl Session {
             Ok(checked) => checked,
             Err(refusal) => {
                 let arguments = week_arguments(rationale, predictions, expected_day);
+                // Release 2 validates a week before it stores the id, so a corrected week can have the same id.
+                let request = request.filter(|_| !self.has_release_2_interface());
                 self.record_rejection(ToolId::NextWeek.name(), &arguments, via, &refusal, request);
                 return Err(refusal);
             }

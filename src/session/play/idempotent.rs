@@ -32,10 +32,15 @@ enum RequestState {
     Repeated(IdempotentResponse),
 }
 
+/// Returns the request id in a JSON value, or `None` if the value is not a text of 1 to 128 characters.
+pub fn request_id(value: &Value) -> Option<&str> {
+    value.as_str().filter(|id| (1..=MAX_ID_CHARACTERS).contains(&id.chars().count()))
+}
+
 fn parse_request_id(id: &Value) -> Result<Option<&str>, Rejection> {
-    match id {
-        Value::Null => Ok(None),
-        Value::String(id) if (1..=MAX_ID_CHARACTERS).contains(&id.chars().count()) => Ok(Some(id)),
+    match (id, request_id(id)) {
+        (Value::Null, _) => Ok(None),
+        (_, Some(id)) => Ok(Some(id)),
         _ => {
             let message = format!("request_id must be a text of 1 to {MAX_ID_CHARACTERS} characters");
             Err(Rejection::for_field("request_id", "request_id_invalid", message))
@@ -110,6 +115,11 @@ impl Session {
                 Ok(self.submit_week(filing, via, &mut |_| {})?)
             }
         }
+    }
+
+    /// Returns the stored response to the request with an id, or `None` if no executed request has the id.
+    pub fn stored_response(&self, id: &str) -> Option<&IdempotentResponse> {
+        self.history.idempotent_responses.find_by_id(id)
     }
 
     /// Returns whether a request is new or a retry.

@@ -240,6 +240,11 @@ impl Session {
         &self.simulation.params
     }
 
+    /// Returns whether the run has the interface of release 2.
+    pub fn has_release_2_interface(&self) -> bool {
+        self.params().fidelity.interface == novamind_world::params::Interface::Release2
+    }
+
     /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for abandoned runs.
     pub fn score(&self) -> Option<f64> {
         self.company().score()

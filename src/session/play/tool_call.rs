@@ -17,7 +17,7 @@ use novamind_record::trajectory::record::{Call, CalledTool, Outcome, RequestId, 
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{
     Answer, AnyTool, Arguments, NotebookChange, PlannedCall, REMARK_TYPE, Rejection, ToolId, ToolKind,
-    ToolSpec, find, limits,
+    ToolSpec, find, limits, with_release_2_text,
 };
 use novamind_world::command::{Command, ResolvedCommand};
 
@@ -259,9 +259,14 @@ impl Session {
         tool: &'static dyn AnyTool,
         arguments: &Value,
     ) -> Result<(Arguments, PlannedCall<Answer>), Rejection> {
-        let given = Arguments::parse(tool.spec(), arguments, || self.numbers())?;
-        let planned = tool.plan(&self.company().tool_view(), &given)?;
-        Ok((given, planned))
+        let planned = Arguments::parse(tool.spec(), arguments, || self.numbers()).and_then(|given| {
+            let planned = tool.plan(&self.company().tool_view(), &given)?;
+            Ok((given, planned))
+        });
+        planned.map_err(|refusal| match self.has_release_2_interface() {
+            true => with_release_2_text(tool.spec().id, refusal, arguments),
+            false => refusal,
+        })
     }
 
     /// Rejects tools that change the company if the run has ended or is open read-only.

@@ -6,4 +6,4 @@ mod set_targeted_ops_spend;
 
 pub use get_social_posts::{GetSocialPosts, PostLimit, SocialPost};
 pub use set_targeted_dev_spend::SetTargetedDevSpend;
-pub use set_targeted_ops_spend::SetTargetedOpsSpend;
+pub use set_targeted_ops_spend::{SetTargetedOpsSpend, with_release_2_text};

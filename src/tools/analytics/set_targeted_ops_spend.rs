@@ -9,9 +9,10 @@ use super::super::arguments::{
 use super::super::marketing::BUDGET;
 use super::super::{
     Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
-    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec, limits,
 };
 use novamind_world::identifiers::Group;
+use novamind_world::params::Interface;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Settings, SettingsChange};
 
 /// The tool `set_targeted_ops_spend`.
@@ -99,6 +100,15 @@ pub struct SupportScopes {
     by_customer: Option<PerCustomer>,
 }
 
+impl SupportScopes {
+    fn is_empty(&self) -> bool {
+        self.by_group.is_none()
+            && self.by_plan.is_none()
+            && self.by_group_plan.is_none()
+            && self.by_customer.is_none()
+    }
+}
+
 /// Targeted support budgets in force, in dollars per day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SupportBudgets {
@@ -152,8 +162,14 @@ impl Tool for SetTargetedOpsSpend {
             by_group_plan: arguments.parse_argument("by_group_plan", |value, name| {
                 parse_per_group_plan(value, name, BUDGET, view)
             })?,
-            by_customer: arguments
-                .parse_argument("by_customer", |value, name| parse_per_customer(value, name, BUDGET))?,
+            by_customer: arguments.parse_argument("by_customer", |value, name| {
+                parse_per_customer(value, name, BUDGET).and_then(|budgets| {
+                    if is_release_2(view) {
+                        check_customers(&budgets, name)?;
+                    }
+                    Ok(budgets)
+                })
+            })?,
         })
     }
 
@@ -162,11 +178,18 @@ impl Tool for SetTargetedOpsSpend {
         view: &ToolContext<'_>,
         support_scopes: SupportScopes,
     ) -> Result<PlannedCall<SupportBudgets>, Rejection> {
+        let names_no_scope = support_scopes.is_empty();
         let mut operations = view.settings().targeted_operations.clone();
         replace_if_given(&mut operations.by_group, support_scopes.by_group);
         replace_if_given(&mut operations.by_plan, support_scopes.by_plan);
         replace_if_given(&mut operations.by_group_plan, support_scopes.by_group_plan);
         replace_if_given(&mut operations.by_customer, support_scopes.by_customer);
+        if is_release_2(view) && !operations.total().is_finite() {
+            return Err(Rejection::new(
+                limits::REJECTION_CODE,
+                "Total targeted operations spend must be finite.",
+            ));
+        }
         let targeted_operations = operations.clone();
         let answer = SupportBudgets {
             targeted_spend: targeted_operations.by_group.clone(),
@@ -176,6 +199,65 @@ impl Tool for SetTargetedOpsSpend {
             by_customer: targeted_operations.by_customer,
             total_extra_per_day: operations.total(),
         };
+        if is_release_2(view) && names_no_scope {
+            return Ok(PlannedCall::read_only(answer));
+        }
         Ok(PlannedCall::with_settings_change(SettingsChange::TargetedOperations(operations), answer))
+    }
+}
+
+fn is_release_2(view: &ToolContext<'_>) -> bool {
+    view.params().fidelity.interface == Interface::Release2
+}
+
+/// Rejects customer numbers below 1, as release 2 does.
+fn check_customers(budgets: &PerCustomer, field: &str) -> Result<(), Rejection> {
+    match budgets.keys().find(|customer| **customer < 1) {
+        None => Ok(()),
+        Some(customer) => Err(Rejection::for_field(
+            format!("{field}.{customer}"),
+            "customer_not_integer",
+            format!("customer id {customer} is below 1"),
+        )),
+    }
+}
+
+/// Returns the rejection of a call in the wording of release 2. Release 2 added fixed texts for `set_targeted_ops_spend`
+/// only, so other rejections are returned unchanged.
+pub fn with_release_2_text(tool: ToolId, rejection: Rejection, arguments: &Value) -> Rejection {
+    if tool != SPEC.id {
+        return rejection;
+    }
+    let path = rejection.field.clone().unwrap_or_default();
+    let text = match (rejection.code, path.split('.').collect::<Vec<&str>>().as_slice()) {
+        ("wrong_type", [""]) => "Targeted operations arguments must be a dict.".to_owned(),
+        ("unknown_argument", _) => {
+            format!("Unknown targeted operations arguments: {}", unknown_names(arguments))
+        }
+        ("amount_invalid", [scope, key @ ..]) => {
+            format!("Amount for {} must be a finite non-negative number", describe_target(scope, key))
+        }
+        ("customer_not_integer", [_, customer @ ..]) => {
+            format!("Customer ID '{}' must be a positive integer", customer.join("."))
+        }
+        _ => return rejection,
+    };
+    Rejection { message: text, ..rejection }
+}
+
+fn unknown_names(arguments: &Value) -> String {
+    let is_known = |name: &str| SPEC.arguments.iter().any(|one| one.name == name || one.alias == Some(name));
+    let names = arguments.as_object().into_iter().flat_map(Map::keys).map(String::as_str);
+    let mut unknown: Vec<&str> = names.filter(|name| !is_known(name)).collect();
+    unknown.sort_unstable();
+    unknown.join(", ")
+}
+
+/// Names the target of an amount: a group, a plan, a group with a plan, or a customer.
+fn describe_target(scope: &str, key: &[&str]) -> String {
+    match scope {
+        "by_plan" => format!("plan {}", key.join(".")),
+        "by_customer" => format!("customer {}", key.join(".")),
+        _ => key.join("/"),
     }
 }

@@ -1,0 +1,83 @@
+//! The state after the last executed request, which a server of release 2 reports even while a week is simulated.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde_json::{Value, json};
+
+use super::request::ApiResponse;
+use super::request_handler::game_status;
+use novamind_record::clock::{now, parse_seconds};
+use novamind_session::Session;
+
+/// The state of a run after the last executed request. Reading it does not wait for the session.
+#[derive(Clone)]
+pub struct CommittedState(Arc<Mutex<State>>);
+
+struct State {
+    /// Fields of `/game-status`, except `busy`.
+    status: Value,
+    /// Dashboard of the last week; empty before the first week.
+    dashboard: String,
+    /// Id of the request that is being executed.
+    running: Option<String>,
+}
+
+impl State {
+    fn of(session: &Session) -> State {
+        let mut status = game_status(session).body;
+        status["snapshot_at"] = json!(parse_seconds(&now()));
+        let dashboard = if session.day() == 0 { String::new() } else { session.company().dashboard() };
+        State { status, dashboard, running: None }
+    }
+}
+
+impl CommittedState {
+    /// Returns the current state of a run.
+    pub fn new(session: &Session) -> CommittedState {
+        CommittedState(Arc::new(Mutex::new(State::of(session))))
+    }
+
+    /// Records the start of a request that can change the run.
+    pub fn begin(&self, id: &str) {
+        self.access(|state| state.running = Some(id.to_owned()));
+    }
+
+    /// Replaces the state after a request. `session` is `None` after an internal error, which keeps the earlier state.
+    pub fn commit(&self, session: Option<&Session>) {
+        let new = session.map(State::of);
+        self.access(|state| match new {
+            Some(new) => *state = new,
+            None => state.running = None,
+        });
+    }
+
+    /// Returns whether the request with this id is being executed.
+    pub fn is_running(&self, id: &str) -> bool {
+        self.access(|state| state.running.as_deref() == Some(id))
+    }
+
+    /// Returns the response of `/vars`.
+    pub fn variables(&self) -> ApiResponse {
+        self.access(|state| ApiResponse::with_body(json!({ "current_day": state.status["day"] })))
+    }
+
+    /// Returns the response of `/dashboard`.
+    pub fn dashboard(&self) -> ApiResponse {
+        self.access(|state| {
+            ApiResponse::with_body(json!({ "dashboard": state.dashboard, "day": state.status["day"] }))
+        })
+    }
+
+    /// Returns the response of `/game-status`.
+    pub fn game_status(&self) -> ApiResponse {
+        self.access(|state| {
+            let mut status = state.status.clone();
+            status["busy"] = state.running.is_some().into();
+            ApiResponse::with_body(status)
+        })
+    }
+
+    fn access<T>(&self, read: impl FnOnce(&mut State) -> T) -> T {
+        read(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}

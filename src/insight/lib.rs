@@ -21,6 +21,7 @@ pub use causes::{
 pub use counterfactual::analysis_cache::{AnalysisCache, RecordAnalysis};
 pub use counterfactual::parallel_map::continue_unless_stopped;
 pub use counterfactual::recorded_steps::{RecordedCall, RecordedDecision};
+pub use counterfactual::suspended_setting::SuspendedSetting;
 pub use curve::access::CurveInspection;
 pub use curve::example::example_curve;
 pub use curve::explorer::{

@@ -89,6 +89,7 @@ pub fn format_signed_change(unit: FigureUnit, change: f64) -> String {
 fn describe_detail(detail: &CauseDetail) -> String {
     match detail {
         CauseDetail::Setting(change) => describe_change(change),
+        CauseDetail::Removed { first, last } => format!("removed on days {first} to {last}"),
         CauseDetail::Occurrences(times, noun) => pluralize(*times as u32, noun),
         CauseDetail::Input(InputDetail { name, old, new, is_share }) => {
             let value = |value: f64| if *is_share { percent(value, 1) } else { format_number(value) };

@@ -93,8 +93,16 @@ impl WeekResimulation {
             let cause = Cause::EarlierPurchases;
             parts.push(CauseContribution { cause, amount: earlier, details: Vec::new() });
         }
-        parts.sort_by(|left, right| right.amount.abs().total_cmp(&left.amount.abs()));
         let rest = value_or_zero(quantity, self.week_without(all_calls)) - values.0 - earlier;
+        let continued = if rest == 0.0 {
+            Vec::new()
+        } else {
+            let Some(continued) = self.continued_contributions(quantity, progress) else { return Ok(None) };
+            continued
+        };
+        let rest = rest - continued.iter().map(|part| part.amount).sum::<f64>();
+        parts.extend(continued);
+        parts.sort_by(|left, right| right.amount.abs().total_cmp(&left.amount.abs()));
         let simulations = self.simulation_count();
         let (before, after) = values;
         let (week, days) = (self.week(), self.days());

@@ -1,5 +1,6 @@
 //! Causes of a change, with their values in the two weeks.
 
+use crate::counterfactual::suspended_setting::SuspendedSetting;
 use novamind_session::SettingChange;
 use novamind_tools::ToolId;
 
@@ -14,6 +15,10 @@ pub enum Cause {
     OtherCalls,
     /// One-time purchases that were paid in the previous week.
     EarlierPurchases,
+    /// A setting that continued in both weeks, whether or not the player changed the setting.
+    Continued(SuspendedSetting),
+    /// Moves of the market in the previous week, which act on all days of the explained week.
+    EarlierMarket,
     /// All hidden market inputs, merged into one cause.
     Market,
     /// Moves of competitors.
@@ -42,6 +47,8 @@ impl Cause {
             Cause::Parameters => "parameters",
             Cause::OtherCalls => "other decisions",
             Cause::EarlierPurchases => "last week's purchases",
+            Cause::Continued(setting) => continued_name(setting),
+            Cause::EarlierMarket => "market of the week before",
             Cause::Market => "market",
             Cause::Competitors => "competitors",
             Cause::Drift => "drift",
@@ -58,6 +65,16 @@ impl Cause {
     #[cfg(test)]
     pub(crate) fn is_player_decision(self) -> bool {
         matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls | Cause::EarlierPurchases)
+    }
+}
+
+fn continued_name(setting: SuspendedSetting) -> &'static str {
+    match setting {
+        SuspendedSetting::Development => "continuing development",
+        SuspendedSetting::Advertising => "continuing advertising",
+        SuspendedSetting::Operations => "continuing operations",
+        SuspendedSetting::Discounts => "continuing discounts",
+        SuspendedSetting::InAppAds => "continuing in-app ads",
     }
 }
 
@@ -91,6 +108,13 @@ pub enum CauseDetail {
     Setting(SettingChange),
     /// A world input with different values in the two weeks.
     Input(InputDetail),
+    /// First and last day without the cause in the re-simulations that value the cause.
+    Removed {
+        /// First day without the cause.
+        first: u32,
+        /// Last day without the cause.
+        last: u32,
+    },
     /// Number of occurrences and the noun for one occurrence, for example 3 and `call`.
     Occurrences(usize, &'static str),
 }

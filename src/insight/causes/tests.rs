@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use serde_json::json;
 
 use super::*;
+use crate::SuspendedSetting;
 use crate::counterfactual::test_kit::{WEEKS_BEFORE_CHANGE, play_weeks};
 use novamind_record::figures::{GroupFigures, SimulatedWeek, WeekFigure, WeekGroupFigures};
 use novamind_record::mode::Mode;
@@ -75,6 +76,10 @@ fn all_quantities() -> Vec<WeekQuantity> {
     of_company.chain(of_groups).collect()
 }
 
+fn is_continuing(part: &CauseContribution) -> bool {
+    matches!(part.cause, Cause::Continued(_) | Cause::EarlierMarket)
+}
+
 /// Asserts that the contributions and the residual add up to the change.
 fn assert_contributions_add_up(why: &ChangeExplanation) {
     let sum = why.contributions.iter().map(|part| part.amount).sum::<f64>() + why.residual;
@@ -106,7 +111,7 @@ fn changed_settings_rank_first_and_equal_branch_differences() {
         let before = quantity.value_in(&simulated_week(&session, WEEKS_BEFORE_CHANGE as usize - 1));
         assert_eq!((why.before, why.after), (before, last_value(&session, quantity)));
         let paired = last_value(&session, quantity) - last_value(&control, quantity);
-        let first = &why.contributions[0];
+        let first = why.contributions.iter().find(|part| !is_continuing(part)).expect("a cause");
         assert_eq!(first.cause, Cause::Calls(tool), "{figure:?}: {why:#?}");
         assert!(
             (first.amount - paired).abs() < 1e-9 && paired != 0.0,
@@ -148,8 +153,9 @@ fn group_contribution_equals_branch_difference() {
         }
     }
     let churn = explain(&session, group_quantity(WeekFigure::Churn, "S1"));
-    assert_eq!(churn.contributions[0].cause, Cause::Calls(ToolId::SetPrices), "{churn:#?}");
-    assert!(churn.contributions[0].amount > 0.0);
+    let first = churn.contributions.iter().find(|part| !is_continuing(part)).expect("a cause");
+    assert_eq!(first.cause, Cause::Calls(ToolId::SetPrices), "{churn:#?}");
+    assert!(first.amount > 0.0);
 }
 
 #[test]
@@ -343,9 +349,9 @@ fn interacting_changes_share_their_effect() {
     for figure in [WeekFigure::Payments, WeekFigure::CashChange, WeekFigure::Cancellations] {
         let why = explain(&session, company_quantity(figure));
         assert_contributions_add_up(&why);
-        assert!(why.contributions.len() <= 6, "{why:#?}");
+        assert!(why.contributions.iter().filter(|part| !is_continuing(part)).count() <= 6, "{why:#?}");
         assert!(why.contributions.iter().any(|part| part.cause == Cause::OtherCalls));
-        assert!(why.simulation_count <= 64, "{}", why.simulation_count);
+        assert!(why.simulation_count <= 64 + 3 * 32, "{}", why.simulation_count);
     }
     let cash = explain(&session, company_quantity(WeekFigure::CashChange));
     assert_eq!(cash.contributions[0].cause, Cause::Calls(ToolId::StartResearchProject), "{cash:#?}");
@@ -360,7 +366,8 @@ fn sandbox_run_groups_market_inputs_and_baseline_run_rejects_analysis() {
         |why: &ChangeExplanation| why.contributions.iter().map(|part| part.cause).collect::<Vec<_>>();
     let seen = causes(&explain(&sandbox, company_quantity(WeekFigure::Cancellations)));
     let allowed = [Cause::Calls(ToolId::SetPrices), Cause::Market, Cause::Service];
-    assert!(seen.iter().all(|cause| allowed.contains(cause)) && seen.len() == 3, "{seen:?}");
+    let of_week = seen.iter().filter(|cause| !matches!(cause, Cause::Continued(_) | Cause::EarlierMarket));
+    assert!(of_week.clone().all(|cause| allowed.contains(cause)) && of_week.count() == 3, "{seen:?}");
     sandbox.abandon().expect("it ends");
     let ended = causes(&explain(&sandbox, company_quantity(WeekFigure::Cancellations)));
     assert!(ended.contains(&Cause::Economy) && !ended.contains(&Cause::Market), "{ended:?}");
@@ -435,4 +442,49 @@ fn one_time_purchase_of_the_week_before_is_a_cause() {
     let found = earlier(&of_cash).expect("a cause");
     assert!((found - paid).abs() < 1e-6 * paid, "{of_cash:?}");
     assert_eq!(earlier(&explain(&session, company_quantity(WeekFigure::Leads))), None);
+}
+
+/// Plays the company of the tests with a seed and explains a figure in three weeks without changed settings.
+fn explain_unchanged_weeks(seed: u64, quantity: WeekQuantity) -> Vec<ChangeExplanation> {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_weeks(runs.path(), Mode::Debug, seed, None);
+    let mut causes = open_causes(&session);
+    let explain = |week: u32| {
+        causes
+            .explain(WeekQuestion { quantity, week: Some(week) }, &continue_progress)
+            .expect("an answer")
+            .expect("it is not stopped")
+    };
+    [4, 6, 8].map(explain).into()
+}
+
+#[test]
+fn continuing_development_explains_rising_conversion() {
+    let development = Cause::Continued(SuspendedSetting::Development);
+    for seed in [3, 4, 5, 6] {
+        let leads = explain_unchanged_weeks(seed, company_quantity(WeekFigure::IndividualLeads));
+        let conversions = explain_unchanged_weeks(seed, company_quantity(WeekFigure::Conversion));
+        for (why, leads) in conversions.iter().zip(leads) {
+            assert_contributions_add_up(why);
+            assert!(why.total_change() > 0.0, "{why:#?}");
+            let first = &why.contributions[0];
+            assert_eq!(first.cause, development, "seed {seed}: {why:#?}");
+            let days = CauseDetail::Removed { first: (why.week - 2) * 7 + 1, last: why.week * 7 };
+            assert_eq!(first.details, [days]);
+            // Every lead subscribes by chance, so the conversion of a week has a binomial error.
+            let variance = |share: f64, leads: f64| share * (1.0 - share) / leads;
+            let error = (variance(why.before, leads.before) + variance(why.after, leads.after)).sqrt();
+            assert!(why.residual.abs() < 2.5 * error, "seed {seed}, error {error}: {why:#?}");
+        }
+    }
+}
+
+#[test]
+fn residual_of_new_subscribers_is_small_without_changed_settings() {
+    for seed in [3, 4, 5, 6] {
+        for why in explain_unchanged_weeks(seed, company_quantity(WeekFigure::NewSubscribers)) {
+            let explained: f64 = why.contributions.iter().map(|part| part.amount.abs()).sum();
+            assert!(why.residual.abs() < 0.2 * explained, "seed {seed}: {why:#?}");
+        }
+    }
 }

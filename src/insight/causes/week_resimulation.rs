@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::cause::{Cause, CauseDetail};
+use super::continued::{TwoWeeks, continued_causes};
 use super::inputs::WeekPair;
 use super::visibility::InputVisibility;
 use super::{CauseProgress, CauseProgressFn};
@@ -23,6 +24,9 @@ use novamind_world::events::DayFigures;
 use novamind_world::fixed_inputs::FixedInputs;
 use novamind_world::identifiers::{ByGroup, Group};
 
+/// Number of weeks that are simulated for each set of continuing causes.
+const WEEKS_PER_CONTINUED_SET: usize = 3;
+
 /// Bit masks of the removed causes, by the index of the tool or input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct ExcludedCauses {
@@ -35,16 +39,20 @@ pub(super) struct RemovableCause {
     pub cause: Cause,
     pub details: Vec<CauseDetail>,
     /// Lines of the cause's calls in the trajectory; empty for a world input.
-    lines: BTreeSet<u64>,
+    pub lines: BTreeSet<u64>,
 }
 
 /// An explained week, the previous week, and the results of re-simulations.
 pub(super) struct WeekResimulation {
     week: u32,
-    start: Arc<MemorySnapshot>,
-    steps: Vec<RecordedStep>,
+    /// State before the previous week.
+    pub(super) start_before: Arc<MemorySnapshot>,
+    pub(super) steps_before: Vec<RecordedStep>,
+    /// State between the two weeks.
+    pub(super) start: Arc<MemorySnapshot>,
+    pub(super) steps: Vec<RecordedStep>,
     before: BranchOutcome,
-    after: BranchOutcome,
+    pub(super) after: BranchOutcome,
     week_before: SimulatedWeek,
     pub(super) visibility: InputVisibility,
     /// Tools that the player called in the week.
@@ -53,6 +61,10 @@ pub(super) struct WeekResimulation {
     /// Days of the week without any call; empty until simulated.
     days_without_calls: Vec<DayFigures>,
     simulated_weeks: BTreeMap<ExcludedCauses, SimulatedWeek>,
+    /// Causes that continue from the previous week.
+    pub(super) continued: Vec<Cause>,
+    /// Both weeks with each subset of the continuing causes, by the bit mask of the subset; empty until simulated.
+    pub(super) continued_weeks: Vec<TwoWeeks>,
 }
 
 impl WeekResimulation {
@@ -88,8 +100,11 @@ impl WeekResimulation {
         let known = BTreeMap::from([(actual, last_simulated_week(&between, &after))]);
         let week_before = last_simulated_week(&start, &before);
         let undone = Vec::new();
+        let continued = continued_causes(&start, &between);
         Ok(Some(WeekResimulation {
             week,
+            steps_before: past.steps_between(from, eve).to_vec(),
+            start_before: start,
             start: between,
             steps: moves,
             before,
@@ -100,6 +115,8 @@ impl WeekResimulation {
             inputs,
             days_without_calls: undone,
             simulated_weeks: known,
+            continued,
+            continued_weeks: Vec::new(),
         }))
     }
 
@@ -123,7 +140,7 @@ impl WeekResimulation {
 
     /// Returns how many weeks have been re-simulated.
     pub(super) fn simulation_count(&self) -> usize {
-        self.simulated_weeks.len() - 1
+        self.simulated_weeks.len() - 1 + WEEKS_PER_CONTINUED_SET * self.continued_weeks.len()
     }
 
     /// Returns the figures of the week without the excluded causes, which must be simulated already.
@@ -147,27 +164,33 @@ impl WeekResimulation {
         }
         let unknown: BTreeSet<ExcludedCauses> =
             wanted.iter().copied().filter(|without| !self.simulated_weeks.contains_key(without)).collect();
-        let found = self.simulate_all(&unknown.into_iter().collect::<Vec<_>>(), progress)?;
+        let unknown: Vec<ExcludedCauses> = unknown.into_iter().collect();
+        let found = self.simulate_in_parallel(&unknown, progress, |without, go_on| {
+            let outcome = self.simulate(without, go_on)?;
+            Some((without, last_simulated_week(&self.start, &outcome)))
+        })?;
         self.simulated_weeks.extend(found);
         Some(())
     }
 
-    fn simulate_all(
+    /// Applies a simulation to every set of causes in parallel. Returns `None` if `progress` stopped the simulations.
+    pub(super) fn simulate_in_parallel<S: Copy + Sync, R: Send>(
         &self,
-        wanted: &[ExcludedCauses],
+        wanted: &[S],
         progress: CauseProgressFn<'_>,
-    ) -> Option<Vec<(ExcludedCauses, SimulatedWeek)>> {
+        simulate: impl Fn(S, &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<R> + Sync,
+    ) -> Option<Vec<R>> {
         let done = AtomicUsize::new(0);
-        parallel_map(wanted, |without, stopped| {
+        parallel_map(wanted, |set, stopped| {
             let mut go_on = |_| match stopped.is_set() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             };
-            let outcome = self.simulate(*without, &mut go_on)?;
+            let result = simulate(*set, &mut go_on)?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             match progress(CauseProgress::Simulated(done, wanted.len())) {
                 ControlFlow::Break(()) => None,
-                ControlFlow::Continue(()) => Some((*without, last_simulated_week(&self.start, &outcome))),
+                ControlFlow::Continue(()) => Some(result),
             }
         })
     }
@@ -259,7 +282,7 @@ fn accepted_call(step: &RecordedStep) -> Option<&RecordedCall> {
 }
 
 /// Returns the figures of the last week in `outcome`, a simulation of at most one week after `before`.
-fn last_simulated_week(before: &MemorySnapshot, outcome: &BranchOutcome) -> SimulatedWeek {
+pub(super) fn last_simulated_week(before: &MemorySnapshot, outcome: &BranchOutcome) -> SimulatedWeek {
     let measured = outcome.groups.last().copied().unwrap_or_default();
     SimulatedWeek {
         figures: outcome.weeks.last().copied().unwrap_or_default(),

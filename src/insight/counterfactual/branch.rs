@@ -20,6 +20,7 @@ use novamind_world::command::Command;
 use novamind_world::events::{DayFigures, LedgerEntry};
 use novamind_world::identifiers::ByGroup;
 use novamind_world::market::surges::week_end;
+use novamind_world::settings::Settings;
 use novamind_world::state::World;
 
 /// The results of a re-simulation.
@@ -359,11 +360,15 @@ impl<'a> BranchSimulation<'a> {
     fn simulate_day(&mut self) {
         let day_before = self.has_unprocessed_text.then(Vec::new);
         let params = self.simulation.params.clone();
+        let settings = self.suspend_settings();
         let figures = self.simulation.simulate_day(
             &self.edits.fixed_inputs,
             self.projection.entry_writer(),
             day_before,
         );
+        if let Some(settings) = settings {
+            self.simulation.world.settings = settings;
+        }
         if !Arc::ptr_eq(&params, &self.simulation.params) {
             self.numbers = OnceLock::new();
         }
@@ -378,6 +383,14 @@ impl<'a> BranchSimulation<'a> {
         if world.day == week_end(world.day, days_per_week, world.total_days) || world.is_over(params) {
             self.finish_week();
         }
+    }
+
+    /// Clears the suspended settings for the next day. Returns the settings before, or `None` if no setting is suspended.
+    fn suspend_settings(&mut self) -> Option<Settings> {
+        let suspended = &self.edits.suspended_settings;
+        let settings = (!suspended.is_empty()).then(|| self.simulation.world.settings.clone());
+        suspended.iter().for_each(|setting| setting.clear(&mut self.simulation.world.settings));
+        settings
     }
 
     fn finish_week(&mut self) {

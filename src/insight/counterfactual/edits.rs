@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::suspended_setting::SuspendedSetting;
 use novamind_record::figures::WeekFigures;
 use novamind_session::engine::UsageCapacityRule;
 use novamind_tools::ToolId;
@@ -33,6 +34,8 @@ pub(crate) struct Edits {
     pub recorded_numbers: Option<Arc<CustomerNumbers>>,
     /// World inputs with fixed values.
     pub fixed_inputs: FixedInputs,
+    /// Settings that are 0 while days are simulated.
+    pub suspended_settings: Vec<SuspendedSetting>,
     /// Parameters that replace the parameters of the run.
     pub params: Option<Arc<Params>>,
     /// New random draws from a later day on.

@@ -13,6 +13,7 @@ pub(crate) mod memory_snapshot;
 pub(crate) mod parallel_map;
 pub(crate) mod recorded_run;
 pub(crate) mod recorded_steps;
+pub(crate) mod suspended_setting;
 #[cfg(test)]
 pub(crate) mod test_kit;
 #[cfg(test)]

@@ -1,0 +1,148 @@
+//! Causes that continue: settings that act in both weeks, and moves of the market in the previous week.
+//!
+//! An unchanged setting can change a figure. Development, for example, raises quality on every day. A continuing cause
+//! is valued without any difference between the weeks: both weeks are simulated without the player's calls of the
+//! explained week and with the world inputs of the previous week, once with the cause and once without the cause.
+
+use super::CauseProgressFn;
+use super::attribution::CauseContribution;
+use super::cause::{Cause, CauseDetail};
+use super::inputs::WeekPair;
+use super::question::WeekQuantity;
+use super::shapley::shapley_values;
+use super::week_resimulation::{WeekResimulation, last_simulated_week};
+use crate::counterfactual::branch::{BranchOutcome, simulate_branch};
+use crate::counterfactual::edits::Edits;
+use crate::counterfactual::memory_snapshot::MemorySnapshot;
+use crate::counterfactual::suspended_setting::SuspendedSetting;
+use novamind_record::figures::{SimulatedWeek, WeekFigure};
+use novamind_world::customers::drift::is_drift_day;
+use novamind_world::fixed_inputs::FixedInputs;
+
+/// The figures of both weeks in a re-simulation, or `None` if a week ended early.
+pub(super) type TwoWeeks = Option<[SimulatedWeek; 2]>;
+
+/// Returns the causes that continue from the previous week: active settings, and the market if it moved in that week.
+pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> Vec<Cause> {
+    let settings = SuspendedSetting::ALL.into_iter().filter(|setting| setting.is_active(&eve.world.settings));
+    let mut causes: Vec<Cause> = settings.map(Cause::Continued).collect();
+    let (market, market_before) = (&eve.world.market, &start.world.market);
+    let drifted = (start.world.day + 1..=eve.world.day).any(|day| is_drift_day(day, &start.params.drift));
+    if drifted || market.competitors.len() != market_before.competitors.len() {
+        causes.push(Cause::EarlierMarket);
+    }
+    causes
+}
+
+impl WeekResimulation {
+    /// Returns the contributions of the continuing causes to the change in a figure, which the causes that differ between
+    /// the weeks do not explain. Returns `None` if `progress` stopped the simulations.
+    pub(super) fn continued_contributions(
+        &mut self,
+        quantity: WeekQuantity,
+        progress: CauseProgressFn<'_>,
+    ) -> Option<Vec<CauseContribution>> {
+        self.simulate_continued(progress)?;
+        let all = (1u32 << self.continued.len()) - 1;
+        let change = |acting: u32| change_without_purchases(quantity, &self.continued_weeks[acting as usize]);
+        // Without advertising, the leads are so few and so different that their conversion would be mostly chance.
+        let is_valued = |at: &usize| {
+            quantity.figure() != WeekFigure::Conversion
+                || self.continued[*at] != Cause::Continued(SuspendedSetting::Advertising)
+        };
+        let mut valued: Vec<usize> = (0..self.continued.len()).filter(is_valued).collect();
+        let effect = |at: &usize| (change(all) - change(all & !(1 << at))).abs();
+        valued.sort_by(|left, right| effect(right).total_cmp(&effect(left)));
+        valued.retain(|at| !effect(at).is_nan());
+        // The figure may have no value if several causes are removed, for example conversion without leads.
+        let acting = |valued: &[usize], set: u32| {
+            let removed = valued.iter().enumerate().filter(|(bit, _)| set & (1 << bit) == 0);
+            all & !removed.fold(0, |mask, (_, at)| mask | 1 << at)
+        };
+        while (0..1u32 << valued.len()).any(|set| change(acting(&valued, set)).is_nan()) {
+            valued.pop()?;
+        }
+        let amounts = shapley_values(valued.len(), |set| change(acting(&valued, set)));
+        let contribution = |(at, amount): (&usize, f64)| {
+            let cause = self.continued[*at];
+            CauseContribution { cause, amount, details: vec![self.removed_days(cause)] }
+        };
+        Some(valued.iter().zip(amounts).map(contribution).collect())
+    }
+
+    /// Returns the days on which the re-simulations remove a continuing cause.
+    fn removed_days(&self, cause: Cause) -> CauseDetail {
+        let last = match cause {
+            Cause::EarlierMarket => self.start.world.day,
+            _ => self.after.final_state.world.day,
+        };
+        CauseDetail::Removed { first: self.start_before.world.day + 1, last }
+    }
+
+    /// Simulates both weeks with every subset of the continuing causes.
+    fn simulate_continued(&mut self, progress: CauseProgressFn<'_>) -> Option<()> {
+        if self.continued_weeks.is_empty() {
+            let sets: Vec<u32> = (0..1u32 << self.continued.len()).collect();
+            self.continued_weeks = self.simulate_in_parallel(&sets, progress, |acting, go_on| {
+                self.simulate_two_weeks(acting, go_on)
+            })?;
+        }
+        Some(())
+    }
+
+    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's calls of
+    /// the explained week, and with the world inputs of the previous week.
+    fn simulate_two_weeks(
+        &self,
+        acting: u32,
+        go_on: &mut dyn FnMut(u32) -> std::ops::ControlFlow<()>,
+    ) -> Option<TwoWeeks> {
+        let removed: Vec<Cause> = self
+            .continued
+            .iter()
+            .enumerate()
+            .filter(|(at, _)| acting & (1 << at) == 0)
+            .map(|(_, cause)| *cause)
+            .collect();
+        let suspended = |cause: &Cause| match cause {
+            Cause::Continued(setting) => Some(*setting),
+            _ => None,
+        };
+        let suspended_settings: Vec<SuspendedSetting> = removed.iter().filter_map(suspended).collect();
+        let market = removed.contains(&Cause::EarlierMarket);
+        let fixed_inputs = FixedInputs {
+            from: self.start_before.world.day + 1,
+            competitors: market,
+            drift: market,
+            ..FixedInputs::default()
+        };
+        let (eve, end) = (self.start.world.day, self.after.final_state.world.day);
+        let edits =
+            Edits { suspended_settings: suspended_settings.clone(), fixed_inputs, ..Edits::default() };
+        let before = simulate_branch(&self.start_before, &self.steps_before, &edits, eve, go_on)?;
+        let dropped_lines = self.calls.iter().flat_map(|call| call.lines.iter().copied()).collect();
+        let edits = Edits { suspended_settings, dropped_lines, ..Edits::default() };
+        let free = simulate_branch(&before.final_state, &self.steps, &edits, end, go_on)?;
+        let pair = WeekPair { start: &before.final_state, before: &before, after: &free };
+        let fixed_inputs = pair.fix_inputs(self.inputs.iter().map(|input| input.cause), &free.days);
+        let edits = Edits { fixed_inputs, ..edits };
+        let after = simulate_branch(&before.final_state, &self.steps, &edits, end, go_on)?;
+        let is_complete = |outcome: &BranchOutcome, day| {
+            outcome.lead_overflow.is_none() && outcome.final_state.world.day == day
+        };
+        let are_complete = is_complete(&before, eve) && is_complete(&after, end);
+        Some(are_complete.then(|| {
+            [
+                last_simulated_week(&self.start_before, &before),
+                last_simulated_week(&before.final_state, &after),
+            ]
+        }))
+    }
+}
+
+/// Returns the change in a figure, apart from one-time purchases of the previous week; NaN if the figure has no value.
+fn change_without_purchases(quantity: WeekQuantity, weeks: &TwoWeeks) -> f64 {
+    weeks.as_ref().map_or(f64::NAN, |[before, after]| {
+        quantity.value_in(after) - quantity.value_in(&before.without_purchases())
+    })
+}

@@ -24,10 +24,19 @@ struct State {
 
 impl State {
     fn of(session: &Session) -> State {
+        let mut state = State { status: Value::Null, dashboard: String::new(), running: None };
+        state.update(session);
+        state
+    }
+
+    /// Replaces the state. Keeps the dashboard of the last week, which is rendered once for each week.
+    fn update(&mut self, session: &Session) {
         let mut status = game_status(session).body;
         status["snapshot_at"] = json!(parse_seconds(&now()));
-        let dashboard = if session.day() == 0 { String::new() } else { session.company().dashboard() };
-        State { status, dashboard, running: None }
+        if session.day() != 0 && status["day"] != self.status["day"] {
+            self.dashboard = session.company().dashboard();
+        }
+        (self.status, self.running) = (status, None);
     }
 }
 
@@ -44,9 +53,8 @@ impl CommittedState {
 
     /// Replaces the state after a request. `session` is `None` after an internal error, which keeps the earlier state.
     pub fn commit(&self, session: Option<&Session>) {
-        let new = session.map(State::of);
-        self.access(|state| match new {
-            Some(new) => *state = new,
+        self.access(|state| match session {
+            Some(session) => state.update(session),
             None => state.running = None,
         });
     }

@@ -38,7 +38,8 @@ pub struct Export {
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
     /// Archive file, compressed if the name ends in .gz or .tgz. A folder with --all or --format script. A .json file
-    /// or a folder with --format inspect; in a folder, the file gets the name that Inspect expects
+    /// or a folder with --format inspect; in a folder, the file gets the name that Inspect expects. The folder `data`
+    /// of the viewer with --format viewer; runs can be added to it
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
     /// Format: a sealed archive, or a format of another program

@@ -60,7 +60,7 @@ pub struct Import {
     #[arg(long, value_name = "NAME")]
     under: Option<String>,
     /// Play an external transcript in a new run: a trajectory in the Agent Trajectory Interchange Format, an Inspect
-    /// log (.eval or .json), or JSON lines with the keys tool and args
+    /// log (.eval or .json), JSON lines with the keys tool and args, or history.jsonl of release 2
     #[cfg(feature = "server")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "under"])]
     transcript: Option<PathBuf>,
@@ -286,7 +286,7 @@ impl Import {
         remove_partial_files_on_signals();
         #[cfg(feature = "server")]
         match &self.transcript {
-            Some(file) => return import_transcript(file, &self.made_of, context),
+            Some(file) => return import_transcript(file, &self.made_of, json, context),
             None if self.made_of.is_specified() => {
                 return Err(Failure::usage(
                     "an archive contains the options of its run; options of a run need --transcript",

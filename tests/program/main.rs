@@ -33,6 +33,8 @@ mod python_client;
 #[cfg(unix)]
 mod python_scripts;
 #[cfg(feature = "server")]
+mod release_history;
+#[cfg(feature = "server")]
 mod retries;
 mod scenarios;
 mod seeded_faults;
@@ -43,5 +45,6 @@ mod support;
 #[cfg(unix)]
 mod terminal;
 mod transcripts;
+mod viewer;
 #[cfg(feature = "server")]
 mod voice;

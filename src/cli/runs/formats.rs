@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
+use crate::record::files::write_atomically;
 use crate::record::folder::manifest_check::read_manifest;
 use crate::report::pluralize;
 use crate::report::transcript::{
@@ -118,7 +119,8 @@ fn write_viewer_export(folder: &Path, data: &Path, context: &Context) -> Result<
         write_text(&weeks.join(format!("week_{number}.json")), &format!("{week}\n"))?;
     }
     write_text(&run_file, &format!("{}\n", export.run))?;
-    write_text(&manifest, &(serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"))?;
+    // The manifest is valid, so it can be replaced even if another program formatted it differently.
+    write_atomically(&manifest, (serde_json::to_string_pretty(&list).unwrap_or_default() + "\n").as_bytes())?;
     print(&format!(
         "run {} to day {}: {}, {}, {} of weeks in {}\n",
         id.display(),

@@ -162,7 +162,9 @@ impl ReleaseHistory {
             let remark = |reason: String| LineRemark { line: entry.line, reason };
             match (entry.success, response.is_success()) {
                 (true, false) => {
-                    let message = response.body["error"].as_str().unwrap_or_default();
+                    // The error of a call with several deals has a line for each deal.
+                    let error = response.body["error"].as_str().unwrap_or_default();
+                    let message = error.lines().next().unwrap_or_default();
                     played.rejected_here.push(remark(format!("{}: {message}", entry.tool)));
                 }
                 (false, true) => played.accepted_here.push(remark(entry.tool.to_owned())),
@@ -264,9 +266,10 @@ mod tests {
 
     #[test]
     fn play_executes_entries_in_order_and_counts_differences() {
+        let two_deals = json!({ "deals": [{ "customer_id": 900 }, { "customer_id": 901 }] });
         let lines = [
             prices("a", 0),
-            entry("b", "call:set_prices", json!({ "A": -1 }), (0, 0), true),
+            entry("b", "call:reject_enterprise_deal", two_deals, (0, 0), true),
             entry("c", "call:set_prices", json!({ "A": 20 }), (0, 0), false),
             entry("d", "call:teleport", json!({}), (0, 0), false),
             prices("a", 0),
@@ -282,6 +285,7 @@ mod tests {
         assert_eq!((played.entries, played.executed, played.after_end), (9, 5, 2), "{played:?}");
         assert_eq!(lines(&played.skipped), [4, 5]);
         assert_eq!(lines(&played.rejected_here), [2]);
+        assert_eq!(played.rejected_here[0].reason, "reject_enterprise_deal: customer 900: no active thread");
         assert_eq!(lines(&played.accepted_here), [3]);
         // The run has ten days, so its second week ends on day 10.
         assert_eq!(played.different_days[0].reason, "day 10 here, day 14 there");

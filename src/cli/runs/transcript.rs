@@ -7,7 +7,7 @@ use serde_json::json;
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
-use crate::formatting::dollars_and_cents;
+use crate::formatting::{dollars_and_cents, escape_control_characters};
 use crate::record::folder::runs::delete_run;
 use crate::record::mode::Mode;
 use crate::report::pluralize;
@@ -140,8 +140,9 @@ fn describe_history(played: &PlayedHistory, session: &Session) -> String {
     let PlayedHistory { entries, executed, skipped, after_end, .. } = played;
     let list = |title: &str, remarks: &[LineRemark]| {
         let shown = remarks.iter().take(MAX_LISTED_MISMATCHES);
-        let lines: String =
-            shown.map(|remark| format!("  line {}: {}\n", remark.line, remark.reason)).collect();
+        let lines: String = shown
+            .map(|remark| format!("  line {}: {}\n", remark.line, escape_control_characters(&remark.reason)))
+            .collect();
         let left = remarks.len().saturating_sub(MAX_LISTED_MISMATCHES);
         let rest = if left > 0 { format!("  and {left} more\n") } else { String::new() };
         format!("{title}: {}\n{lines}{rest}", remarks.len())

@@ -34,6 +34,7 @@ mod python_client;
 mod python_scripts;
 #[cfg(feature = "server")]
 mod release_2;
+mod release_history;
 #[cfg(feature = "server")]
 mod retries;
 mod scenarios;
@@ -45,5 +46,6 @@ mod support;
 #[cfg(unix)]
 mod terminal;
 mod transcripts;
+mod viewer;
 #[cfg(feature = "server")]
 mod voice;

@@ -38,7 +38,8 @@ pub struct Export {
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
     /// Archive file, compressed if the name ends in .gz or .tgz. A folder with --all or --format script. A .json file
-    /// or a folder with --format inspect; in a folder, the file gets the name that Inspect expects
+    /// or a folder with --format inspect; in a folder, the file gets the name that Inspect expects. The folder `data`
+    /// of the viewer with --format viewer; runs can be added to it
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
     /// Format: a sealed archive, or a format of another program
@@ -59,7 +60,7 @@ pub struct Import {
     #[arg(long, value_name = "NAME")]
     under: Option<String>,
     /// Play an external transcript in a new run: a trajectory in the Agent Trajectory Interchange Format, an Inspect
-    /// log (.eval or .json), or JSON lines with the keys tool and args
+    /// log (.eval or .json), JSON lines with the keys tool and args, or history.jsonl of release 2
     #[cfg(feature = "server")]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["files", "under"])]
     transcript: Option<PathBuf>,
@@ -285,7 +286,7 @@ impl Import {
         remove_partial_files_on_signals();
         #[cfg(feature = "server")]
         match &self.transcript {
-            Some(file) => return import_transcript(file, &self.made_of, context),
+            Some(file) => return import_transcript(file, &self.made_of, json, context),
             None if self.made_of.is_specified() => {
                 return Err(Failure::usage(
                     "an archive contains the options of its run; options of a run need --transcript",

@@ -9,6 +9,8 @@ mod context;
 mod inspect;
 mod plain_script;
 mod python_script;
+mod viewer;
+mod viewer_files;
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,13 +22,14 @@ pub use context::AgentContext;
 pub use inspect::{inspect_file_name, to_inspect};
 pub use plain_script::to_plain_script;
 pub use python_script::to_python_script;
+pub use viewer::{ViewerExport, add_to_viewer_manifest, to_viewer};
 
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{
     CalledTool, End, Outcome, QuerySource, RejectionRecord, SubmittedForecast,
 };
-use novamind_record::trajectory::{Line, Record};
+use novamind_record::trajectory::{Line, Record, find_policy};
 use novamind_session::{Playback, SeekTarget, Session, rows_to_json};
 use novamind_tools::{FORECAST_KEYS, ParameterNumbers};
 
@@ -49,6 +52,8 @@ pub struct Transcript {
     pub last_day_and_cash: (u32, f64),
     /// Hash of the last recorded state.
     pub state_hash: String,
+    /// Name of the policy that decided all weeks, if any.
+    pub policy: Option<String>,
 }
 
 /// An action with its line, day and time.
@@ -107,6 +112,8 @@ pub enum TranscriptAction {
 pub struct WeekResult {
     /// Last day of the week.
     pub day: u32,
+    /// Hash of the state at the end of the week.
+    pub state_hash: String,
     /// Cash at the end of the week, dollars.
     pub cash: f64,
     /// Dashboard at the end of the week as text.
@@ -120,6 +127,19 @@ impl Transcript {
     /// Returns an error if the run is missing, is damaged or has a different version. The error names the damaged line
     /// and the part that is intact.
     pub fn open(path: &Path, progress: &mut dyn FnMut(u32)) -> Result<Transcript, RunError> {
+        Transcript::open_observed(path, progress, &mut |_| {})
+    }
+
+    /// Reads and replays a run like [`Transcript::open`]. `observe` is called with the company on day 0 and after every
+    /// recorded week.
+    ///
+    /// # Errors
+    /// The errors of [`Transcript::open`].
+    pub fn open_observed(
+        path: &Path,
+        progress: &mut dyn FnMut(u32),
+        observe: &mut dyn FnMut(&mut Session),
+    ) -> Result<Transcript, RunError> {
         let mut playback = Playback::open(path)?;
         let lines: Vec<Line> = playback.lines().to_vec();
         let manifest = playback.session().manifest().clone();
@@ -133,13 +153,18 @@ impl Transcript {
             other_lines: Vec::new(),
             end: None,
             state_hash: String::new(),
+            policy: find_policy(&lines).map(str::to_owned),
         };
+        observe(playback.session_mut());
         for line in lines.iter().skip(1) {
             playback.seek(SeekTarget::Lines(1), &mut |day| {
                 progress(day);
                 ControlFlow::Continue(())
             })?;
             transcript.add_line(line, playback.session_mut());
+            if matches!(line.record, Record::Week(_) | Record::Step(_)) {
+                observe(playback.session_mut());
+            }
         }
         Ok(transcript)
     }
@@ -208,7 +233,8 @@ impl Transcript {
     fn close_week(&mut self, day: u32, cash: f64, state_hash: &str, session: &Session) {
         self.last_day_and_cash = (day, cash);
         self.state_hash = state_hash.to_owned();
-        let week = WeekResult { day, cash, dashboard: session.company().dashboard() };
+        let (state_hash, dashboard) = (state_hash.to_owned(), session.company().dashboard());
+        let week = WeekResult { day, state_hash, cash, dashboard };
         let open = self.steps.iter_mut().rev().find_map(|act| match &mut act.action {
             TranscriptAction::Week { result: passed, .. } => Some(passed),
             _ => None,

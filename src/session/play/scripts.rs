@@ -70,7 +70,7 @@ impl Session {
 
     /// Rejects Python unless a player executes the call.
     fn check_python_allowed(&self, via: Via) -> Result<(), Rejection> {
-        let is_played = !matches!(via, Via::Policy | Via::Branch | Via::Lesson);
+        let is_played = !matches!(via, Via::Policy | Via::Branch | Via::Lesson | Via::Import);
         require_player(is_played && !self.context.is_python_disabled)
     }
 

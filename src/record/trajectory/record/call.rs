@@ -58,6 +58,8 @@ pub enum Via {
     Branch,
     /// Lesson file, for its initial calls and automatic actions.
     Lesson,
+    /// Imported history of a game in the released simulator.
+    Import,
 }
 
 /// Relation of a call to an earlier call in the same week.

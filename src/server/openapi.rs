@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::schema;
 use novamind_tools::{ParameterNumbers, ToolId};
 
-/// Returns the OpenAPI document.
+/// Returns the OpenAPI description of the HTTP interface.
 pub fn document(numbers: &ParameterNumbers) -> Value {
     json!({
         "openapi": "3.1.0",

@@ -107,7 +107,7 @@ impl Interval {
 }
 
 /// Returns the percentile bootstrap interval of a statistic, which contains [`CONFIDENCE_LEVEL`] of [`RESAMPLES`]
-/// resamples. Returns `None` if the statistic has no value, or for fewer than [`MIN_SAMPLE_SIZE`] values.
+/// resamples. Returns `None` if the statistic has no value or if there are fewer than [`MIN_SAMPLE_SIZE`] values.
 ///
 /// The `statistic` function may reorder the values that it receives.
 pub fn bootstrap_interval(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {

@@ -37,7 +37,7 @@ enum ClassCommand {
         /// Name of the lesson, or path of its file
         #[arg(required_unless_present = "from", conflicts_with = "from")]
         lesson: Option<String>,
-        /// Hand out this run instead, `latest` for the newest; each student continues a branch of the run
+        /// Run to hand out instead of a lesson, or `latest` for the newest run; each student continues a branch of this run
         #[arg(long, value_name = "RUN")]
         from: Option<String>,
         /// Number of students, from 1 to 999
@@ -51,7 +51,7 @@ enum ClassCommand {
     Collect {
         /// Folder of the class
         folder: PathBuf,
-        /// Folders of runs and archives; subfolders are searched, too [default: the folder of the class]
+        /// Folders of runs and archives, which are searched with their subfolders [default: the folder of the class]
         #[arg(value_name = "PLACE")]
         places: Vec<PathBuf>,
     },
@@ -71,7 +71,7 @@ enum ClassCommand {
         /// Show ranks instead of labels, so that no student can be identified
         #[arg(long)]
         hide_names: bool,
-        /// Write the results to this file, as a web page for a projector, without scripts
+        /// Write the results to this file as a web page without scripts, for a projector
         #[arg(long, value_name = "FILE")]
         html: Option<PathBuf>,
         /// Print text instead of opening the screen

@@ -1,4 +1,4 @@
-//! `novamind doctor`: checks this machine and prints what a bug report needs.
+//! `novamind doctor`: checks this machine and prints the information that a bug report needs.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::world::MECHANICS;
 
 /// Policy and seed of the run that every build must reproduce.
 const KNOWN_RUN: (&str, u64) = ("P1a", 42);
-/// A day of this run and the state hash after it.
+/// A day of the known run, and the state hash at the end of that day.
 type KnownHash = (u32, &'static str);
 const SHORT_RUN: KnownHash = (28, "d9ab0c740485828a443135ab2e4cdf35bc41c92fe9f66fffb63d1dcff27434b5");
 const FULL_RUN: KnownHash = (500, "a6e13d9f17f50a662c19e8484eb0107fddf1be57ac495357bff71297a7704a3c");
@@ -87,7 +87,7 @@ fn describe_build() -> String {
     )
 }
 
-/// Lists the versions that determine which recorded runs this program opens.
+/// Lists the versions that determine which recorded runs this program can open.
 fn describe_versions(configuration: &Configuration) -> Result<String, String> {
     let scenario = configuration.load_scenario(DEFAULT_SCENARIO).map_err(|error| error.to_string())?;
     let params = configuration.load_parameters(&scenario, &[], true).map_err(|error| error.to_string())?;
@@ -98,7 +98,7 @@ fn describe_versions(configuration: &Configuration) -> Result<String, String> {
     ))
 }
 
-/// Simulates the known run and compares its state hash with the one that every machine must reach.
+/// Simulates the known run and compares its state hash with the state hash that every machine must reach.
 fn check_simulation((days, expected): KnownHash) -> Result<String, String> {
     let (policy, seed) = KNOWN_RUN;
     let configuration = Configuration::bundled();
@@ -130,17 +130,17 @@ fn describe_terminal() -> Result<String, String> {
         layers.iter().filter(|(name, _)| variable(name).is_some()).map(|(_, text)| (*text).to_owned()),
     );
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
-        words.push("input or output is not a terminal: the program plays line by line here".to_owned());
+        words.push("input or output is not a terminal: the game is played line by line here".to_owned());
     }
     if variable("TERM").as_deref() == Some("dumb") {
         return Err(
-            "TERM=dumb: the console needs a terminal that moves the cursor; play with --plain".to_owned()
+            "TERM=dumb: the console needs a terminal that can move the cursor; play with --plain".to_owned()
         );
     }
     Ok(words.join(", "))
 }
 
-/// Lists the variables that select colors. On a terminal, also shows samples of 16 and of 16 million colors.
+/// Lists the environment variables that select colors. On a terminal, also shows samples of 16 and of 16 million colors.
 fn describe_colors() -> String {
     let depth =
         variable("COLORTERM").map_or("COLORTERM is not set".to_owned(), |name| format!("COLORTERM={name}"));
@@ -156,7 +156,7 @@ fn describe_colors() -> String {
     )
 }
 
-/// Checks that runs can be written, without creating their folder.
+/// Checks that the folder of runs can be written, without creating the folder.
 fn check_runs_folder(runs: &Path) -> Result<String, String> {
     let ancestor = existing_ancestor(runs);
     let name = abbreviate_home_folder(runs);
@@ -174,7 +174,7 @@ fn check_runs_folder(runs: &Path) -> Result<String, String> {
     ))
 }
 
-/// Returns the path, or its nearest parent that exists.
+/// Returns the path if it exists, otherwise its nearest existing ancestor.
 fn existing_ancestor(path: &Path) -> &Path {
     path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."))
 }

@@ -55,7 +55,7 @@ enum LabCommand {
     Laws(distributions::Options),
     /// Draw participation curves: the quality that customers require at a price
     Curves(curves::Options),
-    /// Run the policies of a reference folder over many seeds and compare the results with its figures
+    /// Run the policies of a reference folder over many seeds and compare the results with the reference figures
     Golden(GoldenOptions),
     /// Play policies and measure the coverage of naive forecasts
     Forecasts(forecasts::Options),
@@ -66,7 +66,7 @@ enum LabCommand {
     /// Show how runs were played: ads, forecasts, tools, notes, customers, cash
     #[command(name = "behavior", alias = "behaviour")]
     Behaviour(behaviour::Options),
-    /// Play two policies on the same seed and check that they get the same random draws
+    /// Play two policies on the same seed and check that both policies use the same random draws
     Consistency(consistency::Options),
     /// Print all figures of a run day by day, including hidden figures; for debug runs and finished runs
     Metrics(metrics::Options),
@@ -322,7 +322,10 @@ fn summarize(verdicts: &[Verdict], unplayed: &[&str], seeds: &SeedRange) -> Resu
         failing.map(|verdict| format!("{} differs from the reference", verdict.comparison.policy)).collect();
     problems.extend(unplayed.iter().map(|name| format!("{name} cannot be played")));
     if below(3.0) < MIN_TOTAL_SHARE {
-        problems.push(format!("over all policies, less than {:.0} % have |z| < 3", 100.0 * MIN_TOTAL_SHARE));
+        problems.push(format!(
+            "less than {:.0} % of the cells of all policies have |z| < 3",
+            100.0 * MIN_TOTAL_SHARE
+        ));
     }
     if problems.is_empty() { Ok(()) } else { Err(Failure::failed(problems.join("; "))) }
 }

@@ -11,7 +11,7 @@ const MIN_WINDOW_SIZE: (u16, u16) = (60, 16);
 
 /// The result of one check.
 pub struct CheckItem {
-    /// Checked object, in one word.
+    /// Name of the checked item, in one word.
     pub name: &'static str,
     /// Outcome of the check.
     pub outcome: CheckOutcome,
@@ -21,7 +21,7 @@ pub struct CheckItem {
 pub enum CheckOutcome {
     /// The check passed. No action is needed.
     Passed(String),
-    /// The check found a state that may be intended. The user should know about the state.
+    /// The check found a state that may be intended, but that the user should know about.
     Note(String),
     /// The check found a problem that the user must fix first.
     Failed(String),
@@ -34,12 +34,12 @@ impl From<Result<String, String>> for CheckOutcome {
 }
 
 impl CheckItem {
-    /// Creates an item.
+    /// Creates the item for one check.
     pub fn new(name: &'static str, outcome: impl Into<CheckOutcome>) -> CheckItem {
         CheckItem { name, outcome: outcome.into() }
     }
 
-    /// Returns the verdict as a word for programs.
+    /// Returns the verdict of the check as a word that programs can parse.
     pub fn verdict(&self) -> &'static str {
         match self.outcome {
             CheckOutcome::Passed(_) => "ok",
@@ -48,17 +48,17 @@ impl CheckItem {
         }
     }
 
-    /// Returns the explanation.
+    /// Returns the explanation of the outcome.
     pub fn text(&self) -> &str {
         let (CheckOutcome::Passed(text) | CheckOutcome::Note(text) | CheckOutcome::Failed(text)) =
             &self.outcome;
         text
     }
 
-    /// Returns the line of a report: verdict, name and explanation.
+    /// Formats the check as one line of a report: verdict, name and explanation.
     pub fn line(&self) -> String {
         let verdict = if self.verdict() == "wrong" { "WRONG" } else { self.verdict() };
-        // Paths and variables can contain line breaks and escape sequences, with which a line could be forged.
+        // Line breaks and escape sequences in paths and variables could forge a line of the report.
         let text: String =
             self.text().replace(|letter: char| letter.is_control() && self.name != "colors", "\u{fffd}");
         format!("  {verdict:<5} {:<11} {text}\n", self.name)

@@ -118,7 +118,7 @@ enum Command {
     Doctor(doctor::Options),
     /// Print a completion script for a shell
     Completions(completions::Options),
-    /// Print a manual page, or write all of them to a folder
+    /// Print a manual page, or write all manual pages to a folder
     Man(man::Options),
 }
 
@@ -415,9 +415,11 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         if !has_code {
             return Err(Failure::usage(match arguments.code {
                 Some(_) => {
-                    "the code is wrong; this command needs the experimenter's code: --code, or NOVAMIND_CODE"
+                    "the code is wrong; this command needs the experimenter's code: give --code, or set NOVAMIND_CODE"
                 }
-                None => "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
+                None => {
+                    "with --study, this command needs the experimenter's code: give --code, or set NOVAMIND_CODE"
+                }
             }));
         }
     }

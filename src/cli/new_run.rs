@@ -51,8 +51,9 @@ fn parse_mode(text: &str) -> Result<Mode, String> {
 
 fn parse_fault(text: &str) -> Result<Fault, String> {
     let number = text.parse::<u32>().unwrap_or(0);
-    Fault::try_from(number)
-        .map_err(|_| format!("{text} is not the number of a fault; choose 1 to {}", Fault::ALL.len()))
+    Fault::try_from(number).map_err(|_| {
+        format!("{text} is not the number of a fault; choose a number from 1 to {}", Fault::ALL.len())
+    })
 }
 
 impl NewRunOptions {

@@ -92,7 +92,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     taken
 }
 
-/// Returns the names of the pictures and the keys to press for each.
+/// Returns the name of each picture and the keys to press for the picture.
 fn picture_keys(options: &Options, keys: &KeyBindings) -> Result<Vec<(String, String)>, Failure> {
     if let Some(keys) = &options.keys {
         return Ok(vec![("keys".to_owned(), keys.clone())]);

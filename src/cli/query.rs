@@ -31,7 +31,7 @@ pub struct Options {
     /// Include the hidden tables; for debug runs and finished runs. The inspection is recorded
     #[arg(long)]
     xray: bool,
-    /// Day of the table hidden.customers [default: the last day]
+    /// Day that the table hidden.customers describes [default: the last day]
     #[arg(long, value_name = "DAY", requires = "xray")]
     day: Option<u32>,
     /// Output format of the query result
@@ -126,7 +126,7 @@ fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Fai
 
 /// Queries the database file. Returns `None` if the file is incomplete.
 fn query_database_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<QueryResult>, Failure> {
-    // The trajectory and the database are long files, so two threads read them.
+    // The trajectory and the database are large files, so two threads read them.
     let (trajectory, opened) = std::thread::scope(|scope| {
         let opened = scope.spawn(|| open_database_file(folder, key));
         (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())

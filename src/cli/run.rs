@@ -28,7 +28,7 @@ pub struct Options {
     /// Last day of the run; affects the mechanics [default: the policy's or scenario's last day, otherwise 500]
     #[arg(long, value_name = "N")]
     days: Option<u32>,
-    /// Stop after this day; the horizon does not change
+    /// Stop after this day; the last day of the run does not change
     #[arg(long, value_name = "N")]
     until: Option<u32>,
     /// Demand surges [default: as in the policy or scenario]
@@ -171,7 +171,7 @@ fn write_in_order(
     }
 }
 
-/// Output files of the results.
+/// The output files for the results.
 struct ResultWriter<'a> {
     metrics: Option<BufWriter<File>>,
     options: &'a Options,

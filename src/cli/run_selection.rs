@@ -1,4 +1,4 @@
-//! Options that select the run of a program.
+//! Options that select the run that a program plays.
 
 use std::path::PathBuf;
 

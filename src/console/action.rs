@@ -1,12 +1,12 @@
-//! Actions of the console: the one table from which the palette, the footer, the help and the key file are derived.
+//! Table of the console's actions, from which the palette, the footer, the help and the key file are derived.
 
 use novamind_tui::canvas::CommandId;
 use novamind_tui::widgets::ListAction;
 
-/// A part of the console in which key bindings apply. A focused place has several scopes, the innermost first.
+/// A part of the console in which key bindings apply. A focused pane or dialog has several scopes, the innermost first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scope {
-    /// All places in a run.
+    /// All screens and panes of an open run.
     Global,
     /// The start menu.
     Menu,
@@ -312,7 +312,7 @@ actions! {
         Library "library" "library" "Search the library of named queries and run one."
         SaveQuery "save-query" "save" "Save the statement as a named query."
         EditQuery "edit-query" "edit" "Go to the editor."
-        ClearQuery "clear-query" "clear" "Empty the editor."
+        ClearQuery "clear-query" "clear" "Clear the editor."
     }
     Result {
         ShowCell "whole-cell" "full value" "Show the full value of the cell."
@@ -345,7 +345,7 @@ actions! {
     }
     Inbox {
         SendOffer "send-offer" "send" "Send the offer to the marked enterprises, or to the selected one."
-        MatchAskedPrice "take-their-price" "match their price" "Offer the price that the enterprise asks for the plan it named."
+        MatchAskedPrice "take-their-price" "match asked price" "Offer the price that the enterprise asks for the plan it named."
         Mark "mark" "mark" "Mark or unmark the thread for a bulk offer."
         MarkAll "mark-all" "mark all" "Mark every thread in the list; press again to unmark them."
         OfferPlan "plan" "plan" "Choose another plan for this line of the offer."
@@ -359,7 +359,7 @@ actions! {
         InboxSql "thread-sql" "SQL" "Query the thread in SQL."
     }
     NextWeek {
-        NextStep "next-step" "next step" "Go to the next step; on the last one, run the week."
+        NextStep "next-step" "next step" "Go to the next step. In the last step, run the week."
         PreviousStep "previous-step" "previous step" "Go back to the previous step."
         FillNaiveForecasts "fill-naively" "fill naively" "Fill in empty forecasts with naive forecasts, which are marked in the record. In the review, fill in everything (not in baseline runs)."
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
@@ -426,7 +426,7 @@ actions! {
         MarkRun "mark-run" "mark" "Mark the run for a comparison, or unmark it."
         CompareRuns "compare-runs" "compare" "Show the marked runs side by side."
         ReplayRun "replay-run" "replay" "Replay the recorded run, read-only, week by week."
-        EndRun "end-run" "give up" "End the run for good, after confirmation."
+        EndRun "end-run" "give up" "End the run permanently, after confirmation."
         DeleteRun "delete-run" "delete" "Delete the run and everything in its folder, after confirmation."
     }
     Class {
@@ -473,7 +473,7 @@ actions! {
         DecisionsUp "decisions-up" "decisions up" "Scroll the decisions up."
         DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
         TakeOver "take-over" "take over" "Continue from this position in your own branch."
-        LeavePlayback "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
+        LeavePlayback "leave-viewer" "leave" "Close the replay and open the start menu; the run does not change."
     }
     Decisions {
         OmitDecision "drop-decision" "leave out" "Omit the selected call, or restore it; remove an added decision."

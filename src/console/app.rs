@@ -69,9 +69,9 @@ const MAX_SCREEN_HISTORY: usize = 50;
 
 /// Work that the application requests from the main loop and the worker threads.
 pub enum Order {
-    /// Work for the session thread.
+    /// Send a job to the session thread.
     Job(Job),
-    /// A question of a page. The flag is true while other work is running.
+    /// Send the question of a page to the worker. The flag is true while other work is running.
     Ask(OutgoingQuestion, bool),
     /// Stop the user's query and other running work of the user.
     CancelQuery,
@@ -79,11 +79,11 @@ pub enum Order {
     Copy(String),
     /// Write files with these paths and contents.
     Write(Vec<(PathBuf, Vec<u8>)>),
-    /// Save a named query. The strings are its name, title and statement.
+    /// Save a named query. The strings are the name, the title and the statement of the query.
     SaveQuery(Configuration, [String; 3]),
     /// Redraw the whole window.
     Redraw,
-    /// Capture the mouse, or leave it to the terminal.
+    /// Capture the mouse (`true`) or leave the mouse to the terminal (`false`).
     Mouse(bool),
     /// Exit, with an exit code and a text to print.
     Exit(u8, Option<String>),
@@ -136,7 +136,7 @@ pub struct Run {
     pub screen: ScreenId,
     /// Screens shown before the current screen, the latest last.
     pub back_history: Vec<ScreenId>,
-    /// Places from which the current place was opened, the latest last.
+    /// Breadcrumbs: the screens from which the current screen was opened, the latest last.
     breadcrumbs: Vec<breadcrumbs::Breadcrumb>,
     /// Screens that were left with `back`, the latest last.
     pub forward_history: Vec<ScreenId>,
@@ -152,7 +152,7 @@ pub struct Run {
     pub next_week: NextWeekDialog,
     /// The run report, after the run has ended and the report was built.
     pub story: Option<Arc<RunReport>>,
-    /// Readings requested since the run last changed.
+    /// Screen queries requested since the run last changed.
     pub requested_readings: BTreeMap<Reading, Pending<Reading>>,
     /// The tour, while it is shown.
     pub tour: Option<Tour>,
@@ -161,9 +161,9 @@ pub struct Run {
     /// State of the lesson that the run belongs to.
     pub lesson: lesson::LessonState,
     overlay: overlay::HiddenValuesOverlay,
-    /// Time left until each time limit.
+    /// Remaining time until each time limit.
     pub time_left: Vec<TimeLeft>,
-    /// Reason why the database is behind the run, if it is behind.
+    /// Reason why the database is behind the run; `None` if the database is up to date.
     pub database_error: Option<String>,
 }
 
@@ -183,7 +183,7 @@ pub struct App {
     pub theme: Theme,
     /// Key bindings.
     pub keys: KeyBindings,
-    /// Characters that charts are drawn with.
+    /// Characters that are used to draw charts.
     pub glyphs: Glyphs,
     /// Whether the console captures the mouse.
     pub mouse: bool,
@@ -325,7 +325,7 @@ impl App {
         self.busy.is_some() || self.run().is_some_and(|run| run.screens.sql.is_running())
     }
 
-    /// Returns the scopes of the focused place, the innermost first.
+    /// Returns the scopes of the focused pane or dialog, the innermost first.
     pub fn scopes(&self) -> Vec<Scope> {
         let mut scopes = match (self.layers.top(), &self.stage) {
             (Some(Layer::Dialog(dialog)), _) => return dialog.scopes(),

@@ -64,12 +64,12 @@ impl ScreenId {
     }
 }
 
-/// Values that a screen reads to draw and to handle actions.
+/// Values that a screen needs to draw its panes and to handle actions.
 #[derive(Clone, Copy)]
 pub struct ScreenContext<'a> {
     /// The displayed company.
     pub company: &'a DisplayedCompany,
-    /// Key bindings, for labels.
+    /// Key bindings, which are used to label actions.
     pub keys: &'a KeyBindings,
     /// Number of rows that the focused list showed in the last frame, for paging.
     pub page_rows: u16,

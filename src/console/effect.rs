@@ -45,7 +45,7 @@ pub enum Effect {
     Seek(SeekTarget),
     /// Send a question of a page to the worker. The page keeps the pending answer.
     Ask(OutgoingQuestion),
-    /// Record that the draft at a place of the screen was sent.
+    /// Record that the draft with this recorded name was sent.
     SentText(&'static str),
     /// Show the causes of the change in a weekly figure.
     ShowCauses(Figure),
@@ -65,7 +65,7 @@ pub enum Effect {
     SendCommand(String),
     /// Stop the user's query.
     CancelQuery,
-    /// Request a reading for a screen.
+    /// Request the result of a screen query.
     Read(Reading),
     /// Copy text to the clipboard.
     Copy(String),
@@ -133,9 +133,9 @@ pub enum Effect {
     Explain(Subject),
     /// Open the practice run with the tour.
     StartTour,
-    /// Start receiving participants of a study.
+    /// Show the pages of a study to participants.
     StartStudy(Box<Study>),
-    /// Restore the offered drafts (`true`) or discard them.
+    /// Restore the offered drafts (`true`) or discard the drafts (`false`).
     ResolveDraftOffer(bool),
     /// Stop the clock, with a reason if the study requires one.
     StopClock(Option<String>),

@@ -37,7 +37,7 @@ pub fn save_query_in_background(
     answer_on_thread(news, work, |saved| Response::QuerySaved(saved.map_err(|refusal| refusal.message)));
 }
 
-/// Formats the full path of the first file and the names of the others.
+/// Formats the full path of the first file and the names of the other files.
 fn format_paths(paths: &[PathBuf]) -> String {
     let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut words: Vec<String> = paths.iter().map(name).collect();

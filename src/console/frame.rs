@@ -250,7 +250,7 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
     canvas.draw_aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
 }
 
-/// Returns a label with the shortest time left until any time limit.
+/// Returns a label with the remaining time until the next time limit.
 fn time_left_label(app: &App) -> String {
     let running = app.run().filter(|run| run.company.is_running());
     let left = running.map_or(&[][..], |run| run.time_left.as_slice());
@@ -391,7 +391,7 @@ fn action_title(app: &App, action: Action) -> &'static str {
     }
 }
 
-/// Returns the actions for the footer: the actions of the focused place, followed by general actions.
+/// Returns the actions for the footer: the actions of the focused pane or dialog, followed by general actions.
 fn footer_actions(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
     if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {

@@ -1,5 +1,5 @@
 //! The console without a terminal: the real application and its threads draw into a buffer. Tests, the speed benchmark
-//! and the pictures of the documentation use it.
+//! and the pictures of the documentation use the console without a terminal.
 
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -75,7 +75,7 @@ impl Headless {
         self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Write)))
     }
 
-    /// Starts receiving participants of a study and waits for the first page.
+    /// Opens a study for participants and waits for the first page.
     ///
     /// # Errors
     /// The page does not arrive.

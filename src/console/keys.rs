@@ -10,7 +10,7 @@ use toml::Table;
 use super::action::{Action, Scope};
 use novamind_tui::chord::{Chord, format_sequence, parse_sequence};
 
-/// The meaning of a chord sequence in the focused place.
+/// The meaning of a chord sequence in the focused pane or dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KeyMeaning {
     /// The chords trigger an action.
@@ -21,7 +21,7 @@ pub enum KeyMeaning {
     Unbound,
 }
 
-/// The bindings of every scope.
+/// The key bindings, by scope.
 #[derive(Debug, Clone)]
 pub struct KeyBindings(BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>);
 

@@ -82,7 +82,7 @@ impl StyledLines {
     }
 }
 
-/// Where the task is drawn, which determines its keys.
+/// The place where the task is drawn, which determines the keys of the task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TaskPlace {
     /// Next to the screen.

@@ -29,7 +29,7 @@ pub fn new_company() -> DisplayedCompany {
     DisplayedCompany::from_session(&new_session())
 }
 
-/// Runs the readings of a screen and returns the query results.
+/// Runs the queries of a screen and returns the results.
 pub fn query_readings(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, QueryResult)> {
     let ask = |reading: &Reading| {
         let rows = session.query(reading.sql());

@@ -68,7 +68,7 @@ impl FileBlocks {
         }
     }
 
-    /// Loads the tables in `tables` that are not loaded yet. Returns false if a day is damaged or loading was stopped.
+    /// Loads the tables in `tables` that are not loaded yet. Returns `false` if a day is damaged or loading was stopped.
     pub fn load(&mut self, connection: &Connection, tables: &[String]) -> bool {
         for (table, load) in LOADERS {
             if !tables.iter().any(|text| text == table) || self.loaded.contains(table) {
@@ -132,7 +132,7 @@ fn load_days<D>(
     rows.map(|row| row.ok().and_then(|(day, packed)| read(day, &packed)).map(Arc::new)).collect()
 }
 
-/// Loads the issue clock after each day, from day 0 on.
+/// Loads the values of the issue clock after each day, starting with day 0.
 fn load_clock(connection: &Connection) -> Option<Vec<u32>> {
     let mut statement = connection.prepare("SELECT aged FROM issue_clock ORDER BY day").ok()?;
     let rows = statement.query_map([], |row| row.get(0)).ok()?;

@@ -160,7 +160,7 @@ impl BlockTableDefinition for Issues {
 }
 
 const CUSTOMER_COLUMN: c_int = 1;
-/// SQLite's column number of the rowid.
+/// Column number by which SQLite refers to the rowid.
 const ROWID_COLUMN: c_int = -1;
 const _: () = assert!(issues::column::CUSTOMER == CUSTOMER_COLUMN);
 
@@ -234,7 +234,7 @@ unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_str(&plan);
-        // Rows are ordered by day and number.
+        // The table returns rows in ascending order of day and row number.
         let by_day = |order: OrderBy<'_>| {
             (order.column() == K::DAY || K::NUMBER == Some(order.column())) && !order.is_order_by_desc()
         };
@@ -310,8 +310,8 @@ impl<K: BlockTableDefinition> BlockCursor<'_, K> {
         }
     }
 
-    /// Returns whether the position is in the unpacked run and all customers are requested. This is the fast path for
-    /// most rows.
+    /// Returns whether the position is in the unpacked run and all customers are requested. The check is the fast path
+    /// for most rows.
     fn is_within_run(&self) -> bool {
         self.customer.is_none()
             && self.run.as_ref().is_some_and(|run| self.position.at < run.customers().len())
@@ -441,7 +441,7 @@ mod tests {
         connection_with_view(&Arc::new(QueryView::default()))
     }
 
-    /// Returns a connection to five days of six rows and one ad row.
+    /// Returns a connection to tables with five days of six usage rows each, and with one row of ad revenue.
     fn connection_with_view(seen: &Arc<QueryView>) -> Connection {
         let rows = |first: u32| {
             let customers = vec![first, first + 2, first + 4];

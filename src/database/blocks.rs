@@ -35,7 +35,7 @@ pub(super) struct BlockStore {
     pub ads: Arc<Vec<Arc<PackedDay>>>,
     pub inbox: Inbox,
     pub issues: Arc<Vec<Arc<PackedDay>>>,
-    /// Value of the issue clock after each day, from day 0 on.
+    /// Value of the issue clock after each day, starting with day 0.
     pub issue_clock: Arc<Vec<u32>>,
     pub ledger: Arc<Vec<Arc<LedgerDay>>>,
 }

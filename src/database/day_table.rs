@@ -1,5 +1,6 @@
 //! The tables `notifications` and `ledger`: read-only virtual tables over packed days. The virtual tables skip days
-//! and kinds that a query does not need. They can return rows ordered by kind or day, so that SQLite need not sort.
+//! and kinds that a query does not need. The virtual tables can return rows ordered by kind or day, so that SQLite
+//! need not sort.
 //!
 //! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
@@ -60,7 +61,7 @@ pub(super) struct DayRow<'a, K: DayTableDefinition> {
 const NUMBER: c_int = 0;
 const DAY: c_int = 1;
 const KIND: c_int = 2;
-/// SQLite's column number of the rowid.
+/// Column number by which SQLite refers to the rowid.
 const ROWID_COLUMN: c_int = -1;
 
 /// A comparison operator of SQL.
@@ -127,7 +128,7 @@ impl HandledConstraint {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowOrder {
-    /// Order by number, and therefore by day.
+    /// Order by row number, which is also the order of days.
     Number,
     /// Order by kind, then by day.
     ByKind,
@@ -136,7 +137,7 @@ enum RowOrder {
 }
 
 impl RowOrder {
-    /// Returns the order for sorting by a list of columns, or `None` if the table does not support it.
+    /// Returns the order for sorting by a list of columns, or `None` if the table does not support this order.
     fn for_columns(columns: &[c_int]) -> Option<RowOrder> {
         match columns {
             [NUMBER | ROWID_COLUMN, ..] | [DAY] | [DAY, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::Number),
@@ -189,7 +190,7 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
                     HandledConstraint::from_constraint(constraint.column(), &constraint.operator(), K::TEXT)?,
                 ))
             })
-            // Texts are compared byte by byte, unlike NOCASE.
+            // The table compares texts byte by byte, so it cannot check a constraint with another collation, such as NOCASE.
             .filter(|(at, constraint)| {
                 !is_text(constraint) || info.collation(*at).is_ok_and(|text| text == "BINARY")
             })
@@ -346,7 +347,7 @@ impl<K: DayTableDefinition> DayCursor<'_, K> {
         let days = all.partition_point(|day| f64::from(day.day()) < days[0]).min(end)..end;
         let single = || (0..K::KINDS.len()).map(|at| 1 << at).filter(move |bit| kinds & bit != 0);
         match order {
-            // A single row needs only one pass in any order.
+            // A request for a single row needs only one pass, in any row order.
             _ if self.row_number_filter.is_some() => days.map(|day| ScanPass { day, kinds }).collect(),
             RowOrder::Number => days.map(|day| ScanPass { day, kinds }).collect(),
             RowOrder::ByKind => {

@@ -32,7 +32,8 @@ pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
             .collect();
         let holders = if holders.is_empty() { "several tables".to_owned() } else { holders.join(", ") };
         return format!(
-            "column {column} is ambiguous: {holders} have it; write the table before it, as in table.{column}"
+            "column {column} is ambiguous: {holders} have this column; put the table name before \
+             the column, as in table.{column}"
         );
     }
     message.to_owned()
@@ -258,7 +259,7 @@ mod tests {
         let text = explain_error("ambiguous column name: status", "");
         assert!(text.contains("subscriptions, research_projects, issues"), "{text}");
         let text = explain_error("ambiguous column name: rowid", "");
-        assert!(text.starts_with("column rowid is ambiguous: several tables have it"), "{text}");
+        assert!(text.starts_with("column rowid is ambiguous: several tables have this column"), "{text}");
     }
 
     #[test]

@@ -197,7 +197,7 @@ pub(super) const CUSTOMER_ID: &str = "customer_id";
 pub(super) struct Guard {
     last_rejection: LastRejection,
     reads: ColumnReads,
-    /// `None` if there are no internal tables.
+    /// Views behind the visible tables, or `None` if there are no internal tables.
     views: Option<InnerViews>,
     /// Tables that statements may name.
     scope: Scope,

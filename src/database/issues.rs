@@ -12,7 +12,7 @@ use novamind_world::identifiers::Group;
 /// Issues of one group with consecutive numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct IssueRun {
-    /// Number of the first issue.
+    /// Number of the first issue in the run.
     pub first: u32,
     pub group: Group,
     pub customers: Vec<u32>,

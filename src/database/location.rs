@@ -40,7 +40,7 @@ impl DatabaseLocation {
     pub(super) fn open_writer(&self) -> rusqlite::Result<Connection> {
         let connection = self.open(OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE)?;
         if self.path().is_some() {
-            // Readers see the state before a week while the week is written.
+            // While the writer writes a week, readers see the state before that week.
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "NORMAL")?;
         }

@@ -69,7 +69,7 @@ pub(super) struct NoticeDay {
     pub day: u32,
     /// Row number of the day's first notice.
     pub first: u64,
-    /// Number of losses that are repeated on this day. The losses are the first in the run's list.
+    /// Number of losses that are repeated on this day. The repeated losses are the first losses in the run's list.
     pub repeats: u32,
     /// Number of notices before the repeated losses. Notices of later tool calls follow the repeated losses.
     pub before_repeats: u32,

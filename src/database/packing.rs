@@ -93,7 +93,7 @@ impl PackedDay {
         i64::from(self.day) << 32 | (before + at + 1) as i64
     }
 
-    /// Returns the first and last customer of a run. For an empty run, the first is greater than the last.
+    /// Returns the first and last customer of a run. For an empty run, the first customer number is greater than the last.
     pub fn customer_range(&self, run: usize) -> (u32, u32) {
         let place = &self.runs[run];
         (place.first_customer, place.last_customer)
@@ -120,7 +120,7 @@ pub(super) trait PackedRows {
     fn day(&self) -> u32;
     /// Returns the row number of the day's first row.
     fn first(&self) -> u64;
-    /// Returns how many rows the day has.
+    /// Returns the number of rows in the day.
     fn len(&self) -> u64;
     /// Returns the position of the first row at or after `place` that has one of the kinds.
     fn next_of_kinds(&self, kinds: KindSet, place: u64) -> Option<u64>;

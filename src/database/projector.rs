@@ -148,7 +148,7 @@ impl Projector {
         self.spare.take()
     }
 
-    /// Commits all entries that were sent before, together with the trajectory position.
+    /// Commits all previously sent entries, together with the trajectory position.
     pub fn commit(&self, position: ProjectionPosition) {
         self.send(WriterJob::Commit(position));
     }
@@ -250,7 +250,7 @@ struct FactsPool(Arc<Mutex<Vec<Arc<Facts>>>>);
 impl FactsPool {
     fn recycle(&self, mut facts: Arc<Facts>) {
         let Some(unread) = Arc::get_mut(&mut facts) else { return };
-        // Not every user of the facts starts a day, so the facts must be cleared completely.
+        // Not every caller that reuses the facts calls `start_day`, so the facts must be cleared completely.
         unread.start_day(0);
         let mut kept = self.lock();
         if kept.len() < MAX_SPARE_FACTS {
@@ -380,7 +380,7 @@ pub fn query_connection(
     let connection = location.open_reader().map_err(to_error)?;
     let position = stored_position(&connection).map_err(to_error)?.ok_or_else(missing)?;
     if !is_current_layout(&connection) {
-        return Err(ProjectionError("another version of the program created it".to_owned()));
+        return Err(ProjectionError("another version of the program created world.db".to_owned()));
     }
     let source = BlockSource::File(RefCell::default());
     let connection = QueryConnection::open(location, source, scope).map_err(to_error)?;

@@ -234,7 +234,7 @@ impl QueryConnection {
         Ok(())
     }
 
-    /// Returns whether a query found damaged packed days. If so, results are not reliable.
+    /// Returns whether a query found damaged packed days. After such a query, results are not reliable.
     pub fn has_found_damage(&self) -> bool {
         matches!(&self.source, BlockSource::File(blocks) if blocks.borrow().is_damaged())
     }
@@ -358,17 +358,15 @@ impl QueryConnection {
         match fault {
             QueryFault::Empty => query_error("sql_empty", "no SQL was given"),
             QueryFault::MultipleStatements => {
-                query_error("sql_error", "one statement at a time; remove what follows the first ;")
+                query_error("sql_error", "only one statement is allowed; remove the text after the first ;")
             }
             QueryFault::MachineCode => query_error(
                 "sql_schema",
-                "EXPLAIN alone shows the engine's machine code; EXPLAIN QUERY PLAN shows how a query is \
-                 answered",
+                "EXPLAIN returns the engine's bytecode; use EXPLAIN QUERY PLAN to see how a query is executed",
             ),
-            QueryFault::Parameters => query_error(
-                "sql_error",
-                "statements take no parameters here; write the values in their place",
-            ),
+            QueryFault::Parameters => {
+                query_error("sql_error", "parameters are not supported; write the values into the statement")
+            }
             QueryFault::Write => write_error(),
             QueryFault::Damaged => query_error(
                 "sql_error",
@@ -376,10 +374,7 @@ impl QueryConnection {
             ),
             QueryFault::TooLarge => {
                 let most = MAX_RESULT_TEXT_BYTES >> 20;
-                query_error(
-                    "sql_error",
-                    &format!("the result is larger than {most} MiB; ask for less at a time"),
-                )
+                query_error("sql_error", &format!("the result is larger than {most} MiB; select less data"))
             }
             QueryFault::Sqlite(_) if objection == RejectionReason::Write || is_write_statement(sql) => {
                 write_error()
@@ -400,7 +395,7 @@ impl QueryConnection {
         }
         if error.sqlite_error_code() == Some(OperationInterrupted) {
             let seconds = limits.time.as_secs();
-            let too_long = format!("the query ran longer than {seconds} s; ask for less at a time");
+            let too_long = format!("the query ran longer than {seconds} s; select less data");
             return match self.interrupt.stop_cause() {
                 StopCause::Request => query_error(SQL_CANCELLED, CANCELLED_MESSAGE),
                 StopCause::Memory => query_error("sql_timeout", TOO_MUCH_MEMORY_MESSAGE),
@@ -469,7 +464,7 @@ impl From<rusqlite::Error> for QueryFault {
     }
 }
 
-const TOO_MUCH_MEMORY_MESSAGE: &str = "the query needs too much memory; ask for less at a time";
+const TOO_MUCH_MEMORY_MESSAGE: &str = "the query needs too much memory; select less data";
 
 /// Error code of a query that the user cancelled.
 pub const SQL_CANCELLED: &str = "sql_cancelled";
@@ -484,7 +479,7 @@ fn query_error(code: &'static str, message: &str) -> QueryError {
 }
 
 fn write_error() -> QueryError {
-    query_error("sql_write", "only reading is allowed; use the tools to change anything")
+    query_error("sql_write", "only reading is allowed; use the tools to make changes")
 }
 
 fn hidden_table_error(table: Option<&str>) -> QueryError {

@@ -22,7 +22,7 @@ const MAX_SPELLINGS: usize = 200;
 
 const ROWID_NAMES: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
-/// The table that statements look up by customer although it has no index.
+/// The table that statements search by customer although the table has no index.
 const ISSUES_TABLE: &str = "issues";
 
 /// A connection to empty tables with the schema of the released simulator.

@@ -1,10 +1,10 @@
--- The observable company. What is stored as codes comes back as words through ordinary views, so that the file
--- opens in any SQLite tool; large tables that are read far more than changed
--- (daily_usage, ads_revenue, issues, ledger, notifications) are packed by day and served by the program.
+-- The tables of the observable company. Values are stored as codes. Ordinary views convert the codes to words, so that any
+-- SQLite tool can open the file. Large tables that are read far more often than changed (daily_usage, ads_revenue, issues,
+-- ledger, notifications) are packed by day, and the program serves their rows.
 --
--- Values that depend on one row only are generated columns: they take no space, have their declared type, and the engine can
--- join by them. They are computed for every written row, so expensive ones without joins are computed in views, like values
--- that need another table. There CAST gives them their type: without a type, numbers and texts are never equal.
+-- Values that depend on a single row are generated columns. Generated columns take no space, have a declared type, and can
+-- be used in joins. The engine computes generated columns for every written row, so views compute expensive values and
+-- values that need another table. In views, CAST gives a value its type: without a type, numbers and texts are never equal.
 
 CREATE TABLE projection (
     id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -22,7 +22,7 @@ CREATE TABLE words (
     PRIMARY KEY (axis, group_id, n)
 ) WITHOUT ROWID;
 
--- persona packs one byte per axis: industry, role, experience, work style, technical skill, size, decision, concern.
+-- The column persona packs one byte per axis: industry, role, experience, work style, technical skill, size, decision, concern.
 CREATE TABLE customer_rows (
     customer_id INTEGER PRIMARY KEY,
     group_id TEXT NOT NULL,
@@ -96,7 +96,8 @@ SELECT
     acquisition_source
 FROM customer_rows customers;
 
--- A customer has at most one subscription, so the customer is the key; state: 0 lead, 1 subscribed, 2 cancelled, 3 lost.
+-- A customer has at most one subscription, so the customer number is the key.
+-- Values of state: 0 lead, 1 subscribed, 2 cancelled, 3 lost.
 CREATE TABLE subscription_rows (
     customer_id INTEGER PRIMARY KEY,
     subscription_id INTEGER NOT NULL,
@@ -134,7 +135,7 @@ SELECT
     billed_once AS first_billing_done
 FROM subscription_rows;
 
--- Packed days of the ledger and of issues by opening day; the clock of issue ages after each day.
+-- Packed days of the ledger, packed issues by opening day, and the value of the issue clock after each day.
 CREATE TABLE ledger_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE issue_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE issue_clock (day INTEGER PRIMARY KEY, aged INTEGER NOT NULL);
@@ -224,7 +225,7 @@ CREATE TABLE enterprise_turns (
 CREATE INDEX enterprise_turns_by_thread ON enterprise_turns (thread_id);
 CREATE INDEX enterprise_turns_by_customer ON enterprise_turns (customer_id);
 
--- Packed days of notifications without the repeated losses, whose number is their position.
+-- Packed days of notifications without the repeated losses. The number of a repeated loss is its position in the list.
 CREATE TABLE notice_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE repeated_losses (
     number INTEGER PRIMARY KEY,
@@ -281,8 +282,8 @@ CREATE TABLE segment_discovery (
 CREATE TABLE usage_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 CREATE TABLE ads_blocks (day INTEGER PRIMARY KEY, packed BLOB NOT NULL);
 
--- Statistics of a large company for the query planner: rows of a table, and rows per index value. Queries of a small company
--- are fast with any plan.
+-- Statistics of a large company for the query planner: number of rows of a table, and number of rows per index value.
+-- Queries of a small company are fast with any plan.
 ANALYZE;
 INSERT INTO sqlite_stat1 (tbl, idx, stat) VALUES
     ('words', 'words', '1500 150 6 1'),

@@ -31,7 +31,7 @@ SELECT notification_id, day, type, message FROM notice_rows
 UNION ALL
 SELECT first_number + number, day, 'lead_lost', message FROM repeating_days JOIN repeating_losses ON number < losses;";
 
-/// Statements that create indexes for queries of one customer and drop the internal tables.
+/// Statements that create indexes by customer, and by day for the ledger, and drop the internal tables.
 const INDEX_STATEMENTS: &str = "CREATE INDEX daily_usage_by_customer ON daily_usage (customer_id, day);
 CREATE INDEX ads_revenue_by_customer ON ads_revenue (customer_id, day);
 CREATE INDEX issues_by_customer ON issues (customer_id);

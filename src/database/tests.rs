@@ -41,7 +41,7 @@ fn position(seq: u64) -> ProjectionPosition {
     ProjectionPosition { seq, line_hash: format!("hash {seq}") }
 }
 
-/// A company that policy P plays and a projector writes, with one commit per week.
+/// A company that is run by policy P, and the projector that writes its database with one commit per week.
 struct Company {
     world: World,
     params: Arc<Params>,
@@ -291,7 +291,7 @@ fn hidden_tables_cannot_be_queried() {
     let mut company = Company::open(DatabaseLocation::new_in_memory());
     let connection = company.simulate_weeks(2);
     for (sql, code) in [
-        // Obvious attempts first, then advanced attempts.
+        // The rejected statements are listed roughly from obvious to advanced attempts.
         ("", "sql_empty"),
         ("  ", "sql_empty"),
         ("SELECT 1\0; SELECT 2", "sql_error"),

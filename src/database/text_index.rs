@@ -45,7 +45,7 @@ impl TextIndex {
     }
 }
 
-/// Computes the FNV-1a hash. It distributes short texts well even if they differ only in numbers.
+/// Computes the FNV-1a hash of a text. FNV-1a distributes short texts well, even texts that differ only in numbers.
 fn hash(text: &str) -> u64 {
     text.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))

@@ -1,4 +1,4 @@
-//! The world of a finished run, which another player can play from day 0 with the same random draws.
+//! The world of a finished run. A policy can play this world from day 0 with the random draws of the run.
 
 use std::path::Path;
 

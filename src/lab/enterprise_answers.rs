@@ -18,7 +18,7 @@ pub struct EnterpriseRule {
     /// Price factor, which depends on the number of the policy's turns in the thread.
     #[serde(default)]
     pub factor: PriceFactor,
-    /// Number of the policy's turns after which it rejects a thread; `None` to never reject.
+    /// Number of the policy's turns in a thread after which the policy rejects the thread; `None` to never reject.
     pub give_up_after: Option<u32>,
     /// Types of the threads that are answered.
     #[serde(default)]
@@ -29,7 +29,7 @@ pub struct EnterpriseRule {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OfferRule {
-    /// Offered plan.
+    /// Plan that is offered.
     pub plan: Plan,
     /// Price before the factor, $ per seat per month.
     pub price: f64,

@@ -15,7 +15,7 @@ pub fn forecast_horizons() -> Vec<u32> {
 /// The weeks of a run that a policy played.
 #[derive(Debug, Clone)]
 pub struct PlayedWeeks {
-    /// Name of the policy.
+    /// Name of the policy that played the run.
     pub policy: String,
     /// Figures of the weeks, in order.
     pub weeks: Vec<WeekFigures>,

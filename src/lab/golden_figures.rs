@@ -136,9 +136,9 @@ pub struct ComparedCell {
     pub group: String,
     /// Checkpoint day of the cell.
     pub day: u32,
-    /// Statistics of the reference.
+    /// Statistics of the figure in the reference.
     pub reference: SampleStatistics,
-    /// Statistics of the new runs.
+    /// Statistics of the figure in the new runs.
     pub measured: SampleStatistics,
     /// Difference between the two means, in standard errors.
     pub z: f64,

@@ -1,4 +1,4 @@
-//! Execution of policies.
+//! Plays policies: creates their runs, executes their calls and simulates the weeks.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -44,7 +44,7 @@ pub struct RunSpec {
 }
 
 impl RunSpec {
-    /// Returns the settings of a run on a seed, with the other settings from the policy.
+    /// Returns run settings that define only the seed. All other settings come from the policy or the scenario.
     pub fn for_seed(seed: u64) -> RunSpec {
         RunSpec {
             seed,
@@ -201,8 +201,8 @@ pub(super) fn play_session(
     Ok(session)
 }
 
-/// Plays a policy without saving its run. One callback observes each day, and another decides after each week whether
-/// to continue.
+/// Plays a policy without saving its run. One callback observes each day, and the other callback decides after each
+/// week whether to continue.
 pub(super) fn play_while(
     goes_on: &dyn Fn() -> bool,
     policy: &Policy,

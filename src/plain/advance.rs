@@ -125,8 +125,7 @@ fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Pars
     if numbers.len() != 12 {
         let column = numbers.last().unwrap_or(why).column;
         let text = format!(
-            "after the rationale, give exactly twelve numbers, point lower upper for 1, 4, 12 and 26 weeks, \
-             or naive; you gave {}",
+            "after the rationale, give exactly twelve numbers (point lower upper for 1, 4, 12 and 26 weeks) or naive; you gave {}",
             numbers.len()
         );
         return Err(wrong(column, text));

@@ -86,7 +86,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("report", "report [week|run]        report on the last week, or on the whole run"),
     (
         "why",
-        "why FIGURE [WEEK]        compute how much each cause changed a figure of a week: why churn(S1) 44",
+        "why FIGURE [WEEK]        compute how much each cause changed a figure of a week, for example why churn(S1) 44",
     ),
     ("whatif", "whatif from WEEK: EDITS   re-simulate with other decisions; whatif WEEK lists the decisions"),
     ("memo", "memo [TEXT]              show the notes of the run, or add a line"),
@@ -116,7 +116,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("run", "run DAYS [until …]       debug: simulate days until a breakpoint or the condition becomes true"),
     (
         "since",
-        "since [CONDITION|N]      debug and finished runs: show since when a condition or a breakpoint is true or false",
+        "since [CONDITION|N]      debug and finished runs: show since when a condition or a breakpoint has been true or false",
     ),
     (
         "find",
@@ -124,7 +124,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     (
         "who",
-        "who FIGURE [DAY]         debug and finished runs: list the mechanisms that changed a figure on a day: who reputation(S3) 84, who cash",
+        "who FIGURE [DAY]         debug and finished runs: list the mechanisms that changed a figure on a day, for example who reputation(S3) 84, or who cash",
     ),
     (
         "diff",
@@ -145,7 +145,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("help", "help [NAME]              show this list, or help on one command, tool or table"),
     ("pause", "pause [REASON]           stop the clock for a break; then only resume, help and quit work"),
     ("resume", "resume                   restart the clock"),
-    ("quit", "quit                     leave; everything confirmed is saved (also: exit)"),
+    ("quit", "quit                     leave; all confirmed actions are saved (also: exit)"),
     ("query", ""),
     ("next-week", ""),
     ("what", ""),
@@ -179,7 +179,7 @@ pub struct Interpreter {
     watch: SignalWatch,
     /// Whether a person types the lines and can answer questions.
     pub(super) is_interactive: bool,
-    /// Function that checks the experimenter's code. `None` if there is no experimenter.
+    /// Function that checks the experimenter's code; `None` if no code is defined.
     pub(super) code_check: Option<CodeCheck>,
     /// Whether the player is a participant of a study, for whom some commands are not available.
     pub(super) is_participant: bool,

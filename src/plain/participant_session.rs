@@ -64,7 +64,7 @@ pub fn run_participant_session(
 const TEXT_COLUMNS: usize = 78;
 
 /// Explanation of how to leave or interrupt a run of a study.
-const LEAVE_HELP: &str = "quit: leave the run; everything confirmed is saved.\n\
+const LEAVE_HELP: &str = "quit: leave the run; all confirmed actions are saved.\n\
                         withdraw: erase everything you did in this study.\n\
                         quit and withdraw also work at questions.\n\
                         pause: stop the clock for a break. resume: restart the clock.";
@@ -249,7 +249,7 @@ impl SessionHost<'_> {
             EndReason::RecordLost => Err(SessionStop::Left(end.exit_code())),
             end => {
                 let text = format!(
-                    "Everything confirmed is saved. To continue, run `{}` and give the same label.",
+                    "All confirmed actions are saved. To continue, run `{}` and give the same label.",
                     self.resume_command
                 );
                 self.show_text("later", &text)?;

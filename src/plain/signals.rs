@@ -68,7 +68,7 @@ impl SignalWatch {
     fn handle(&self, signal: i32, by_key: bool, prompt: &impl Fn(i32)) {
         let mut state = self.state();
         if state.leaving {
-            // A second signal ends the program. Only the last line can be lost; everything confirmed is already written.
+            // A second signal ends the program. Only the last line can be lost; all confirmed actions are already written.
             std::process::exit(128 + signal);
         }
         if state.phase == Phase::Prompt {

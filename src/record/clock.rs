@@ -14,7 +14,7 @@ use time::format_description::well_known::Rfc3339;
 static SCRIPTED_TIME_NS: AtomicI64 = AtomicI64::new(0);
 
 /// A clock that a script controls. The scripted clock replaces the wall clock and the monotonic clock of the whole
-/// process. It advances only through [`ScriptedClock::advance`].
+/// process. The scripted clock advances only through [`ScriptedClock::advance`].
 #[derive(Debug)]
 pub struct ScriptedClock(());
 

@@ -1,4 +1,5 @@
-//! File operations that survive a power cut. A file is safe only after its content and its directory entry are synced.
+//! File operations whose results survive a power cut. A file is safe only after its content and its directory
+//! entry are synced.
 //!
 //! The `open_regular_file` functions reject pipes and devices, because opening a pipe would block the program.
 
@@ -47,7 +48,7 @@ pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     synced.inspect_err(|_| missing.iter().for_each(|ancestor| drop(std::fs::remove_dir(ancestor))))
 }
 
-/// Returns the parent folder of a file. For a bare file name, this is the current directory.
+/// Returns the parent folder of a file. The parent folder of a bare file name is the current directory.
 pub fn parent_folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

@@ -22,7 +22,7 @@ pub struct SessionRules {
     /// Kinds of activity that are not recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unrecorded: Vec<String>,
-    /// Whether stopping the clock asks for a reason.
+    /// Whether the user must give a reason for stopping the clock.
     #[serde(default)]
     pub pause_reason: bool,
     /// A setting of earlier builds that is read and never written.

@@ -52,7 +52,7 @@ const DESIGN_COLUMNS: [&str; 2] = ["seed", "condition"];
 /// Columns that join the tables and cannot be omitted.
 const REQUIRED_COLUMNS: [&str; 2] = ["run", "participant"];
 
-/// The result of anonymization.
+/// Anonymized tables, with the links to the original runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnonymizedTables {
     /// The anonymized tables.
@@ -269,7 +269,7 @@ impl Anonymizer {
             Some((name @ ("machine" | "boot"), value)) => {
                 format!("{name}={}", self.keyed_name(name, value, 16))
             }
-            // The value is removed because it counts from the start of the machine.
+            // The value is removed because it reveals when the computer was started.
             Some(("monotonic_ms", _)) => "monotonic_ms=".to_owned(),
             _ => part.to_owned(),
         };

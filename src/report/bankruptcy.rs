@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::formatting::{format_money, format_whole, pluralize};
 use novamind_record::figures::WeekFigures;
 
-/// One kind of cost and its share of all costs over the run.
+/// A kind of cost, with its share of all costs over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostShare {
     pub name: &'static str,
@@ -55,9 +55,10 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
             top.day,
             format_whole(people(last))
         )),
-        Some(top) => {
-            texts.push(format!("Subscribers were still growing at the end: {}.", format_whole(people(top))))
-        }
+        Some(top) => texts.push(format!(
+            "The number of subscribers was still growing at the end: {}.",
+            format_whole(people(top))
+        )),
     }
     if let Some(week) = weeks.iter().rev().find(|week| week.cash_change > 0.0) {
         texts.push(format!("The last profitable week ended on day {}.", week.day));

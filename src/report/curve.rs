@@ -21,7 +21,7 @@ pub fn describe_basis(basis: &CurveBasis) -> String {
 
 /// Returns the column names of [`rows`].
 pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
-    let names = ["price", "1 in 10", "half", "9 in 10", "half, at least", "half, at most"];
+    let names = ["price", "1 in 10", "half", "9 in 10", "half, lowest", "half, highest"];
     let shown = if curve_explorer.shows_true_values() { 4 } else { 6 };
     names[..shown].iter().map(|name| (*name).to_owned()).collect()
 }

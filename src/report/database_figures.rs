@@ -10,7 +10,7 @@ use novamind_record::figures::CategoryTotals;
 use novamind_session::Session;
 use novamind_session::identifiers::Group;
 
-// The end of a deal that was cancelled early can be recorded after the last day. The cancellation counts on the last day.
+// The end of a deal that was cancelled early can be recorded after the last day. The cancellation is counted on the last day.
 const GROUP_FLOW_SQL: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
 FROM subscriptions s CROSS JOIN customers c
 WHERE c.customer_id = s.customer_id AND s.status IN ('subscribed', 'cancelled') GROUP BY 1, 2
@@ -48,7 +48,7 @@ pub struct ChannelRow {
 /// Leads, subscriptions and revenue of a group over the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupHistory {
-    /// The customer group.
+    /// Customer group whose history is described.
     pub group: Group,
     /// Number of leads over the whole run.
     pub leads: f64,

@@ -244,11 +244,11 @@ fn describe_single_or_joint_effect(effect: ReferenceEffect, debrief: &Debrief) -
     };
     match reached > mine {
         true => format!(
-            " Copying them alone would have cost you; with its later decisions, the reference play reaches {words}."
+            " Copying only these decisions would have reduced your result. With its later decisions, the reference play reaches {words}."
         ),
         false => {
             format!(
-                " Copying them would have cost you: you did better than the reference play, which reaches {words}."
+                " Copying these decisions would have reduced your result: you did better than the reference play, which reaches {words}."
             )
         }
     }

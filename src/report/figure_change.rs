@@ -46,7 +46,8 @@ impl FigureChange {
 
 /// Rates the last change of a series, which starts with the oldest value. Returns `None` if there are fewer than two
 /// values or the value did not change. With enough weeks, the change is compared with the median change and the median
-/// distance from it. Otherwise its relative size is used. A change of about `noise`, the random variation of the
+/// distance from this median. Otherwise the relative size of the change is used. A change of about `noise`, the random
+/// variation of the
 /// figure, is never unusual.
 pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
     let [.., old, new] = *series else { return None };

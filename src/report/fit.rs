@@ -97,14 +97,14 @@ impl FitCriterion {
 /// Prices, quality and quota of a plan for one group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanFit {
-    /// The plan.
+    /// Plan that is compared with the requirements of the group.
     pub plan: Plan,
     /// List price, dollars a month; 0 if the plan is not on sale.
     pub list_price: f64,
-    /// List price less the promotion for leads from all channels. Leads compare this price with their budget.
+    /// List price less the discount for leads from all channels. Leads compare this price with their budget.
     /// Enterprises negotiate their price.
     pub lead_price: f64,
-    /// List price less the current promotion. Subscribers are billed this price.
+    /// List price less the current discount. Subscribers are billed this price.
     pub billed_price: f64,
     /// Quality that the plan delivers to the group.
     pub quality: f64,
@@ -115,7 +115,7 @@ pub struct PlanFit {
 /// Number of leads and signups of a group over one or more weeks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeadFlow {
-    /// Number of all leads.
+    /// Total number of leads.
     pub leads: u32,
     /// Number of leads that arrived through channels.
     pub channel_leads: u32,
@@ -128,7 +128,7 @@ pub struct LeadFlow {
 /// The plans compared with the estimated requirements of a group.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The customer group.
+    /// Customer group whose requirements are compared with the plans.
     pub group: Group,
     /// Study level of the group.
     pub level: u8,
@@ -136,7 +136,7 @@ pub struct Fit {
     pub max_relative_error: f64,
     /// Day of the estimates of required quality and budget.
     pub study_day: u32,
-    /// Days since `study_day`.
+    /// Number of days since `study_day`.
     pub age_days: u32,
     /// Mean required quality of the group at low prices. Required quality rises with the price.
     pub floor: TrueValueRange,

@@ -8,7 +8,7 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 /// Number of a group's enterprises that reached each stage of the sales funnel, over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Funnel {
-    /// The group of enterprises.
+    /// Enterprise group whose funnel is described.
     pub group: Group,
     /// Number of enterprises that arrived.
     pub enterprises: u32,

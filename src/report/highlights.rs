@@ -8,7 +8,7 @@ use novamind_record::trajectory::record::RunEndReason;
 /// A notable day of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Highlight {
-    /// Day of the run.
+    /// Day of the run on which the event occurred.
     pub day: u32,
     /// Description of the event on this day.
     pub text: String,

@@ -1,5 +1,5 @@
-//! Converts results of `get_group_insights` and `get_market_overview` for display. Each estimate becomes a range of
-//! possible true values with its day. Programs receive the unchanged results.
+//! Converts results of `get_group_insights` and `get_market_overview` for display. Each estimate is replaced by a
+//! range of possible true values, and the day of the estimates is added. Programs receive the unchanged results.
 
 use serde_json::{Map, Value, json};
 

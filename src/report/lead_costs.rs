@@ -70,7 +70,7 @@ impl AdWindow {
 
 impl LeadCost {
     /// Returns the ratio of the current to the lowest cost per lead. Returns `None` if the ratio is too small, or if
-    /// the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost: a difference in so few leads can be random.
+    /// the spending would bring fewer than [`MIN_LEADS`] leads at the lowest cost. A difference in so few leads can be random.
     /// If there are no leads, the whole spending counts as the cost of one lead.
     pub fn cost_rise(&self) -> Option<f64> {
         let before = self.cheapest?.cost_per_lead()?;

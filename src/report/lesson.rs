@@ -81,7 +81,7 @@ pub fn describe_question(question: &LessonQuestion) -> Vec<String> {
     lines
 }
 
-/// Describes the student's guess, and the outcome if it is known.
+/// Describes the student's guess, and the outcome if the outcome is known.
 pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let written = |value: f64| format_guess(question, value);
     let is_choice = !question.choices.is_empty();
@@ -150,7 +150,7 @@ pub fn describe_goal(goal: &GoalStatus) -> String {
     format!("{mark}: {}{at}", goal.text)
 }
 
-/// Describes a goal's current value, compared with the target if it is known.
+/// Describes a goal's current value, compared with the target if the target is known.
 pub fn describe_goal_progress(goal: &GoalStatus) -> Option<String> {
     let value = format_goal_amount(goal, goal.value?);
     Some(match (goal.bound, goal.of_good_play) {

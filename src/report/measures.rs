@@ -42,7 +42,7 @@ pub struct BehaviorMeasures {
     pub channels: Option<BestTriedChannelSpend>,
     /// Targeted share of development spending; `None` without development spending.
     pub targeted_development: Option<f64>,
-    /// Forecast scores by horizon.
+    /// Scores of the forecasts, by horizon.
     pub forecasts: Vec<ForecastScore>,
     /// Number of weeks with naive forecasts, and number of all weeks.
     pub filled_naively: (u32, u32),
@@ -233,7 +233,7 @@ pub fn targeted_development(decisions: &[Decisions]) -> Option<f64> {
 pub struct ToolUse {
     /// Number of accepted calls that changed the run.
     pub calls: u32,
-    /// Number of these calls per simulated week.
+    /// Number of accepted calls that changed the run, per simulated week.
     pub per_week: f64,
     /// Number of calls by tool, most used first.
     pub tools: Vec<(String, u32)>,
@@ -285,7 +285,7 @@ pub struct PlanningMeasures {
 /// Word counts of a text.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct WordCounts {
-    /// Number of all words.
+    /// Total number of words.
     pub words: usize,
     /// Number of words that are [`PLANNING_WORDS`].
     pub planning: usize,

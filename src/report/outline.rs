@@ -64,8 +64,8 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // The runway follows from the current settings and from the income and usage of recent weeks. It does not follow
-    // from the cash change since the start.
+    // The runway follows from the current settings and from the income and usage of recent weeks. The runway does not
+    // follow from the cash change since the start.
     let runway = match (seen.ended, seen.whole_runway_weeks()) {
         (Some(_), _) => String::new(),
         (None, None) => "at current costs and income, cash lasts to the last day".to_owned(),

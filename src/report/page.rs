@@ -111,7 +111,7 @@ pub enum Plot {
     Lines {
         /// Lines of the chart.
         curves: Vec<Curve>,
-        /// Shaded interval, if any.
+        /// Shaded interval behind the lines, if any.
         band: Option<Band>,
     },
     /// Stacked bars. Positive values are stacked upwards, and negative values are stacked downwards.

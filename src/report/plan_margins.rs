@@ -25,7 +25,7 @@ const NO_USAGE_MESSAGE: &str = "no margins: usage has not been measured yet";
 /// Subscribers of a plan, their payments and their usage on the last day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanUsage {
-    /// Number of active subscriptions.
+    /// Number of active subscriptions of the plan.
     pub customers: f64,
     /// Number of seats of the active subscriptions.
     pub seats: f64,

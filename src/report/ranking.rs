@@ -14,7 +14,7 @@ use novamind_session::Observation;
 /// The published results, read from a bundled file.
 #[derive(Debug, Deserialize)]
 pub struct PublishedResults {
-    /// Source of the results.
+    /// Source of the published results.
     pub source: String,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
@@ -24,11 +24,11 @@ pub struct PublishedResults {
     pub estimated_upper_bound: f64,
     /// Share of advertising spending on the best channel if spending is random.
     pub best_channel_random_share: f64,
-    /// Results of agents.
+    /// Published results of each agent.
     pub agent: Vec<PublishedAgent>,
 }
 
-/// Results of one agent.
+/// Published results of one agent.
 #[derive(Debug, Deserialize, Serialize)]
 pub struct PublishedAgent {
     /// Name of the agent's model.
@@ -61,7 +61,7 @@ pub fn published_results() -> &'static PublishedResults {
     })
 }
 
-/// Origin of a result.
+/// Origin of a ranked result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResultOrigin {
     /// Best of three runs of a published agent.
@@ -90,7 +90,7 @@ pub struct Ranking {
     pub entries: Vec<RankedResult>,
     /// Rank of the run, counted from 1; `None` if the run is not ranked.
     pub rank: Option<usize>,
-    /// Reasons why the run is not ranked. Empty if the run is ranked or will be ranked as soon as it has a score.
+    /// Reasons why the run is not ranked. Empty if the run is ranked, or will be ranked as soon as the run has a score.
     pub obstacles: Vec<RankingObstacle>,
     /// Seed and length of the published runs, if the run has a different seed.
     pub caveat: Option<String>,

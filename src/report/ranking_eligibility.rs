@@ -1,5 +1,5 @@
-//! Checks whether a run can be ranked among the published results. Used by the final page, the menu, reports and the
-//! laboratory.
+//! Checks whether a run can be ranked among the published results. The final page, the menu, reports and the
+//! laboratory use this check.
 
 use super::formatting::{format_dollar_tick, format_whole};
 use super::logbook::Logbook;

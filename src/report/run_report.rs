@@ -49,7 +49,7 @@ pub struct RunReport {
     pub measures: BehaviorMeasures,
     /// Analysis of the bankruptcy; `None` if the company is not bankrupt.
     pub bankruptcy: Option<Bankruptcy>,
-    /// Rules of the session.
+    /// Session rules of the run.
     pub rules: SessionRules,
     /// Parent run and first difference, if the run is a branch.
     pub origin: Option<BranchOrigin>,

@@ -31,7 +31,7 @@ const REPORT_AXES: AxisScales = AxisScales { x: AxisScale::Whole, y: AxisScale::
 
 /// A chart in a self-contained file, with the scales of its axes.
 pub struct ScaledChart {
-    /// The chart.
+    /// Chart to draw.
     pub chart: Chart,
     /// Scales of the chart's axes.
     pub axes: AxisScales,
@@ -89,7 +89,7 @@ impl Scale {
         (first..=last).map(|at| at as f64 * self.step).collect()
     }
 
-    /// Returns the powers of ten in the range. If there are few, also returns twice and five times each power.
+    /// Returns the powers of ten in the range. If the range contains few powers, also returns twice and five times each power.
     fn decade_ticks(&self) -> Vec<f64> {
         let factors: &[f64] = if self.to - self.from <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = self.from.floor() as i32..=self.to.ceil() as i32;

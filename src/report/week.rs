@@ -17,7 +17,7 @@ use novamind_session::{
 /// A figure that changed over the week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MovedFigure {
-    /// Name of the figure.
+    /// Name of the figure that changed.
     pub name: &'static str,
     /// Formatted value of the previous week.
     pub old: String,
@@ -25,7 +25,7 @@ pub struct MovedFigure {
     pub new: String,
     /// Whether the figure rose.
     pub is_increase: bool,
-    /// Whether the change is favorable for the company; `None` if the change can be either.
+    /// Whether the change is favorable for the company; `None` if a rise can be good or bad for the company.
     pub is_favorable: Option<bool>,
     /// Whether the figure is a share from 0 to 1.
     pub is_share: bool,
@@ -57,7 +57,7 @@ impl MovedFigure {
 /// The report on a simulated week.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeekReport {
-    /// Figures of the week.
+    /// Figures of the reported week.
     pub week: WeekFigures,
     /// Lengths of this week and the previous week, if they differ. The last week of a run can be short.
     pub short_week_note: Option<String>,
@@ -75,7 +75,7 @@ pub struct WeekReport {
     pub comments: u32,
     /// Number of news items.
     pub news_items: u32,
-    /// Days on which a time limit filed a week.
+    /// Days on which a week was filed automatically because a time limit was reached.
     limit_days: Vec<u32>,
 }
 
@@ -112,7 +112,7 @@ impl WeekFigureUnit {
     /// for the company.
     fn noise(self, value: f64, week: &WeekFigures) -> f64 {
         match self {
-            // One hundredth of the company's income and costs.
+            // Changes below one hundredth of the company's income and costs are insignificant.
             WeekFigureUnit::Dollars => 0.01 * (week.payments + week.costs).max(100.0),
             // Counts of independent events vary by about their square root.
             WeekFigureUnit::Count | WeekFigureUnit::Units | WeekFigureUnit::Minutes => value.max(1.0).sqrt(),
@@ -246,12 +246,12 @@ impl WeekReport {
         })
     }
 
-    /// Returns whether a time limit filed the week.
+    /// Returns whether the week was filed automatically because a time limit was reached.
     pub fn was_filed_at_limit(&self) -> bool {
         self.limit_days.contains(&(self.week.day - self.week.days_run.min(self.week.day)))
     }
 
-    /// Returns whether a time limit filed this forecast.
+    /// Returns whether this forecast was filed automatically because a time limit was reached.
     pub fn was_forecast_filed_at_limit(&self, forecast: &ScoredForecast) -> bool {
         self.limit_days.contains(&forecast.day)
     }
@@ -263,7 +263,8 @@ fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
     describe_short_week(week_figures.days_run, before.days_run)
 }
 
-/// Returns the day of a journal entry if it is a week that a time limit filed.
+/// Returns the day of a journal entry for a week that was filed automatically at a time limit. Returns `None` for
+/// other entries.
 fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }

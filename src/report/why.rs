@@ -16,7 +16,7 @@ pub const RESIDUAL_NAME: &str = "residual";
 pub struct CauseLine {
     /// Name of the cause, or [`RESIDUAL_NAME`].
     pub name: &'static str,
-    /// Contribution to the change.
+    /// Contribution of the cause to the change, in the unit of the figure.
     pub amount: f64,
     /// Formatted contribution with its sign.
     pub amount_text: String,

@@ -31,10 +31,10 @@ mod tests {
     fn filter_accepts_the_conditions_of_rules() {
         assert!(Filter::parse("group = E2 and asked is null and seats >= 1_000").is_ok());
         for (text, column, part) in [
-            ("", 1, "example: seats >= 500"),
+            ("", 1, "example `seats >= 500`"),
             ("seats", 6, "comparison"),
-            ("seats > 3 group = E1", 11, "join conditions with and"),
-            ("seats > 3 or group = E1", 11, "joined with and"),
+            ("seats > 3 group = E1", 11, "join conditions with `and`"),
+            ("seats > 3 or group = E1", 11, "joined with `and`"),
         ] {
             let problem = Filter::parse(text).expect_err(text);
             assert_eq!(problem.column, column, "{text}: {problem:?}");

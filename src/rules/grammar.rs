@@ -72,14 +72,12 @@ pub fn parse(text: &str) -> Result<Vec<Rule>, RuleError> {
         }
         rules.push(reader.parse_rule()?);
         if !reader.is_at_end() && !reader.accept(";") {
-            return Err(reader.error_at_current_token("the rule ends here: separate rules with ;"));
+            return Err(reader.error_at_current_token("the rule ends here: separate rules with `;`"));
         }
     }
     match rules.is_empty() {
-        true => {
-            Err(reader
-                .error_at_current_token("a rule is expected, for example offer where asked is null: B 85"))
-        }
+        true => Err(reader
+            .error_at_current_token("a rule is expected, for example `offer where asked is null: B 85`")),
         false => Ok(rules),
     }
 }
@@ -89,12 +87,12 @@ pub(super) fn parse_conditions(text: &str) -> Result<Vec<Condition>, RuleError> 
     let tokens = tokenize(text)?;
     let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
     if reader.is_at_end() {
-        return Err(reader.error_at_current_token("a condition is missing, example: seats >= 500"));
+        return Err(reader.error_at_current_token("a condition is expected, for example `seats >= 500`"));
     }
     let conditions = reader.parse_joined_conditions()?;
     match reader.is_at_end() {
         true => Ok(conditions),
-        false => Err(reader.error_at_current_token("the conditions end here: join conditions with and")),
+        false => Err(reader.error_at_current_token("the condition ends here: join conditions with `and`")),
     }
 }
 
@@ -213,12 +211,12 @@ impl RuleParser<'_> {
         match self.peek() {
             None | Some(";") => {
                 return Err(self.error_at_current_token(format!(
-                    "{action} needs a condition, or rest for all other threads"
+                    "`{action}` needs a condition, or `rest` for all other threads"
                 )));
             }
             Some(":") if !named => {
                 return Err(self.error_at_current_token(
-                    "the condition is missing: use where …, or rest for all other threads",
+                    "a condition is missing: use `where …`, or `rest` for all other threads",
                 ));
             }
             _ => {}
@@ -233,8 +231,8 @@ impl RuleParser<'_> {
         }
         match self.peek() {
             Some(word) if word.eq_ignore_ascii_case("or") => Err(self.error_at_current_token(
-                "or is not supported: conditions are joined with and; use in (…) for one of several values, and another \
-                 rule for other threads",
+                "`or` is not supported: conditions are joined with `and`; use `in (…)` for one of several \
+                 values, or write a separate rule",
             )),
             _ => Ok(conditions),
         }
@@ -253,7 +251,9 @@ impl RuleParser<'_> {
         if self.accept("is") {
             let there = self.accept("not");
             if !self.accept("null") {
-                return Err(self.error_at_current_token("null is expected: is null or is not null"));
+                return Err(
+                    self.error_at_current_token("`null` is expected: write `is null` or `is not null`")
+                );
             }
             return Ok(if there { Condition::IsPresent(field) } else { Condition::IsNull(field) });
         }
@@ -263,7 +263,9 @@ impl RuleParser<'_> {
         let comparison = self.parse_comparison(field)?;
         if self.accept("null") {
             let is = if comparison == Comparison::NotEqual { "is not" } else { "is" };
-            return Err(self.error_at_previous(format!("null cannot be compared: write {lower} {is} null")));
+            return Err(
+                self.error_at_previous(format!("`null` cannot be compared: write `{lower} {is} null`"))
+            );
         }
         let value = self.parse_value(field)?;
         self.reject_comma_in_number()?;
@@ -296,13 +298,13 @@ impl RuleParser<'_> {
             Some(">") => More,
             Some(">=") => AtLeast,
             _ => {
-                return Err(
-                    self.error_at_current_token("a comparison is expected: = != < <= > >=, in, is null")
-                );
+                return Err(self.error_at_current_token(
+                    "a comparison is expected: `=`, `!=`, `<`, `<=`, `>`, `>=`, `in` or `is null`",
+                ));
             }
         };
         if field.is_word() && !matches!(comparison, Equal | NotEqual) {
-            return Err(self.error_at_current_token("words can only be compared with = or !="));
+            return Err(self.error_at_current_token("words can only be compared with `=` or `!=`"));
         }
         self.at += 1;
         Ok(comparison)
@@ -310,14 +312,14 @@ impl RuleParser<'_> {
 
     fn parse_list_condition(&mut self, field: Field) -> Result<Condition, RuleError> {
         if !self.accept("(") {
-            return Err(self.error_at_current_token("a list is expected, for example in (E1, E2)"));
+            return Err(self.error_at_current_token("a list is expected, for example `in (E1, E2)`"));
         }
         let mut values = vec![self.parse_value(field)?];
         while self.accept(",") {
             values.push(self.parse_value(field)?);
         }
         if !self.accept(")") {
-            return Err(self.error_at_current_token("the bracket of the list is not closed"));
+            return Err(self.error_at_current_token("the parenthesis of the list is not closed"));
         }
         Ok(Condition::OneOf(field, values))
     }
@@ -360,7 +362,7 @@ impl RuleParser<'_> {
 
     fn parse_offer_lines(&mut self) -> Result<Vec<OfferLine>, RuleError> {
         if !self.accept(":") {
-            return Err(self.error_at_current_token("a colon and the offer are missing, for example : B 85"));
+            return Err(self.error_at_current_token("a colon and an offer are missing, for example `: B 85`"));
         }
         let mut lines = vec![self.parse_offer_line()?];
         while self.accept(",") {
@@ -382,7 +384,9 @@ impl RuleParser<'_> {
             Some(plan) => Some(plan),
             None if word.eq_ignore_ascii_case("asked_plan") => None,
             None => {
-                return Err(self.error_at_previous(format!("unknown plan {word}: use A, B, C or asked_plan")));
+                return Err(
+                    self.error_at_previous(format!("unknown plan {word}: use `A`, `B`, `C` or `asked_plan`"))
+                );
             }
         };
         let price = self.parse_price()?;
@@ -462,9 +466,9 @@ mod tests {
             ("offer where grup = E2: B 3", 13, "did you mean group"),
             ("offer where group = E9: B 3", 21, "did you mean"),
             ("offer where type = new: B 3", 20, "new_lead"),
-            ("offer where group > E1: B 3", 19, "= or !="),
+            ("offer where group > E1: B 3", 19, "`=` or `!=`"),
             ("offer rest", 11, "colon"),
-            ("offer: B 3", 6, "rest for all other threads"),
+            ("offer: B 3", 6, "`rest` for all other threads"),
             ("offer rest: D 3", 13, "unknown plan"),
             ("offer rest: B -3", 15, "number is expected"),
             ("offer rest: B 0", 15, "above 0"),
@@ -475,14 +479,14 @@ mod tests {
             ("accept asked >= x", 17, "number is expected"),
             ("accept asked is 3", 17, "null"),
             ("accept seats in 3", 17, "list"),
-            ("reject rest reject rest", 13, "separate rules with ;"),
+            ("reject rest reject rest", 13, "separate rules with `;`"),
             ("reject where größe > 3", 14, "unknown field"),
             ("reject where seats ? 3", 20, "unexpected character"),
             ("reject where seats < 1,000", 22, "write 1000 or 1_000"),
             ("offer rest: B 1,000", 15, "write 1000 or 1_000"),
-            ("offer where asked = null: B 3", 21, "write asked is null"),
-            ("offer where asked != null: B 3", 22, "write asked is not null"),
-            ("reject where seats < 3 or group = E1", 24, "joined with and"),
+            ("offer where asked = null: B 3", 21, "write `asked is null`"),
+            ("offer where asked != null: B 3", 22, "write `asked is not null`"),
+            ("reject where seats < 3 or group = E1", 24, "joined with `and`"),
         ] {
             let problem = parse(text).expect_err(text);
             assert_eq!(problem.column, column, "{text}: {problem:?}");

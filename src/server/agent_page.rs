@@ -1,6 +1,6 @@
 //! Instructions for an agent: a page that describes goal, rules and requests, and the documentation of tools and tables.
 //!
-//! Everything is generated from the catalog and the current parameters. The page contains the same information as the
+//! The instructions are generated from the catalog and the current parameters. The page contains the same information as the
 //! instructions of the benchmark, without hidden state and without advice on how to play well.
 
 use std::path::Path;

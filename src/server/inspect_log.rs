@@ -15,7 +15,7 @@ const CONVERT_HELP: &str =
 /// The archive is damaged, or does not contain exactly one sample that calls tools of this program.
 pub(super) fn parse_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, String> {
     let archive =
-        ZipArchive::open(bytes).ok_or("the archive has no readable directory; it may be cut short")?;
+        ZipArchive::open(bytes).ok_or("the archive has no readable directory; it may be truncated")?;
     let json = |name: &str| -> Result<Value, String> {
         let read = archive.read(name, limit).map_err(|problem| format!("{problem}; {CONVERT_HELP}"))?;
         serde_json::from_slice(&read)

@@ -6,7 +6,7 @@ use super::request_id::needs_request_id;
 use super::schema;
 use novamind_tools::{ParameterNumbers, ToolId};
 
-/// Returns the OpenAPI document.
+/// Returns the OpenAPI description of the HTTP interface.
 ///
 /// `is_release_2` selects the interface of release 2.
 pub fn document(numbers: &ParameterNumbers, is_release_2: bool) -> Value {

@@ -15,7 +15,7 @@ pub enum ApiRequest {
         tool: String,
         /// Arguments as they were sent.
         args: Value,
-        /// Request id, or null.
+        /// Id of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to record a tool call that was rejected before it reached the tool.
@@ -35,7 +35,7 @@ pub enum ApiRequest {
         predictions: Value,
         /// The required current day, or null for any day.
         expected_day: Value,
-        /// Request id, or null.
+        /// Id of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to run an SQL statement.
@@ -57,14 +57,14 @@ pub enum ApiRequest {
         name: Value,
         /// Text of the script.
         content: Value,
-        /// Request id, or null.
+        /// Id of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request to delete a stored script.
     DeleteDailyScript {
         /// Name of the script to delete.
         name: Value,
-        /// Request id, or null.
+        /// Id of the request, or null if the client sent no id.
         request_id: Value,
     },
     /// Request for the status and the response of the request with an id.
@@ -225,8 +225,8 @@ impl ApiResponse {
         ApiResponse { status, body }
     }
 
-    /// Converts the response to the response of a tool call, in which every rejection is a normal result. This
-    /// includes rejected statements and weeks.
+    /// Converts the response to the response of a tool call, in which every rejection is a normal result. Rejected
+    /// statements and weeks are included.
     pub fn into_tool_response(mut self) -> ApiResponse {
         let is_of_tool = match self.status {
             ResponseStatus::BadRequest | ResponseStatus::Forbidden | ResponseStatus::TimedOut => true,

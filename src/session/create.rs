@@ -31,7 +31,8 @@ use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
 use novamind_world::params::Params;
 
-/// The options of a new run. Missing options get the value of the scenario, then the default of the program.
+/// The options of a new run. A missing option gets its value from the scenario, or from the program's defaults if the
+/// scenario has no value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewRun {
     /// Seed of all random draws; 42 by default.
@@ -84,9 +85,9 @@ pub struct StudyOptions {
 /// Where a new run is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Storage {
-    /// In a new run folder in this runs folder.
+    /// The run is stored in a new run folder in this runs folder.
     Runs(PathBuf),
-    /// In memory; lost when the session is dropped.
+    /// The run is stored in memory and is lost when the session is dropped.
     Memory,
 }
 
@@ -123,7 +124,7 @@ impl Session {
         Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
-    /// Creates a run like [`Session::create`], and calls `tell` for each day that the start of a lesson simulates.
+    /// Creates a run like [`Session::create`], and calls `tell` for each day that is simulated at the start of a lesson.
     ///
     /// # Errors
     /// The same errors as [`Session::create`].

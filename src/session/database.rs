@@ -71,7 +71,8 @@ impl RunDatabase {
         *self = RunDatabase { replacement_count: self.replacement_count + 1, ..made_anew };
     }
 
-    /// Returns how often the database was replaced since the run was opened. Connections to an earlier database are stale.
+    /// Returns the number of times that the database was replaced since the run was opened. Connections to an earlier
+    /// database are stale.
     pub fn replacement_count(&self) -> u32 {
         self.replacement_count
     }
@@ -219,8 +220,8 @@ fn cell_to_json(cell: &Cell) -> Value {
     }
 }
 
-/// Replaces the message about a missing hidden table with a hint on how to query hidden tables. Used only if the run
-/// can be inspected. Otherwise, the message must not reveal that the table exists.
+/// Replaces the message about a missing hidden table with a hint on how to query hidden tables. Callers use the hint
+/// only if the run can be inspected. Otherwise, the message must not reveal that the table exists.
 pub fn with_hidden_table_hint(refusal: Rejection) -> Rejection {
     let named = refusal.message.strip_prefix("there is no table hidden.");
     let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };

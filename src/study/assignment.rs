@@ -143,8 +143,8 @@ impl Assignment {
     }
 }
 
-/// Returns the numbers below `count` in a random order for a block. The order follows from a keyed hash, so it is the
-/// same on every machine.
+/// Returns the numbers below `count` in a random order for a block. The order follows from a keyed hash, so the order
+/// is the same on every machine.
 fn shuffled_indexes(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();

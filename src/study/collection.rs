@@ -84,7 +84,7 @@ pub enum CollectNote {
     NotSigned {
         /// Path of the archive.
         path: PathBuf,
-        /// Fingerprint of the key that signed the archive; `None` if it is not signed.
+        /// Fingerprint of the key that signed the archive; `None` if the archive is not signed.
         by: Option<String>,
     },
     /// A line of the mapping file whose run was not found.
@@ -142,7 +142,7 @@ impl fmt::Display for CollectNote {
             }
             CollectNote::OtherProtocol { label, run, digest } => write!(
                 out,
-                "label {label} has no session under this protocol; its run {run} has the protocol digest {}",
+                "label {label} has no session under this protocol; run {run} of the label has the protocol digest {}",
                 shorten_digest(digest)
             ),
             CollectNote::Relabelled { run, from, to } => {
@@ -288,10 +288,10 @@ fn unpack_archive(archive: &Path, folder: &Path) -> Result<(FoundRun, Option<Lab
 /// Runs, archives and visits that were found below the searched paths.
 #[derive(Default)]
 struct FoundPaths {
-    /// Run folders.
+    /// Folders of the runs.
     folders: BTreeSet<PathBuf>,
     archives: BTreeSet<PathBuf>,
-    /// Lines of lists of visits, each with the folder of the first list that contains it.
+    /// Lines of lists of visits, each with the folder of the first list that contains the line.
     visits: BTreeMap<VisitLine, PathBuf>,
 }
 

@@ -40,7 +40,7 @@ pub struct Study {
     /// Participants with seeds and conditions; `None` if any label is accepted.
     pub assignment: Option<Assignment>,
     /// BLAKE3 digest of protocol, consent and questions, in hexadecimal digits. The digest does not include the
-    /// assignment, because rows may be added to it. Each run records the row of its participant.
+    /// assignment, because rows may be added to the assignment. Each run records the row of its participant.
     pub digest: String,
     /// Key that seals the snapshots of the study's runs.
     pub seal_key: SealKey,
@@ -164,7 +164,7 @@ pub struct Practice {
     pub days: Option<u32>,
 }
 
-/// Whether the practice run is required, optional or omitted.
+/// The requirement to play the practice run: required, optional or omitted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PracticeOffer {
@@ -494,7 +494,7 @@ mod tests {
         };
         let text = "name = \"pilot\"\ntitle = \"A company\"\n[seeds]\nseed = 7\n";
         let plain = read(text);
-        // Runs record the protocol digest, so it must be the same in every version of the program.
+        // Runs record the protocol digest, so the digest must be the same in every version of the program.
         assert_eq!(plain.digest, "9c6e07e6aa3cdcbd5263b75c588fa133f240e81f2c415b579128125f39ce69a1");
         assert!(plain.protocol.removed_settings().is_empty());
         // A file with removed settings keeps its digest and its rules.

@@ -79,9 +79,9 @@ impl ParticipantSession {
         let place = study.assignment.as_ref().map(|assignment| assignment.row_for(label).cloned());
         let problem = match (&folder, &place) {
             (Err(problem), _) => Some(problem.clone()),
-            (Ok(_), Some(None)) => {
-                Some(format!("{label} is not a label of this study. Check it, or ask the experimenter"))
-            }
+            (Ok(_), Some(None)) => Some(format!(
+                "{label} is not a label of this study. Check the label, or ask the experimenter"
+            )),
             _ => None,
         };
         if let Some(problem) = problem {

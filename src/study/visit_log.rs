@@ -63,7 +63,8 @@ impl VisitLog {
         VisitLog { path: runs.join(VISITS_FILE), study: study.digest.clone() }
     }
 
-    /// Appends an event to the list of visits. Failures are ignored, because the runs contain the record of the study.
+    /// Appends an event to the list of visits. Write errors are ignored, because the runs contain the record
+    /// of the study.
     pub(super) fn append(&self, label: &str, event: VisitEvent) {
         let label = label.chars().take(80).collect();
         let line =

@@ -79,7 +79,7 @@ impl Arguments {
     /// Parses an argument with `reader`. Returns `None` if the argument was not given.
     ///
     /// # Errors
-    /// As `reader`.
+    /// The errors of `reader`.
     pub fn parse_argument<T>(
         &self,
         name: &'static str,

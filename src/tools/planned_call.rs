@@ -100,7 +100,7 @@ impl PlannedCall<ScriptOutput> {
 }
 
 impl<A: 'static> PlannedCall<A> {
-    /// Converts the type of the result.
+    /// Converts the result of the planned call to another type.
     pub(super) fn map_answer<B: 'static>(self, convert: fn(A) -> B) -> PlannedCall<B> {
         let PlannedCall { command, notebook_change: change, settings_row: row, reply } = self;
         let reply = match reply {

@@ -14,7 +14,7 @@ pub mod text;
 pub mod theme;
 pub mod widgets;
 
-/// Draws into a window of a size and returns the text of each row, without trailing spaces.
+/// Draws into a window of the given size and returns the text of each row, without trailing spaces.
 #[cfg(test)]
 fn render_rows(
     width: u16,

@@ -99,8 +99,8 @@ impl TerminalScreen {
     /// # Errors
     /// Writing to the terminal fails.
     pub fn clear(&mut self) -> io::Result<()> {
-        // The clear function of the library is not used. That function requests the cursor position, but the thread
-        // that reads keys would receive the answer.
+        // The clear function of the library is not used. The function would request the cursor position, but the
+        // thread that reads keys would receive the answer.
         let size = self.terminal.size()?;
         self.terminal.resize(size.into())
     }
@@ -134,7 +134,7 @@ fn enter_console_mode() -> io::Result<()> {
 }
 
 /// Restores the terminal and ends the program as SIGQUIT does by default, with a core dump. Does not need the main
-/// thread, so that it also ends a program that hangs.
+/// thread, so that a program that hangs is also ended.
 #[cfg(unix)]
 pub fn quit_with_core_dump() {
     restore_terminal();

@@ -43,7 +43,7 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
 }
 
 /// Wraps sentences to a width and a number of lines. Text that does not fit is cut after a sentence and marked. If not
-/// even the first sentence fits, the text is cut within it.
+/// even the first sentence fits, the first sentence is cut.
 pub fn wrap_sentences(text: &str, width: usize, lines: usize) -> Vec<String> {
     let all = wrap(text, width);
     if all.len() <= lines {

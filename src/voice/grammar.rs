@@ -75,7 +75,7 @@ impl Context {
 #[derive(Debug, Clone)]
 pub struct Grammar {
     rules: BTreeMap<String, Vec<Alternative>>,
-    /// Declared names. Tests compare them with the names of a context.
+    /// Declared names, which tests compare with the names of a context.
     #[cfg(test)]
     known: BTreeSet<String>,
 }
@@ -114,7 +114,8 @@ enum Part {
     Choice(Vec<Vec<Part>>),
 }
 
-/// A function that chooses an alternative. It receives the number of alternatives, at least 1, and returns a smaller index.
+/// A function that chooses an alternative: receives the number of alternatives, at least 1, and returns the index of
+/// one alternative.
 pub type Chooser<'a> = &'a mut dyn FnMut(usize) -> usize;
 
 impl Grammar {

@@ -1,5 +1,5 @@
-//! Writes the texts of the simulated world: posts, notices, PMI readings, messages and addresses of enterprises. Also
-//! judges the player's posts. This crate never changes the world.
+//! Writes the texts of the simulated world: posts, notices, PMI readings, messages and addresses of enterprises. The
+//! crate also judges the player's posts. This crate never changes the world.
 
 pub mod address;
 mod enterprise_names;

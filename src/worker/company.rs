@@ -53,7 +53,7 @@ pub struct DisplayedCompany {
     pub group_weeks: Arc<[ByGroup<GroupWeek>]>,
     /// Action items, most urgent first.
     pub action_items: Vec<ActionItem>,
-    /// Notices of the last week, each with its day and text.
+    /// Notifications of the last week, each with its day and text.
     pub notices: Vec<(u32, String)>,
     /// Delivered quality of every known group.
     pub quality: Vec<DeliveredQuality>,

@@ -19,7 +19,7 @@ use novamind_session::identifiers::Group;
 use novamind_session::{Access, INSPECTION_REJECTED, Session};
 use novamind_tools::Rejection;
 
-/// A question about hidden state. Days are the days whose end is inspected.
+/// A question about hidden state. A day stands for the state at the end of this day.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InspectionQuestion {
     /// The lead equation of a group on a day, with some factors fixed at given values.

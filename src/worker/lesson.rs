@@ -48,7 +48,7 @@ impl SessionThread {
         }
     }
 
-    /// Computes the debrief on a background thread, because this simulates the reference play.
+    /// Computes the debrief on a background thread, because the computation simulates the reference play.
     fn compute_debrief(&mut self) {
         let Some(open) = &mut self.active_run else { return };
         let (played, news) = (FinishedPart::from_session(open.session()), self.messages.clone());

@@ -1,7 +1,7 @@
 //! The worker threads of the console: one owns the session, two query the database.
 //!
 //! The console sends jobs and never blocks. Results are sent through the same channel as input. A result is the answer
-//! to the page that asked ([`question`]), or a response if it affects more than one page. A query waits for the
+//! to the page that asked ([`question`]), or a response if the result affects more than one page. A query waits for the
 //! session thread, so that all confirmed actions are visible. While a week is simulated, a query does not wait and
 //! reads the state before the week.
 
@@ -363,7 +363,8 @@ impl SessionThread {
         let loss =
             self.active_run.as_mut().and_then(|open| open.session().log().loss_reason().map(str::to_owned));
         if let Some(words) = loss {
-            // Send this before the response to the work, because no further responses can follow.
+            // Send this message before the response that reports the result of `work`, because the console ends when
+            // it receives the message.
             self.send_response(Response::RecordLost(words));
         }
         self.report_due_questions();

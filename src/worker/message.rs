@@ -98,7 +98,7 @@ pub enum Response {
     RunChanged(Arc<DisplayedCompany>),
     /// A seek of the user has ended.
     SeekResult(Box<PlaybackUpdate>),
-    /// The playback has advanced, because it is playing or because the followed run has new lines.
+    /// The playback has advanced to a new position, or the followed run has new lines.
     PlaybackAdvanced(Box<PlaybackUpdate>),
     /// The minutes left to time limits have changed.
     TimeLeft(Vec<TimeLeft>),
@@ -108,7 +108,7 @@ pub enum Response {
     ClockStopped,
     /// Drafts of the opened run that were saved before the program stopped.
     Drafts(Box<DraftTexts>),
-    /// A run could not be opened or created, with the message and an alternative.
+    /// A run could not be opened or created. Contains the error message and an alternative.
     NotOpened(String, Option<OpenFallback>),
     /// A tool call was executed or rejected.
     ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),

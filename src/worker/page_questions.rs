@@ -16,9 +16,9 @@ use novamind_tools::{Rejection, ToolId};
 /// A question that asks for the preview of a tool call.
 #[derive(Debug, Clone)]
 pub struct PreviewCallQuestion {
-    /// Tool to call.
+    /// Tool whose call is previewed.
     pub tool: ToolId,
-    /// Arguments of the call.
+    /// Arguments of the previewed call.
     pub arguments: Value,
 }
 

@@ -135,7 +135,7 @@ impl SessionThread {
             true => ControlFlow::Break(()),
             false => self.report_day(&mut instant, day),
         });
-        // A seek that failed has also created a new session.
+        // A failed seek also creates a new session.
         let anew = !matches!(went, Ok(SeekResult::Reached | SeekResult::Stopped));
         if anew {
             self.queries.connect(playback.session());

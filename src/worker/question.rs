@@ -120,7 +120,7 @@ trait ErasedQuestion: Any + Debug + Send + Sync {
 impl<Q: Question> ErasedQuestion for TypedQuestion<Q> {
     fn send_to(&self, workers: &Workers, is_busy: bool) {
         let news = workers.messages.clone();
-        // Take the ticket now, because the user may stop the query before it starts.
+        // Take the ticket now, because the user may stop the query before the query starts.
         let ticket = workers.queries.ticket();
         let reply = Reply { slot: self.slot.clone(), messages: news, ticket, is_answered: false };
         let question = self.question.clone();

@@ -1,4 +1,4 @@
-//! Queries with which the screens read data. Each reading is a guarded query over the public tables, which a user
+//! Queries with which the screens read data. Each screen query is a guarded query over the public tables, which a user
 //! could also run. The SQL is in `assets/readings`, or in `assets/queries` if the query library also contains the
 //! query.
 
@@ -9,10 +9,10 @@ macro_rules! readings {
         pub enum Reading { $(#[doc = $doc] $variant,)* }
 
         impl Reading {
-            /// All readings of the screens.
+            /// All queries of the screens.
             pub const ALL: &'static [Reading] = &[$(Reading::$variant,)*];
 
-            /// Returns the SQL statement of the reading.
+            /// Returns the SQL statement of the query.
             pub fn sql(self) -> &'static str {
                 match self { $(Reading::$variant => include_str!(concat!("../../assets/", $file, ".sql")),)* }
             }
@@ -40,7 +40,7 @@ readings! {
          numbers of comments."
     Knowledge "readings/knowledge" "Study state of all groups: group, study level, day of discovery, day of the last study."
     Attempts "readings/attempts" "Market research attempts, newest first: day, cost, success, group."
-    WeekNotices "readings/week_notices" "Notices of the last week, newest first: day, type, message."
+    WeekNotices "readings/week_notices" "Notifications of the last week, newest first: day, type, message."
     Cohorts "readings/cohorts" "Subscribers by group, sign-up week and cancellation week: group, sign-up week, \
          cancellation week (0 if active), customers."
     Economy "readings/economy" "Published PMI: measurement day, value, trend, change, phase, description."

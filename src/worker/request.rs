@@ -33,7 +33,7 @@ pub enum Request {
     Recover(String),
     /// Open a playback of a recorded run.
     Replay {
-        /// Record to play back.
+        /// Recorded run to play back.
         recorded: RecordSource,
         /// Initial position of the playback.
         goal: SeekTarget,
@@ -137,7 +137,7 @@ pub struct GivenAnswer {
     pub value: Value,
     /// Milliseconds for which the question was on the screen.
     pub shown_ms: u64,
-    /// Number of times the answer was changed before it was submitted.
+    /// Number of times that the participant changed the answer before submitting it.
     pub changes: u32,
 }
 

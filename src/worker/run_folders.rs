@@ -21,7 +21,7 @@ use novamind_tools::Rejection;
 /// A question that asks for the preview of a run.
 #[derive(Debug, Clone)]
 pub struct PreviewQuestion {
-    /// Id of the run.
+    /// Id of the run to preview.
     pub id: String,
 }
 
@@ -97,7 +97,7 @@ impl SessionThread {
             Access::Write => find_run(&self.runs_folder, id),
             Access::Read => find_run_to_read(&self.runs_folder, id),
         };
-        // The session for inspections may have locked the run to open, so close this session first.
+        // The session for inspections may hold the lock of the requested run, so close this session first.
         self.inspection_run = None;
         let opened = found.and_then(|folder| {
             self.reject_study_session(&folder, access)?;
@@ -113,7 +113,7 @@ impl SessionThread {
         self.show_opened_run(opened, id, None);
     }
 
-    /// Rejects playing a run of a participant: only the participant may continue it, with the protocol of the study.
+    /// Rejects playing a run of a participant: only the participant may continue the run, under the protocol of the study.
     fn reject_study_session(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs_folder.as_path());
         if self.lists_all_participants && access == Access::Write && is_elsewhere {

@@ -24,7 +24,7 @@ pub struct CanonicalHasher {
     chunk_bytes: usize,
 }
 
-/// Number of bytes that are hashed at once. A power of two, so that each chunk is a complete subtree of the hash.
+/// Number of bytes that are hashed at once. The number is a power of two, so that each chunk is a complete subtree of the hash.
 const CHUNK_BYTES: usize = 1 << 16;
 /// Number of column values that are converted before their bytes are appended.
 const VALUES_PER_BATCH: usize = 128;
@@ -252,8 +252,8 @@ impl<T: Canonical> Canonical for ByChannel<T> {
     }
 }
 
-/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A missing field is
-/// a compile error.
+/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A field that is missing in
+/// the list causes a compile error.
 #[macro_export]
 macro_rules! canonical {
     ($($name:ident { $($field:ident),* $(,)? })*) => {$(
@@ -274,8 +274,8 @@ macro_rules! canonical {
 }
 pub use canonical;
 
-/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A missing variant is a
-/// compile error.
+/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A variant that is missing in the
+/// list causes a compile error.
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(
         impl $crate::canonical::Canonical for $name {

@@ -1,8 +1,8 @@
 //! Commands that change the world. A tool call is converted to a command. The random draws of the command are resolved
 //! before the command is applied. Applying a command cannot fail.
 //!
-//! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
-//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
+//! The steps are separate so that a call can be validated without side effects ([`Command`]) and recorded with its
+//! result ([`World::resolve`]) before it is applied ([`World::apply`]).
 
 use super::enterprise::messages::{OfferDraft, OfferMessage};
 use super::events::{Attempt, Project, Study};
@@ -28,7 +28,7 @@ pub enum Command {
     StartResearch(u8),
     /// Pays for an attempt to discover a group.
     ResearchMarket,
-    /// Pays for a study of a group up to this level and starts it.
+    /// Pays for and starts a study that raises a group to this study level.
     ResearchGroup(Group, u8),
     /// Draws the errors of a group's estimates. Does not change the world.
     ReadInsights(Group),

@@ -1,4 +1,4 @@
-//! Values of a day that all customer mechanisms share. They are computed after the day's service is known.
+//! Values of a day that all customer mechanisms share, computed after the service health of the day.
 
 use super::events::ServiceDay;
 use super::morning::Morning;

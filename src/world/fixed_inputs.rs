@@ -37,7 +37,7 @@ impl FixedInputs {
         self.value_on_day(day, &self.service)
     }
 
-    /// Replaces the lead factors of a day that are fixed.
+    /// Replaces the fixed lead factors of a day.
     pub fn apply_to_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
         let month_day = self.value_on_day(day, &self.month_days);
         for lead_factors in

@@ -31,7 +31,7 @@ impl From<u32> for Quota {
     }
 }
 
-/// The canonical bytes of a whole quota are those of a `u64`.
+/// The canonical bytes of a whole quota are the bytes of a `u64`.
 impl Canonical for Quota {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         let bytes = match self.0.fract() == 0.0 {

@@ -94,7 +94,7 @@ parts! {
     CeoViews = "ceo_views",
     /// (post, group): author of a comment, and its engagement.
     CeoReply = "ceo_reply",
-    /// (post): wording of a post. Never affects the numbers of the world.
+    /// (post): wording of a post. The draws never affect the numbers of the world.
     Voice = "voice",
     /// (group, n): profile name of a customer.
     PersonaTemplate = "persona_template",

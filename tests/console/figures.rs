@@ -215,7 +215,8 @@ fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
         if let Some((new, after)) = left.strip_prefix(" → ").and_then(parse_number) {
             (written, left) = (new, after);
         }
-        // A value per day is a rate and not the figure. A number can also belong to a longer name.
+        // A value per day is a rate and not the figure. A number that is directly followed by other characters belongs
+        // to a longer name.
         let rate = [" $/day", " units/day"].iter().any(|unit| left.starts_with(unit));
         let change = after.is_empty() && left.starts_with(", of it");
         let ends = left.chars().next().is_none_or(|next| " ,;.|)│".contains(next));

@@ -85,7 +85,7 @@ fn enter_opens_a_branch_and_confirms_unsaved_text() {
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.press("enter y");
     assert_eq!(here(&console).as_deref(), Some(ids[2].as_str()));
-    // The draft is offered again in the text in which it was typed.
+    // After the run is opened again, its notes contain the draft.
     console.press("0 shift-tab up up enter");
     assert_eq!(here(&console).as_deref(), Some(ids[0].as_str()));
     console.assert_shows("mine");

@@ -229,7 +229,7 @@ fn run_in_use_can_be_watched() {
     let mut console = Console::start(runs.path(), (120, 40));
     console.press("c");
     console.assert_shows("open in another program");
-    console.assert_shows("Watch it here");
+    console.assert_shows("Watch the run here");
     console.press("y");
     console.assert_shows("live");
     assert_eq!(shown_day(&console), 14);

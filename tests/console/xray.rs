@@ -199,7 +199,7 @@ fn replay_of_a_finished_run_records_inspections() {
         console.assert_shows("leads of S1 on day 14");
         console.press("right");
         console.assert_shows("day 14 of 14");
-        // A replay cannot simulate days, so it cannot run to a breakpoint.
+        // A replay cannot simulate days and therefore cannot run to a breakpoint.
         console.press("; k r '7' enter");
         console.assert_shows("this is a replay");
         // After the replay is closed, the lock of the run is released and the run can be opened.

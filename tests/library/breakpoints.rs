@@ -202,7 +202,7 @@ fn breakpoints_match_a_full_scan() {
     assert_eq!(stops, expected);
     let kinds: std::collections::BTreeSet<&str> = stops.iter().map(|(_, text)| text.as_str()).collect();
     assert!(kinds.len() >= 9 && stops.len() > 30, "{kinds:?} {}", stops.len());
-    // The hash of the facts is excluded: it restarts with each line, and a stop at a breakpoint ends a line.
+    // The hash of the facts is excluded: the hash restarts with each line, and a stop at a breakpoint ends a line.
     let parts = |session: &Session| {
         let (_, mut parts) = session.state_hash();
         parts.remove("facts").expect("a part");

@@ -334,7 +334,7 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     let other = school.collect(std::slice::from_ref(&path)).findings;
     assert!(matches!(&other[..], [ClassFinding::Missing { .. }, ClassFinding::Altered { .. }]), "{other:?}");
 
-    // A run from the handout of another student, whose first line was changed to the player's label.
+    // The run belongs to the handout of another student, and its first line is changed to the player's label.
     forge_all(&folder, |at, line| {
         if at == 0 {
             line["participant"] = json!("S01");

@@ -134,7 +134,7 @@ fn check_turn_rows() {
         let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
         assert!(query_number(run, &sql) > 0.0, "{kind}");
     }
-    // Turns are numbered without gaps. Two turns can have the same number only if they are offers of the same call.
+    // The turns of a thread are numbered without gaps or duplicates. Only several offers of one call would share a number.
     assert_no_rows(
         run,
         "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",
@@ -143,7 +143,8 @@ fn check_turn_rows() {
         run,
         "SELECT * FROM enterprise_turns WHERE message_id > (SELECT count(*) FROM enterprise_turns)",
     );
-    // Only turns of enterprises, and of the market at the end of a deal, have texts and addresses.
+    // Only turns of enterprises have email addresses. Only these turns, and turns of the market at the end of a deal,
+    // have texts.
     assert_no_rows(run, "SELECT * FROM enterprise_turns WHERE (sender = 'customer') <> (email LIKE '%@%.%')");
     assert_no_rows(
         run,
@@ -219,7 +220,7 @@ fn check_deal_rows() {
         f64::from(seen.companies)
     );
     assert!(seen.companies > 10 && seen.seats > 1000, "{} {}", seen.companies, seen.seats);
-    // The row of a lead keeps its billing day. All other columns follow from the deal.
+    // The billing day depends only on the day on which the lead was created. All other columns depend on the deal.
     assert_no_rows(run, &format!("SELECT * {companies} AND billing_day_mod30 <> created_day % 30"));
     assert_no_rows(
         run,

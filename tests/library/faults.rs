@@ -227,7 +227,7 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let text = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
         assert!(!text.contains(&format!("{fault:?}")));
-        // A different fault number makes a different run.
+        // Parameters with a different fault number do not match the digest of the run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
         let mut forged = read_manifest(&path).expect("of the line");
         forged.fault = Some(other);

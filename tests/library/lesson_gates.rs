@@ -170,7 +170,7 @@ fn goal_compares_with_a_reference_play_that_uses_rules() {
     for _ in 0..3 {
         advance_lesson_week(&mut session).expect("a week");
     }
-    // Without an implementation of the rules, the step is not judged, because the judgment could be wrong.
+    // Without an evaluator of the rules, the reference play cannot reply to enterprises, so the step is not judged.
     advance_lesson_week(&mut session).expect("a week");
     assert!(session.lesson().expect("a lesson").goal_results(0).is_empty());
     assert_eq!(rejection_code(advance_lesson_week(&mut session)), "step_not_begun");

@@ -117,7 +117,7 @@ fn python_queries_have_the_limits_of_queries() {
         ("SELECT c_max FROM customers", "there is no column c_max"),
         ("SELECT * FROM customer_state", "table customer_state is not accessible"),
         ("DELETE FROM ledger", "only reading is allowed"),
-        ("SELECT 1; SELECT 2", "one statement at a time"),
+        ("SELECT 1; SELECT 2", "only one statement is allowed"),
         ("SELECT * FROM hidden.customers", "there is no table hidden.customers"),
         ("PRAGMA query_only = 0", "sql_schema"),
     ] {

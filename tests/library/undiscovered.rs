@@ -50,7 +50,8 @@ fn database_bytes(folder: &Path) -> Vec<u8> {
         .collect()
 }
 
-/// Case-sensitive, because other texts, such as names of media, start with capitals.
+/// Returns whether the bytes contain a text. The comparison is case-sensitive, because other texts, such as names of
+/// media, start with capitals.
 fn contains(bytes: &[u8], text: &str) -> bool {
     memchr::memmem::find(bytes, text.as_bytes()).is_some()
 }

@@ -291,7 +291,7 @@ fn audit_reports_missing_runs_and_runs_of_a_different_protocol() {
         (study.machine("one").display().to_string(), study.machine("data").display().to_string());
     let collected = study.home.run(&["study", "collect", &one, "--out", &out, "--protocol", &study.folder()]);
     assert!(
-        collected.stdout.contains("label P01 has no session under this protocol; its run "),
+        collected.stdout.contains("label P01 has no session under this protocol; run "),
         "{}",
         collected.stdout
     );

@@ -68,7 +68,7 @@ fn assert_documented_rejection(tool: &Value, value: &Value) {
     assert!(values.iter().any(|one| one == code) || of_all.contains(&code), "{}: {code}", tool["name"]);
 }
 
-/// Checks that every described route answers with the described methods.
+/// Checks that every described route exists with the methods in its description.
 fn check_described_routes(server: &Server) {
     let described = server.get("/openapi.json");
     let paths = described["paths"].as_object().expect("paths");

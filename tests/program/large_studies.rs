@@ -184,7 +184,7 @@ fn interrupted_study_resumes() {
     assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{text}");
     let done = count_stored_runs(&home, ".jsonl");
     assert!(
-        text.contains(&format!("stopped: {done} of 20 runs are stored; the same command resumes")),
+        text.contains(&format!("stopped: {done} of 20 runs are stored; repeat the command to resume")),
         "{text}"
     );
     let rest = home.run(&["lab", "study", &file]);

@@ -389,7 +389,7 @@ fn final_page_shows_only_permitted_results() {
             visit(&format!("{label}\nyes\n5\n{WEEKS}4\n2\nquit\n"));
             let end = visit(&format!("{label}\nnext \"e\" naive\n"));
             assert_eq!(end.exit_code, 0, "{}", end.stderr);
-            // When the session starts, the company is shown as of the last week.
+            // The start of the output shows the company before the last week. Only the text after it reports the end.
             let (_, after) = match json {
                 true => end.stdout.split_once('\n').expect("the greeting"),
                 false if shows => {

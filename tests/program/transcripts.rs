@@ -299,7 +299,7 @@ fn inspect_archive_is_imported() {
     let cut = home.0.path().join("cut.eval");
     fs::write(&cut, &bytes[..bytes.len() - 30]).expect("a file");
     home.run(&["runs", "import", "--transcript", &cut.to_string_lossy(), "--seed", "3"])
-        .assert_fails(1, &["cut short"]);
+        .assert_fails(1, &["truncated"]);
 }
 
 #[test]

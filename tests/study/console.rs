@@ -62,7 +62,7 @@ impl<'a> ConsoleParticipant<'a> {
         ConsoleParticipant { console, clock, diary, began: 0, current_view: view, spends: TimeCategory::Away }
     }
 
-    /// Advances the clock, each time after all messages to the worker have been processed.
+    /// Advances the clock in steps. Before each step, all messages to the worker are processed.
     pub fn wait(&mut self, seconds: u64) {
         let mut left = Duration::from_secs(seconds);
         while !left.is_zero() {
@@ -335,7 +335,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.add_expected_line("draft", "rationale", "left", Some(0));
         self.assert_shows("The time for this week ran out: the week was submitted with naive forecasts.");
         self.assert_shows("a week ago the program, at the time limit, forecast");
-        self.assert_shows("Your draft was not submitted; it was recorded as a draft.");
+        self.assert_shows("Your draft was not submitted; the text was recorded as a draft.");
         self.record_week("time limit", "form");
     }
 
@@ -346,7 +346,7 @@ impl<'a> ConsoleParticipant<'a> {
         }
     }
 
-    /// Waits for the limit. The program checks it every second of real time, while the script's clock is stopped.
+    /// Waits for the limit. The program checks the limit every second of real time, while the script's clock is stopped.
     fn await_limit(&mut self, shown: &str) {
         while !self.console.screen().contains(shown) {
             let message = self.console.receive().expect("the limit is reported");

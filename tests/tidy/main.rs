@@ -197,7 +197,7 @@ fn simulator_uses_no_clock_files_or_unordered_maps() {
 /// Re-simulation shows hidden state, so only the crate that checks the permission may import the engine.
 #[test]
 fn only_insight_imports_the_session_engine() {
-    // The session crate itself, and crates below it that cannot import it.
+    // The session crate itself, and the crates that the session crate imports.
     const CRATES_WITHOUT_SESSION: [&str; 8] =
         ["assets", "base", "database", "record", "session", "tools", "voice", "world"];
     let complaint = |line: &str| {

@@ -38,7 +38,7 @@ pub fn parse_next_week(words: &[String]) -> Result<Value, Failure> {
             Ok(json!({ "rationale": rationale, "predictions": predictions }))
         }
         _ => Err(Failure::usage(format!(
-            "next-week takes one JSON object, or a rationale and {} numbers: point, lower and upper of {}; you gave {} arguments",
+            "next-week takes one JSON object, or a rationale and {} numbers: point, lower and upper for {}. You gave {} arguments",
             3 * FORECAST_KEYS.len(),
             FORECAST_KEYS.join(", "),
             words.len()

@@ -23,13 +23,13 @@ use crate::session::Session;
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Command of the agent; a shell executes it in the folder of each try
+    /// Command of the agent; a shell executes the command in the folder of each try
     #[arg(long, value_name = "COMMAND")]
     command: String,
     /// Number of new runs
     #[arg(long = "runs", default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     tries: u32,
-    /// Maximum number of restarts if the command ends before the run does
+    /// Maximum number of restarts if the command ends before the run ends
     #[arg(long = "continue", default_value_t = 0, value_name = "N")]
     continued: u32,
     /// Folder for the results, with a subfolder for each try; must be new or empty

@@ -19,7 +19,7 @@ pub fn unreachable_failure(error: &str) -> Failure {
     Failure::with_code(
         UNREACHABLE,
         format!(
-            "the server does not respond: {error}. Everything confirmed is saved. `novamind agent status` restarts \
+            "the server does not respond: {error}. All confirmed actions are saved. `novamind agent status` restarts \
              the server and shows the day of the run"
         ),
     )

@@ -25,7 +25,7 @@ pub struct Options {
     /// Run [default: the run that `agent new` last created]
     #[arg(id = "agent_run", long = "run", global = true, env = "NOVAMIND_RUN", value_name = "ID")]
     run: Option<String>,
-    /// Request id for `call` and `next-week`: repeating the command with the same id runs the request only once
+    /// Request id for `call` and `next-week`: if the command is repeated with the same id, the request runs only once
     #[arg(long, global = true, value_name = "ID")]
     request_id: Option<String>,
 }
@@ -74,14 +74,14 @@ enum AgentCommand {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
-    /// Stop the server of the run; everything confirmed is saved, and the next command starts a new server
+    /// Stop the server of the run; all confirmed actions are saved, and the next command starts a new server
     Stop,
     /// Run an agent command on several new runs and collect the results
     Batch(batch::Options),
 }
 
 impl Options {
-    /// Passes `--code` to the called tool. Without a study, `--code` cannot be an experimenter's code.
+    /// Adds `--code` to the arguments of the called tool. Without a study, `--code` cannot be an experimenter's code.
     pub fn restore_code_argument(&mut self, code: String) {
         if let AgentCommand::Call { arguments, .. } = &mut self.command {
             arguments.splice(0..0, ["--code".to_owned(), code]);

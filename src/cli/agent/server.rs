@@ -22,7 +22,7 @@ const LATEST_RUN_FILE: &str = "agent-run.txt";
 /// Time limit for stopping a server. The server first finishes a running week.
 const STOP_DEADLINE: Duration = Duration::from_secs(120);
 
-/// Whether requests must include a token.
+/// Authentication of requests to the server.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Authentication {
     /// Requests need the token, which commands read from the run folder.
@@ -63,7 +63,7 @@ impl AgentRun {
         let id = named.map(str::to_owned).or_else(remembered).ok_or_else(|| {
             Failure::usage("there is no agent run here: create a run with `novamind agent new`, or name a run with --run or NOVAMIND_RUN")
         })?;
-        // If a folder has the name of the run id, the other runs need not be read.
+        // If a folder is named after the run id, the other runs need not be read.
         let path = run_folder(&runs, &id);
         let is_name = !id.is_empty() && id.chars().all(|letter| letter.is_ascii_alphanumeric());
         let folder = match is_name && path.join("run.toml").is_file() {

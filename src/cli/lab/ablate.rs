@@ -15,7 +15,8 @@ use crate::lab::experiment::{Experiment, ExperimentResults};
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Policy, by name or path [default: a probe with shared development; for the drain, a probe with targeted development]
+    /// Policy, by name or path [default: a probe with shared development; to measure draining, a probe with targeted
+    /// development]
     #[arg(long, value_name = "NAME|FILE")]
     policy: Option<String>,
     /// Seed, or a range including both ends

@@ -43,7 +43,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&baseline_report(&grid, is_of_the_paper, &results))
 }
 
-/// Plays the leaders first, because most other configurations turn out to be identical to a leader.
+/// Plays the leaders first, because the runs of most other configurations turn out to equal the run of their leader. A
+/// leader has the lowest cash floor among configurations that are otherwise equal.
 fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;

@@ -16,7 +16,7 @@ pub struct Options {
     output: OutputOptions,
 }
 
-/// Prints the behavior measures of runs. Each run records only that it was read.
+/// Prints the behavior measures of runs. The only change to a run is a record that the run was read.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let observed = map_runs(&options.runs, "behaviour", context, |session, trajectory| {
         BehaviorRun::from_session(session, &trajectory.lines)

@@ -1,4 +1,4 @@
-//! `novamind lab consistency`: checks that policies on the same seed get the same random draws.
+//! `novamind lab consistency`: checks that policies on the same seed use the same random draws.
 
 use clap::Args;
 
@@ -19,7 +19,7 @@ pub struct Options {
     /// Scenario [default: the scenario of the policies]
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
-    /// Stop after this day; the horizon does not change
+    /// Stop after this day; the last day of the run does not change
     #[arg(long, value_name = "N")]
     until: Option<u32>,
     /// Number of runs to play in parallel [default: the number of processors]

@@ -26,7 +26,7 @@ pub struct Options {
     json: bool,
 }
 
-/// Prints the differences between two runs. Only the inspection is recorded in the runs.
+/// Prints the differences between two runs. The only change to the runs is a record of the inspection.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let runs = context.runs_folder()?;
     let open = |name: &str| -> Result<Session, Failure> {

@@ -24,7 +24,7 @@ pub struct PlayOptions {
     pub fresh: bool,
 }
 
-/// Conducts the experiment of a command. Results are cached under its name, so that each run is played once.
+/// Conducts the experiment of a command. Results are cached under the name of the command, so that each run is played once.
 ///
 /// # Errors
 /// An arm cannot start, a run cannot be played, or the results cannot be written. Stopping the experiment is also an error.

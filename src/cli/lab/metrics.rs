@@ -15,7 +15,7 @@ pub struct Options {
     run: String,
 }
 
-/// Prints the figures of a run. Only the inspection is recorded in the run.
+/// Prints the figures of a run. The only change to the run is a record of the inspection.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     context.check_view_allowed(&folder)?;

@@ -49,7 +49,7 @@ fn to_text(opponents: &OpponentResults, run: &Session) -> String {
     };
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
-    // Only cash after the last day is a score.
+    // Only the cash after the last day is a score.
     let not_over = match run.score() {
         Some(score) => {
             places.push((score, name, describe_end(run.ended() == Some(RunEndReason::Bankruptcy), day)));

@@ -29,9 +29,9 @@ pub struct Options {
 /// The criterion by which runs are grouped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum GroupBy {
-    /// Group by participant; a policy's runs are grouped under its name
+    /// Group by participant; runs of a policy are grouped under the name of the policy
     Participant,
-    /// Group by policy; runs of people are left out
+    /// Group by policy; runs that people played are left out
     Policy,
 }
 
@@ -90,7 +90,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Failure> {
     let mut finished = Vec::new();
     for folder in folders {
-        // Copies of a run are left out.
+        // Copies of a run are omitted.
         let is_over = |run: &RunSummary| {
             run.problem.is_none()
                 && run.copy_of.is_none()

@@ -25,7 +25,7 @@ pub fn map_runs<T>(
     let mut known = BTreeMap::new();
     for name in names {
         let path = find_run_to_read(&folder, name)?;
-        // Copies of a folder contain runs with the same id.
+        // A copy of a run folder has the same run id.
         if let Some(before) = known.insert(Manifest::read(&path)?.id, name) {
             let message = format!("{before} and {name} are the same run; name each run once");
             return Err(Failure::usage(message));

@@ -21,14 +21,14 @@ pub struct Options {
     /// File with policies, scenarios, overrides and seeds
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Write a row for each run and day instead of each run
+    /// Write one row per run and day instead of one row per run
     #[arg(long)]
     daily: bool,
-    /// Play only this shard, for example 2/4; all shards together are the study
+    /// Play only this shard, for example 2/4; all shards together make up the study
     #[arg(long, value_name = "I/N", value_parser = parse_shard, requires = "out", conflicts_with_all = ["json", "csv", "svg"])]
     shard: Option<Shard>,
-    /// File for the rows; the terminal then shows a summary of the arms [default: standard output]. With --shard,
-    /// folder of all shards
+    /// File for the rows; the terminal then shows a summary of the arms [default: standard output]. With --shard:
+    /// folder for all shards
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
     /// Show the runs that would be played, without playing them

@@ -1,4 +1,4 @@
-//! `novamind replay RUN --cast FILE`: records the replay for terminal players.
+//! `novamind replay RUN --cast FILE`: records the replay as an asciicast.
 
 use std::path::Path;
 use std::time::Duration;

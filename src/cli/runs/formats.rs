@@ -46,8 +46,7 @@ pub fn write_export(
         ExportFormat::Script => (Some(out), vec![out.join("play.txt"), out.join("play.py")]),
         ExportFormat::Inspect if has_extension(out, "eval") => {
             return Err(Failure::usage(format!(
-                "{}: the log is written as JSON, but Inspect expects an archive in a file that ends in .eval: give a file that \
-                 ends in .json, or a folder. Nothing was written",
+                "{}: a file that ends in .eval must be an archive, but the log is written as JSON. Give a file that ends in .json, or a folder. Nothing was written",
                 out.display()
             )));
         }
@@ -62,7 +61,7 @@ pub fn write_export(
     }
     if let (Some(lesson), ExportFormat::Script) = (&manifest.lesson, format) {
         return Err(Failure::usage(format!(
-            "run {} belongs to lesson {}, whose start a script cannot create; use --format atif or inspect",
+            "run {} belongs to lesson {}. A script cannot create the start of a lesson; use --format atif or inspect",
             manifest.id, lesson.name
         )));
     }
@@ -161,7 +160,7 @@ fn export_context(run: &Transcript) -> AgentContext {
     }
 }
 
-/// Returns only the list of tools, because the instructions are compiled with the server.
+/// Returns only the list of tools, because only builds with the server contain the instructions.
 #[cfg(not(feature = "server"))]
 fn export_context(_: &Transcript) -> AgentContext {
     AgentContext { instructions: crate::tools::catalogue::list_by_module(), tools: Vec::new() }

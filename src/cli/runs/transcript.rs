@@ -75,8 +75,7 @@ pub fn import_transcript(
     let ends_otherwise = read.state_hash.as_ref().is_some_and(|recorded_hash| *recorded_hash != hash);
     match played.mismatches.len() as u32 {
         0 if ends_otherwise => Err(Failure::failed(
-            "every answer agrees with the transcript, but the final state differs: the transcript is from another \
-             program version or other parameters; the run is kept",
+            "every answer agrees with the transcript, but the final state differs. The transcript is from another program version or other parameters. The run is kept",
         )),
         0 => Ok(()),
         calls => Err(Failure::failed(format!(

@@ -37,8 +37,8 @@ pub struct Export {
     /// With --all: export only runs of this participant
     #[arg(long, value_name = "LABEL", requires = "all")]
     participant: Option<String>,
-    /// Archive file, compressed if the name ends in .gz or .tgz. A folder with --all or --format script. A .json file
-    /// or a folder with --format inspect; in a folder, the file gets the name that Inspect expects. The folder `data`
+    /// Archive file, compressed if the name ends in .gz or .tgz. With --all or --format script: a folder. With
+    /// --format inspect: a .json file, or a folder in which the file gets the name that Inspect expects. The folder `data`
     /// of the viewer with --format viewer; runs can be added to it
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
@@ -114,7 +114,7 @@ impl Export {
 
     fn export_all(&self, folders: &[PathBuf], keys: &ExportKeys, json: bool) -> Result<(), Failure> {
         let mut list = list_all(folders)?;
-        // A damaged run does not name its participant, so it is always reported.
+        // The participant of a damaged run is unknown, so a damaged run is always reported.
         let label = self.participant.as_deref();
         list.retain(|(_, run)| {
             run.problem.is_some() || label.is_none_or(|label| run.participant.as_deref() == Some(label))
@@ -211,7 +211,7 @@ pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Removes incomplete archives when a signal ends the program, because they may contain hidden data.
+/// Removes incomplete archives when a signal ends the program, because incomplete archives may contain hidden data.
 pub fn remove_partial_files_on_signals() {
     #[cfg(unix)]
     {
@@ -310,7 +310,7 @@ impl Import {
                 Err(error) => failures.push(error.into()),
             }
         }
-        // The failure with the highest exit code determines the exit code.
+        // The failure with the highest exit code determines the exit code of the command.
         failures.sort_by_key(|failure| std::cmp::Reverse(failure.code));
         let mut failures = failures.into_iter();
         match failures.next() {
@@ -353,10 +353,10 @@ fn describe_import(
     let (new, remark) = match imported {
         ImportOutcome::New(_) => (true, "imported; the database is built when you first open the run"),
         ImportOutcome::AlreadyPresent { notes_differ: false } => {
-            (false, "already exists, line for line; nothing was changed")
+            (false, "already exists with the same lines; nothing was changed")
         }
         ImportOutcome::AlreadyPresent { notes_differ: true } => {
-            (false, "already exists, line for line, with other notes; nothing was changed")
+            (false, "already exists with the same lines, but with other notes; nothing was changed")
         }
     };
     if json {

@@ -55,8 +55,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         && !made.rows.starts_with(&there.rows)
     {
         return Err(Failure::failed(format!(
-            "the rows of {} were not drawn with seed {draw} for this protocol: give the seed that was used with \
-             --draw, or add the rows by hand. Nothing was changed",
+            "the rows of {} were not drawn with seed {draw} for this protocol: give the original seed with --draw, or add the rows by hand. Nothing was changed",
             target.display()
         )));
     }
@@ -71,7 +70,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         incomplete_block_message(made.rows.len(), cells),
         if protocol.seeds.draw.is_none() && draw != 1 {
             format!(
-                "add draw = {draw} under [seeds] in {STUDY_FILE} before the first session, so that the protocol states it\n"
+                "add draw = {draw} under [seeds] in {STUDY_FILE} before the first session, so that the protocol contains the seed\n"
             )
         } else {
             String::new()

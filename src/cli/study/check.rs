@@ -42,9 +42,11 @@ fn describe_keys(folder: &Path) -> &'static str {
     match (is_here(SEAL_KEY_FILE), is_here(LAB_KEY_FILE)) {
         (true, false) => "seal.key seals snapshots",
         (true, true) => {
-            "seal.key seals snapshots; lab.key is here: keep lab.key off the machines of participants"
+            "seal.key seals snapshots; lab.key is in this folder: keep lab.key off the machines of participants"
         }
-        (false, true) => "no seal.key; lab.key is here: create seal.key with `novamind study key`",
+        (false, true) => {
+            "lab.key is in this folder, but seal.key is missing: create seal.key with `novamind study key`"
+        }
         (false, false) => "no keys: snapshots are sealed without a study key, archives are not signed",
     }
 }

@@ -17,7 +17,7 @@ use novamind_study::{CollectNote, load_lab_key, load_lab_public_key, load_seal_k
 
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folders of runs of the machines, copies of these folders, and archives; subfolders are searched, too
+    /// Folders of runs of the machines, copies of these folders, and archives; subfolders are also searched
     #[arg(value_name = "FOLDER", required = true)]
     sources: Vec<PathBuf>,
     /// Folder for archives, tables and collect.log

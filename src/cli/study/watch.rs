@@ -33,7 +33,7 @@ pub struct Options {
     /// Print one JSON object per session and exit
     #[arg(long)]
     json: bool,
-    /// Record a note about a participant instead: a label and a text
+    /// Record a note about a participant instead of showing sessions: a label and a text
     #[arg(long, num_args = 2, value_names = ["LABEL", "TEXT"])]
     note: Option<Vec<String>>,
 }
@@ -68,7 +68,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-/// Records a note in the folder that contains the runs of the label.
+/// Records a note in the folder that contains the runs of the participant.
 fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
     participant_folder(Path::new(""), label).map_err(Failure::usage)?;
     let last_played = machines.iter().filter_map(|runs| {
@@ -83,7 +83,7 @@ fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> R
     let place = with_runs.or_else(|| machines.iter().find(visited));
     let place = place.or_else(|| machines.first().filter(|_| is_assigned)).ok_or_else(|| {
         Failure::usage(format!(
-            "{label} is not a label of this study: it is not in the assignment, and no run or visit in these folders has it. Nothing was recorded"
+            "{label} is not a label of this study: the label is not in the assignment, and no run or visit in these folders has the label. Nothing was recorded"
         ))
     })?;
     write_remark(place, label, text)?;

@@ -93,7 +93,7 @@ impl App {
         self.schedule_draft_save();
     }
 
-    /// Returns the place and content of the text that is being edited.
+    /// Returns the recorded name and the content of the text that is being edited.
     fn edited_text(&self) -> Option<(String, String)> {
         let run = self.run().filter(|run| run.playback.is_none())?;
         match self.layers.top() {
@@ -108,7 +108,7 @@ impl App {
     pub(super) fn record_view(&mut self) {
         let now = self.stopwatch.elapsed();
         let Stage::Run(run) = &mut self.stage else { return };
-        // Simulated time is not counted as viewing.
+        // Time during a simulation is not counted as view time.
         let Some(since) = run.shown_since.replace(now) else {
             run.shown_since = None;
             return;
@@ -242,7 +242,7 @@ impl App {
         }
     }
 
-    /// Returns whether the place of an edited text is still visible.
+    /// Returns whether the edited text with this recorded name is still visible.
     fn is_editing(&self, place: &str) -> bool {
         let Some(run) = self.run() else { return false };
         if NEXT_WEEK_DRAFTS.contains(&place) {
@@ -297,7 +297,7 @@ impl App {
 }
 
 impl Run {
-    /// Pauses the view timer: simulated time is not counted as viewing.
+    /// Pauses the view timer, because time during a simulation is not counted as view time.
     pub(super) fn pause_view_timer(&mut self) {
         self.shown_since = None;
     }

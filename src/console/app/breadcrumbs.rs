@@ -1,4 +1,4 @@
-//! Breadcrumbs: the places from which the current place was opened, and navigation back to these places.
+//! Breadcrumbs: the screens from which the current screen was opened, and navigation back to these screens.
 
 use super::{App, Run, Stage};
 use crate::action::Action;
@@ -6,13 +6,13 @@ use crate::context::{ScreenContext, ScreenId};
 
 const MAX_BREADCRUMBS: usize = 8;
 
-/// A place from which the user opened something on another screen.
+/// A screen with its state, from which the user opened another screen.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Breadcrumb {
     screen: ScreenId,
     pane: usize,
     open_item: Option<String>,
-    /// Escape depth that the opened screen had when it was opened from this place.
+    /// Escape depth that the opened screen had when it was opened from this screen.
     escape_depth: usize,
 }
 
@@ -42,7 +42,7 @@ impl Run {
 }
 
 impl App {
-    /// Opens another screen and adds the current place to the breadcrumbs.
+    /// Opens another screen and adds the current screen to the breadcrumbs.
     pub(super) fn open_linked_screen(&mut self, screen: ScreenId, prepare: impl FnOnce(&mut Run)) {
         if self.reject_closed_screen(screen) {
             return;
@@ -73,7 +73,7 @@ impl App {
         self.show_screen(screen);
     }
 
-    /// Goes back to the last breadcrumb if escape has nothing to close on this screen. Returns whether it went back.
+    /// Goes back to the last breadcrumb if escape has nothing to close on this screen. Returns whether the screen changed.
     pub(super) fn go_back_to_breadcrumb(&mut self, action: Action) -> bool {
         let Stage::Run(run) = &mut self.stage else { return false };
         if action != Action::Close || run.screens.sql.is_running() {

@@ -25,7 +25,7 @@ impl BusyState {
         BusyState { label: what, progress: None, started_at: Instant::now(), is_stopping_script: false }
     }
 
-    /// Returns whether a script is running. Scripts can be stopped.
+    /// Returns whether the work is a script. The user can stop scripts.
     pub fn is_script(&self) -> bool {
         self.label == SCRIPT_STATUS
     }

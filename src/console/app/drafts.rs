@@ -1,4 +1,5 @@
-//! Drafts: unsent texts are saved with the run while the user edits them. They are offered when the run is opened again.
+//! Drafts: unsent texts are saved with the run while the user edits them. The console offers the saved drafts when the
+//! run is opened again.
 
 use std::time::Duration;
 

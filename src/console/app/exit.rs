@@ -38,7 +38,7 @@ impl ExitTarget {
 }
 
 const DRAFTS_KEPT: &str = "Unsent text in a form, the notes, a post or the next-week dialog is saved with the run and offered when you open the run again.";
-/// Used after the run has ended, when drafts can no longer be sent.
+/// Warning for a run that has ended, in which drafts can no longer be sent.
 const DRAFTS_DISCARDED: &str = "The notes have unsaved text. The run has ended; the text will be lost.";
 const OFFERS_DISCARDED: &str = "Unsent offers in the inbox will be lost.";
 
@@ -74,7 +74,7 @@ impl App {
             return self.show_error(format!("run {id} is already open"));
         }
         if self.busy.is_some() {
-            return self.show_error("days are being simulated; try again afterwards");
+            return self.show_error("days are being simulated; try again when the simulation has ended");
         }
         let open = Effect::Request(Request::Open(id.clone(), Access::Write));
         match self.draft_warning() {

@@ -61,9 +61,9 @@ impl App {
             return self
                 .show_error("baseline runs have no tour; Tour in the start menu opens a practice run");
         }
-        // The steps are written for the practice run.
+        // The steps of the tour apply only to the practice run.
         if run.company.observation.scenario != tour::scenario() {
-            return self.show_error("the tour has its own run; open it with Tour in the start menu");
+            return self.show_error("the tour has its own run; open that run with Tour in the start menu");
         }
         run.tour.get_or_insert_default();
     }
@@ -84,7 +84,7 @@ impl App {
             Some(key) => key,
             None => format!("{} tour", self.keys.label(Action::Palette).unwrap_or_default()),
         };
-        self.show_status(format!("tour closed; {way} resumes it"));
+        self.show_status(format!("tour closed; {way} resumes the tour"));
     }
 
     fn running_tour(&mut self) -> Option<&mut tour::Tour> {

@@ -74,7 +74,7 @@ impl App {
         }
     }
 
-    /// Returns whether a digit starts a number in the focused place. A run in playback has no editable cells.
+    /// Returns whether a digit starts a number in the focused pane or dialog. A run in playback has no editable cells.
     fn accepts_digits(&self) -> bool {
         let run = self.run().filter(|run| self.layers.is_empty() && run.playback.is_none());
         run.is_some_and(|run| run.screens.get(run.screen).accepts_digits())
@@ -422,7 +422,7 @@ impl App {
             Some(busy) if busy.is_script() => {
                 return self.show_error("a script is running; run the week when it has ended");
             }
-            Some(_) => return self.show_error("a week is running; its report opens when it is done"),
+            Some(_) => return self.show_error("a week is running; the report opens when the week is done"),
             None => {}
         }
         if !run.company.is_running() {
@@ -440,7 +440,7 @@ impl App {
         let Stage::Run(run) = &self.stage else { return };
         match run.company.last_week.is_some() {
             true => self.open_dialog(WeekReportDialog::new(None)),
-            false => self.show_error("no week has run yet; run one with n"),
+            false => self.show_error("no week has run yet; run a week with n"),
         }
     }
 

@@ -29,7 +29,7 @@ struct OpenLayer {
 }
 
 impl Layers {
-    /// Opens a dialog above all others.
+    /// Opens a dialog above all open dialogs.
     pub fn push(&mut self, layer: Layer, now: Duration) {
         let what = match &layer {
             Layer::NextWeek => "next week".to_owned(),

@@ -1,4 +1,5 @@
-//! Lessons in the console: the task next to the screen or as a page, immediate weeks, closed screens, the debrief.
+//! Lessons in the console: the task next to the screen or as a page, weeks that run without a dialog, closed screens,
+//! and the debrief.
 
 use std::sync::Arc;
 
@@ -108,8 +109,8 @@ impl App {
         true
     }
 
-    /// Runs a week of a lesson. Asks for confirmation at the start of a step without a question. Also asks if
-    /// enterprises wait for answers and the rules that were sent last can answer them.
+    /// Runs a week of a lesson. Asks for confirmation at the start of a step without a question. Also asks for
+    /// confirmation if enterprises wait for answers and the rules that were sent last can answer these enterprises.
     fn confirm_or_run_week(&mut self, week: Effect) {
         let Some(run) = self.run() else { return };
         let Some(page) = run.company.running_lesson() else { return };
@@ -200,7 +201,7 @@ impl App {
 
     pub(super) fn set_debrief(&mut self, found: Arc<Result<Debrief, Rejection>>) {
         let Stage::Run(run) = &mut self.stage else { return };
-        // The debrief may belong to a run that was left in the meantime.
+        // The debrief may belong to a run that the user has left in the meantime.
         if found.as_ref().as_ref().is_ok_and(|debrief| debrief.run != run.company.observation.run) {
             return;
         }

@@ -73,7 +73,7 @@ impl App {
                 ))));
             }
             Effect::SendCommand(_) if self.busy.is_some() => {
-                self.show_error("days are being simulated; no parameter was set, try again afterwards");
+                self.show_error("days are being simulated; no parameter was set. Try again afterwards");
             }
             Effect::SendCommand(words) => {
                 if let Stage::Run(run) = &mut self.stage {
@@ -172,7 +172,7 @@ impl App {
             && let Some(busy) = &self.busy
         {
             let what = if busy.is_script() { "a script is running" } else { "a week is running" };
-            return self.show_error(format!("{what}; no request was sent, try again afterwards"));
+            return self.show_error(format!("{what}; no request was sent. Try again afterwards"));
         }
         let leaves_run = matches!(request, Request::Open(..)) && matches!(self.stage, Stage::Run(_));
         if leaves_run || matches!(request, Request::Replay { .. }) {

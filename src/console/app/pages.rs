@@ -14,7 +14,7 @@ use novamind_session::identifiers::Group;
 use novamind_session::week_of_day;
 use novamind_worker::question::OutgoingQuestion;
 
-/// Weeks before the end of a finished run at which a what-if starts.
+/// Number of weeks between the default start of a what-if and the end of a finished run.
 const WEEKS_BEFORE_END: u32 = 12;
 
 impl App {

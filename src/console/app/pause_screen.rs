@@ -46,7 +46,7 @@ impl App {
         self.pending_chords.clear();
         let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| TextField::default());
         self.pause_screen = Some(PauseScreen { code, is_wrong_code: false, by_limit });
-        // The pause screen stays even if the event cannot be written.
+        // The pause screen remains even if the event cannot be written.
         self.record(move |session| drop(session.activity().stop_clock(reason.as_deref())));
     }
 

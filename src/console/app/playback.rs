@@ -35,7 +35,7 @@ const PLAYER_ACTIONS: [Action; 17] = [
 ];
 
 impl Run {
-    /// Returns the scopes of the focused place. Playback keys take precedence, except while text is typed.
+    /// Returns the scopes of the focused pane or dialog. Playback keys take precedence, except while text is typed.
     pub(super) fn scopes(&self) -> Vec<Scope> {
         let mut scopes = self.screens.get(self.screen).scopes();
         let typing = scopes.first().is_some_and(|scope| scope.is_text());
@@ -155,7 +155,7 @@ impl App {
 
     pub(super) fn seek(&mut self, goal: SeekTarget) {
         if self.busy.is_some() {
-            return self.show_error("already seeking; esc stops it");
+            return self.show_error("already seeking; esc stops seeking");
         }
         let Some(viewer) = self.playback_mut() else { return };
         let place = &viewer.position;
@@ -190,7 +190,7 @@ impl App {
             return self.show_status("paused");
         }
         if viewer.position.is_at_end {
-            return self.show_status("end of the record; go back to replay it");
+            return self.show_status("end of the record; go back to replay the run");
         }
         viewer.playing = true;
         let text = viewer.speed_label();

@@ -127,7 +127,7 @@ impl App {
         }
         let screen = match &news {
             Response::ToolCalled(tool, answer, company) => {
-                // The saving label stays if the run was left in the meantime.
+                // The label for saving remains if the user has left the run in the meantime.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.update_company(company.clone());
                 match answer {
@@ -165,7 +165,7 @@ impl App {
         let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
         let focus = run.screens.get(run.screen).focused_index();
         let effects = tell(&mut run.screens, run.screen, &context);
-        // A zoomed pane keeps the focus, because it shows the answer.
+        // A zoomed pane keeps the focus, because the zoomed pane shows the answer.
         if run.zoomed && run.screens.get(run.screen).focused_index() != focus {
             run.screens.get_mut(run.screen).set_focus(focus);
         }
@@ -265,7 +265,7 @@ impl App {
         self.time_limit = super::time_limits::TimeLimitState::default();
         self.attach_to_run();
         self.refresh_readings();
-        // In a study, the final questions come first.
+        // In a study, the participant answers the final questions first.
         if over && !self.has_participant() {
             self.show_final_page();
         }

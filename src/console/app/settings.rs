@@ -14,7 +14,7 @@ pub struct Settings {
     pub theme: Theme,
     /// Key bindings.
     pub keys: KeyBindings,
-    /// Characters that charts are drawn with.
+    /// Characters that are used to draw charts.
     pub glyphs: Glyphs,
     /// The user's configuration.
     pub configuration: Configuration,

@@ -1,4 +1,4 @@
-//! Studies: the pages around a participant's runs, and the parts of the console that are closed to participants.
+//! Studies: the pages around a participant's runs, and the functions of the console that are closed to participants.
 
 use super::{App, ExitTarget, Layer, Order, Stage};
 use crate::screens::menu::StartMenu;

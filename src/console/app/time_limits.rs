@@ -90,10 +90,10 @@ fn limit_notice_text(left: &TimeLeft, rules: &SessionRules) -> String {
 
 fn draft_retention_text(rules: &SessionRules) -> String {
     let kept = match rules.drafts {
-        _ if !rules.records_activity("draft") => "its text is lost",
-        DraftRecording::None => "its text is lost",
-        DraftRecording::Lengths => "its length was recorded, but not its text",
-        DraftRecording::Text => "it was recorded as a draft",
+        _ if !rules.records_activity("draft") => "the text is lost",
+        DraftRecording::None => "the text is lost",
+        DraftRecording::Lengths => "the length was recorded, but not the text",
+        DraftRecording::Text => "the text was recorded as a draft",
     };
     format!("Your draft was not submitted; {kept}.")
 }

@@ -1,4 +1,4 @@
-//! Observed user activity for the record: view times of screens and dialogs, how texts were typed, and presence.
+//! Measurement of user activity for the record: view times of screens and dialogs, typing statistics, and presence.
 
 mod presence;
 mod stopwatch;

@@ -23,7 +23,7 @@ pub enum EditSource {
     Filled,
 }
 
-/// Typing statistics of the texts that are being edited, by place.
+/// Typing statistics of the texts that are being edited, by recorded name.
 #[derive(Debug, Default)]
 pub struct TypingLog {
     texts: BTreeMap<String, EditEpisode>,
@@ -88,7 +88,7 @@ impl TypingLog {
         self.texts.remove(place).map(|episode| episode.into_draft(place, outcome, keep))
     }
 
-    /// Returns the places of the texts that are being edited.
+    /// Returns the recorded names of the texts that are being edited.
     pub fn places(&self) -> Vec<String> {
         self.texts.keys().cloned().collect()
     }

@@ -63,7 +63,7 @@ impl CausesDialog {
         if !(2..=last).contains(&week) {
             return DialogResponse::stay();
         }
-        // The source rows belong to the figure's own week.
+        // The source rows cover only the original week of the figure.
         let title = format!("{} in week {week}", self.quantity.name());
         let figure =
             Figure { title, sql: None, week_quantity: Some((self.quantity, week)), ..self.figure.clone() };

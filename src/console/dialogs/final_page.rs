@@ -282,7 +282,7 @@ fn headline(company: &DisplayedCompany) -> String {
         Some(RunEndReason::Bankruptcy) => {
             format!("Day {}. The company is bankrupt; the score is $0.", seen.day)
         }
-        Some(RunEndReason::Abandoned) => format!("Day {}. The run was given up; it has no score.", seen.day),
+        Some(RunEndReason::Abandoned) => format!("Day {}. The run was given up and has no score.", seen.day),
         Some(RunEndReason::Lesson) => {
             format!("Day {}. The lesson ends with {}.", seen.day, dollars(seen.cash))
         }
@@ -325,7 +325,7 @@ fn ranking_lines<'a>(
                 let text = first_fitting([caveat.clone(), first], width as usize);
                 lines.push(TextLine::from(canvas.span(text, Role::Dim)));
             }
-            // After a bankruptcy, the explanation uses the space.
+            // After a bankruptcy, the explanation of the bankruptcy uses the space.
             false => {}
         }
     }
@@ -413,7 +413,7 @@ fn best_channel_texts(skill: &BestTriedChannelSpend) -> Vec<String> {
         (Some(share), Some((group, best))) => {
             let channel = best.channel.replace('_', " ");
             let share = percent(share, 0);
-            vec![format!("{share} · {}: {channel} of {} tried", group.group, group.tried), share]
+            vec![format!("{share} · {}: {channel}, best of {} tried", group.group, group.tried), share]
         }
         _ if skill.groups.iter().all(|group| group.tried == 1) => {
             vec!["– · no group had more than one channel".to_owned(), "– · one channel per group".to_owned()]

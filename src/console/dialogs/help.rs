@@ -110,7 +110,8 @@ fn styled_row(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) ->
     ]
 }
 
-/// Returns the sections in display order. List navigation is near the end, because it is the same in all lists.
+/// Returns the sections in display order. List navigation is near the end, because the navigation keys are the same in
+/// all lists.
 fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
     let with_global = |scopes: &[Scope]| {
         let replayed = replay && !scopes.first().is_some_and(|scope| scope.is_text());

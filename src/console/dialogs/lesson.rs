@@ -211,7 +211,7 @@ impl Dialog for LessonDialog {
         let offered = self.actions(page).contains(&action);
         match action {
             Action::ContinueLesson => return self.continue_lesson(page),
-            // The keys that show the task also hide it. Otherwise the second key would show a hint.
+            // The keys that show the task also hide the task.
             Action::HideLessonPage => return DialogResponse::close(),
             Action::AnswerQuestion if offered => self.answer = Some(AnswerField::default()),
             Action::NextHint if offered => {

@@ -89,7 +89,7 @@ pub trait Dialog {
         None
     }
 
-    /// Returns the place and the content of the text that is being edited. The place is in the notation of the record.
+    /// Returns the recorded name and the content of the text that is being edited.
     fn edited_text(&self) -> Option<(String, String)> {
         None
     }
@@ -123,7 +123,7 @@ pub trait Dialog {
         DialogResponse::stay()
     }
 
-    /// Takes the answer of the worker if it has arrived.
+    /// Takes the answer of the worker if the answer has arrived.
     fn take_answers(&mut self) {}
 
     /// Sets the run report, for dialogs that show it.

@@ -149,8 +149,8 @@ impl CommandPalette {
         let named: Vec<FuzzyMatch> = named.map(|at| (at, Vec::new())).collect();
         self.matches.extend(named);
         // An exact code ranks first. Tools, commands and screens whose names contain the typed text as a word rank
-        // before queries and texts. Scattered letters rank lower, and words of a description last. Without input,
-        // recently used tools are first.
+        // before queries and texts. Matches of scattered letters rank lower, and matches in descriptions rank last.
+        // Without input, recently used tools are first.
         let entries = &self.entries;
         let recent = |at: usize| match typed.is_empty() {
             true => self.recent.iter().position(|tool| tool.name() == entries[at].title),

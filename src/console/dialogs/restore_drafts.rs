@@ -19,7 +19,7 @@ pub struct RestoreDraftsDialog {
 }
 
 impl RestoreDraftsDialog {
-    /// Opens the dialog with pairs of a place and the text of its draft.
+    /// Opens the dialog with the recorded name and the text of each draft.
     pub fn new(texts: Vec<(String, String)>) -> RestoreDraftsDialog {
         RestoreDraftsDialog { texts }
     }

@@ -23,7 +23,7 @@ pub struct TakeOverDialog {
 }
 
 impl TakeOverDialog {
-    /// Opens the dialog for a branch that starts at a day, which is before a week.
+    /// Opens the dialog for a branch that starts on `day`, before `week` begins.
     pub fn new(day: u32, week: u32) -> TakeOverDialog {
         TakeOverDialog { day, week, selected: 0 }
     }

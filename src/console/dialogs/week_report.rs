@@ -131,8 +131,8 @@ impl Dialog for WeekReportDialog {
 }
 
 impl WeekReportDialog {
-    /// Returns the lines that fit into a height, and the positions of selectable lines. Optional lines are dropped
-    /// first.
+    /// Returns the lines that fit into a height, and the positions of selectable lines. If the height is small,
+    /// optional lines are omitted first.
     fn report_lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -392,7 +392,7 @@ fn news_section<'a>(
             week_report.week.research_finished,
             "completed project or study",
             "completed projects and studies",
-            // Projects and studies are on different screens. The notifications below name each of them.
+            // Projects and studies are on different screens. The notifications below name each project and each study.
             None,
         ),
     ];

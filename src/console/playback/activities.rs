@@ -89,7 +89,7 @@ fn presence_summary(presence: &Presence) -> String {
             None | Some(DetachCause::Quit) => "closed".to_owned(),
             Some(DetachCause::EndOfInput) => "closed at the end of the input".to_owned(),
             Some(DetachCause::Signal) => "closed by a signal".to_owned(),
-            Some(DetachCause::Hangup) => "closed with its terminal".to_owned(),
+            Some(DetachCause::Hangup) => "closed because the terminal closed".to_owned(),
             Some(DetachCause::Strict) => "closed after a rejection (strict mode)".to_owned(),
             Some(DetachCause::Withdrawn) => "closed: the participant withdrew".to_owned(),
         },

@@ -15,7 +15,7 @@ const MIN_SCREEN_WIDTH: u16 = 80;
 /// Minimum and maximum width of the pane, in columns.
 const DECISIONS_WIDTH: (u16, u16) = (40, 60);
 
-/// Which entries of the record the pane shows.
+/// Filter for the entries of the record that the pane shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EntryFilter {
     /// All recorded entries.

@@ -1,4 +1,4 @@
-//! Descriptions of the decisions of a week: short ones for the pane, and complete ones as a text.
+//! Descriptions of the decisions of a week: short descriptions for the pane, and complete descriptions as a text.
 
 use super::activities;
 use crate::screens::journal::entries::format_arguments;

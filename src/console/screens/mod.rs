@@ -59,18 +59,18 @@ screens! {
     Sql in sql,
     /// The journal of the run.
     Journal in journal,
-    /// Hidden state, if the run permits it.
+    /// Hidden state, if the run permits inspections.
     Xray in xray,
 }
 
 /// The state of a screen, which receives worker responses and query results.
 pub trait ScreenState {
-    /// Returns the readings that the screen needs from the database.
+    /// Returns the queries whose results the screen needs from the database.
     fn readings(&self) -> &'static [Reading] {
         &[]
     }
 
-    /// Stores the query result of a reading.
+    /// Stores the result of a screen query.
     fn apply_rows(&mut self, _: Reading, _: &QueryResult, _: &ScreenContext<'_>) {}
 
     /// Called when the screen becomes visible, and when the company changes while the screen is visible. Returns
@@ -92,7 +92,7 @@ pub trait ScreenState {
         Vec::new()
     }
 
-    /// Called when the screen becomes visible and when the user leaves it.
+    /// Marks all items as seen. Called when the screen becomes visible and when the user leaves the screen.
     fn mark_seen(&mut self) {}
 
     /// Returns the number of unread items, which the tab shows as a badge.
@@ -115,7 +115,7 @@ pub trait ScreenState {
         0
     }
 
-    /// Returns the kind and the name of the open object in the notation of the record.
+    /// Returns the recorded kind and the recorded name of the open object.
     fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         None
     }

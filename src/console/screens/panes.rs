@@ -1,7 +1,7 @@
 //! Screens that consist of panes: the trait of panes, and the code that manages focus, borders, filters, clicks and zoom.
 //!
-//! The screen owns the state, because its panes share it. Each pane is a type without state that defines the behavior
-//! and the drawing of one area.
+//! The screen owns the state, because the panes of the screen share the state. Each pane is a type without state that
+//! defines the behavior and the drawing of one area.
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -26,7 +26,7 @@ pub struct PaneBorder {
     pub shows_keys_always: bool,
 }
 
-/// Area, focus and index with which a pane is drawn.
+/// Area, focus and index of a pane, for drawing the pane.
 #[derive(Debug, Clone, Copy)]
 pub struct PanePlacement {
     /// Area of the pane. In [`Pane::draw`], the area inside the border.
@@ -101,7 +101,7 @@ pub trait Pane<S> {
         }
     }
 
-    /// Handles a click on a row. A second click on the same row opens it.
+    /// Handles a click on a row. A second click on the same row opens the row.
     fn handle_click(&self, screen: &mut S, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(table) = self.table_mut(screen) else { return Vec::new() };
         let before = table.selected();
@@ -127,7 +127,7 @@ pub trait Pane<S> {
         context: &ScreenContext<'_>,
     );
 
-    /// Draws the pane with its border. Panes with more than one box override this.
+    /// Draws the pane with its border. Panes with more than one box override this method.
     fn draw_with_border(
         &self,
         screen: &S,
@@ -175,8 +175,8 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Moves the focus to a pane.
     fn set_focused_pane(&mut self, name: Self::PaneId);
 
-    /// Returns the overlay that temporarily covers the panes and receives all keys. Clicks on its rows have the number
-    /// of panes as their pane index.
+    /// Returns the overlay that temporarily covers the panes and receives all keys. For clicks on rows of the overlay,
+    /// the pane index is the number of panes.
     fn overlay(&self) -> Option<&'static dyn Pane<Self>> {
         None
     }

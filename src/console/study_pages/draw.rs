@@ -104,7 +104,7 @@ impl StudyPage {
                 let kept = "Everything you confirm is saved. You can leave at any time and continue later with your label.";
                 let palette = key(Action::Palette);
                 let withdraw = format!(
-                    "You can withdraw at any time ({palette} {}). This erases everything you did in this study.",
+                    "You can withdraw at any time ({palette} {}). Withdrawing erases everything you did in this study.",
                     Action::Withdraw.entry().title
                 );
                 let pause = format!(
@@ -126,7 +126,7 @@ impl StudyPage {
             StudyPageKind::Withdraw(None) => {
                 let (yes, no) = (key(Action::Confirm), key(Action::Cancel));
                 let erased =
-                    "Withdrawing permanently erases everything you did in this study. It cannot be undone.";
+                    "Withdrawing permanently erases everything you did in this study and cannot be undone.";
                 (
                     "Withdraw",
                     vec![

@@ -66,15 +66,15 @@ enum StudyPageKind {
     Loading,
     /// Page on which the participant agrees to the consent text or declines.
     Consent(ConsentText),
-    /// Page before the practice.
+    /// Page that is shown before the practice starts or resumes.
     Practice { resumed: bool, may_pass: bool },
-    /// Page before the session.
+    /// Page that is shown before the session starts or resumes.
     Session { resumed: bool },
     /// Page after the participant left a run that has not ended.
     Left,
     /// Page on which the participant confirms a withdrawal, first with a key, then by typing a word.
     Withdraw(Option<TextField>),
-    /// Page after the participant declined.
+    /// Page that is shown after the participant declined consent.
     Declined,
     /// Page after a withdrawal, with a description of the data that is kept.
     Withdrawn(String),

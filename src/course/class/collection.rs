@@ -48,8 +48,8 @@ pub struct CollectionInput<'a> {
 }
 
 impl ClassCollection {
-    /// Collects the submissions of a class and stores them in its folder. `progress` is called with the number of
-    /// processed runs and the total number of runs.
+    /// Collects the submissions of a class and stores the collection in the folder of the class. `progress` is called
+    /// with the number of processed runs and the total number of runs.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be read or written, or if the reference play of the lesson cannot be simulated.
@@ -178,8 +178,8 @@ impl CollectionBuilder<'_> {
         self.runs.push(run);
     }
 
-    /// Adds records of one run that contradict each other. If several records are valid, none of them counts, and each
-    /// one is reported.
+    /// Adds records of one run that contradict each other. If several records are valid, none of these records counts,
+    /// and each record is reported.
     fn add_conflicting_records(&mut self, records: &[FoundRun]) {
         let found_runs: Vec<&FoundRun> =
             records.iter().filter(|found| self.belongs_to_class(&found.manifest)).collect();

@@ -74,7 +74,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
     let part = stamp.map_or(0, |stamp| (stamp.part as usize).wrapping_sub(1));
     if let Some(lesson) = lesson.filter(|lesson| part >= lesson.plan.parts.len()) {
         let message = format!(
-            "its first event names a part that does not exist; the lesson has {}",
+            "the first event names a part that does not exist; the lesson has {}",
             lesson.plan.parts.len()
         );
         return Err(RunError::InvalidRequest(message));

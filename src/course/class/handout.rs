@@ -117,7 +117,7 @@ impl Handout {
             || !is_run_id(&file.class)
             || participant_folder(Path::new(""), &file.label).is_err()
         {
-            return Err(refused("its label, its class or the name of its run is invalid"));
+            return Err(refused("the label, the class or the name of the run is invalid"));
         }
         let stamp = HandoutStamp { class: file.class, run: file.run };
         let content = match (file.lesson, file.past) {

@@ -34,21 +34,23 @@ impl HandoutRun {
             Err(RunError::InvalidRequest(format!("run {} cannot be handed out: {why}", manifest.id)))
         };
         if manifest.lesson.is_some() {
-            return refused("it belongs to a lesson. Hand out the lesson itself");
+            return refused("the run belongs to a lesson. Hand out the lesson itself");
         }
         if manifest.study.is_some() || (manifest.mode == Mode::Baseline && trajectory.end_line().is_none()) {
             return refused(
-                "an unfinished baseline run and a run of a study cannot be branched. End the run first, or choose another one",
+                "an unfinished baseline run and a run of a study cannot be branched. End the run first, or choose another run",
             );
         }
         if manifest.voice.as_ref().is_some_and(|model| model.judge) {
             return refused(
-                "a language model judged its posts, and judgments of students' posts could not be verified",
+                "a language model judged the posts of the run, and judgments of students' posts could not be verified",
             );
         }
         let day = verify(folder)?.day;
         if day >= manifest.days {
-            return refused("it has no day left. Branch it at an earlier week and hand out the branch");
+            return refused(
+                "the run has no day left. Branch the run at an earlier week and hand out the branch",
+            );
         }
         let closing = trajectory.lines.iter().rposition(Line::closes_days).map_or(1, |at| at + 1);
         let lines = trajectory.lines.into_iter().take(closing).collect();

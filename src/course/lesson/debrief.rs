@@ -1,6 +1,6 @@
 //! The debrief of a part of a lesson: compares the student's play with the reference play and the pitfall play.
 //!
-//! All plays start from the same state and are simulated in memory. The student's play is re-simulated as well.
+//! All plays start from the same state and are simulated in memory. The student's play is also re-simulated.
 //! Decisions are compared only if this re-simulation reproduces the recorded cash of every day.
 
 use serde::{Serialize, Serializer};

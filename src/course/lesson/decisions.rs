@@ -33,7 +33,7 @@ pub struct DifferentDecision {
 pub enum DecisionDifference {
     /// The tool's settings differ.
     Settings {
-        /// The settings that differ.
+        /// The settings that differ between the two plays.
         settings: Vec<SettingDifference>,
     },
     /// The one-time calls of the tool differ.

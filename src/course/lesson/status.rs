@@ -51,7 +51,7 @@ pub struct LessonStatus {
     pub screens: Option<Vec<String>>,
     /// Tools that the student can use; `None` for all tools.
     pub tools: Option<Vec<ToolId>>,
-    /// Whether the lesson sets the capacity, so that the student cannot.
+    /// Whether the lesson sets the capacity, so that the student cannot set the capacity.
     pub has_automatic_capacity: bool,
     /// Whether the student can run a week without entering forecasts or a rationale.
     pub skips_forecasts: bool,
@@ -68,7 +68,7 @@ pub struct LessonQuestion {
     pub unit: String,
     /// The student's guess. For a question with choices, the number of the selected choice, counted from 1.
     pub guess: Option<f64>,
-    /// The actual value; `None` before it is known.
+    /// The actual value that the student had to guess; `None` before the value is known.
     pub outcome: Option<f64>,
     /// Whether the outcome is shown at the end of the part instead of the step.
     #[serde(skip)]
@@ -87,13 +87,13 @@ pub struct GoalStatus {
     /// Whether `bound` is a maximum.
     #[serde(skip)]
     pub wants_least: bool,
-    /// Required share of the reference play's value, if the goal is relative to it.
+    /// Required share of the reference play's value, if the goal is relative to the reference play.
     #[serde(skip)]
     pub of_good_play: Option<f64>,
     /// Whether the value is in dollars.
     #[serde(skip)]
     pub in_dollars: bool,
-    /// Whether the goal was reached; `None` before it is judged.
+    /// Whether the goal was reached; `None` before the goal is judged.
     pub met: Option<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! Writes rows immediately. These rows do not change before the commit.
+//! Writes rows immediately, because these rows do not change again before the commit.
 
 use rusqlite::{Transaction, params};
 

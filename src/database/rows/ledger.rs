@@ -38,7 +38,7 @@ impl LedgerWriter {
             return;
         }
         let (next, lead_cost) = (self.next, -self.params.leads.lead_acquisition_cost);
-        // Only the newest day can already exist.
+        // If the ledger already contains this day, the day is the newest one.
         let begun = self.days.last().filter(|last| last.day() == facts.day);
         let anew = || {
             begun.map_or_else(|| LedgerDay::new(facts.day, next, lead_cost), |last| LedgerDay::clone(last))

@@ -78,7 +78,7 @@ impl NoticeWriter {
         (today == known).then_some(today as u32)
     }
 
-    /// Returns whether a customer has no repeated loss yet. Marks the customer.
+    /// Returns whether a customer has no repeated loss yet, and records that the customer now has one.
     fn is_new_loss(&mut self, customer: u32) -> bool {
         let at = customer as usize;
         if self.is_loss_repeated.len() <= at {
@@ -87,7 +87,7 @@ impl NoticeWriter {
         !std::mem::replace(&mut self.is_loss_repeated[at], true)
     }
 
-    /// Returns the inbox day with this number. Only the newest day can already exist.
+    /// Returns the inbox day with this number. If the inbox already contains the day, it is the newest one.
     fn notice_day(&mut self, day: u32) -> &mut NoticeDay {
         let begun = self.inbox.days.last().filter(|last| last.day == day);
         let anew = || begun.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));

@@ -15,7 +15,7 @@ pub(super) struct ProfileWordWriter {
 }
 
 impl ProfileWordWriter {
-    /// Writes the words of the groups that become known with the facts.
+    /// Writes the words of the groups that become known through these facts.
     pub(super) fn write(
         &mut self,
         transaction: &Transaction<'_>,

@@ -9,7 +9,7 @@ use super::week_resimulation::{ExcludedCauses, RemovableCause, WeekResimulation}
 use novamind_record::figures::SimulatedWeek;
 use novamind_tools::Rejection;
 
-/// Maximum number of separately evaluated causes. It limits the number of simulations.
+/// Maximum number of causes that are evaluated separately. This maximum limits the number of simulations.
 const MAX_VALUED_CAUSES: usize = 6;
 
 /// An explanation of the change in a figure from one week to the next.
@@ -17,7 +17,7 @@ const MAX_VALUED_CAUSES: usize = 6;
 pub struct ChangeExplanation {
     /// Number of the explained week.
     pub week: u32,
-    /// The explained figure.
+    /// The figure whose change is explained.
     pub quantity: WeekQuantity,
     /// Number of days in the previous week and in the explained week. The last week of a run can be shorter.
     pub days: [u32; 2],
@@ -43,7 +43,7 @@ impl ChangeExplanation {
 /// The contribution of one cause to the change in a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CauseContribution {
-    /// The cause that contributed.
+    /// Cause that contributed to the change in the figure.
     pub cause: Cause,
     /// Contribution of the cause to the change, in the unit of the figure.
     pub amount: f64,
@@ -55,7 +55,7 @@ pub struct CauseContribution {
 #[derive(Clone)]
 struct CauseGroup {
     cause: Cause,
-    /// Indices of the members among the calls or inputs, one bit for each.
+    /// Bit mask of the members: a bit's position is the index of a member in the list of calls or in the list of inputs.
     members: u32,
     details: Vec<CauseDetail>,
 }
@@ -87,7 +87,7 @@ impl WeekResimulation {
             return Ok(None);
         };
         let all_calls = ExcludedCauses { calls: all_members(&calls), inputs: all_members(&inputs) };
-        // One-time payments of the previous week do not recur in the explained week.
+        // One-time purchases of the previous week are not paid for again in the explained week.
         let earlier = value_or_zero(quantity, &self.week_before().without_purchases()) - values.0;
         if earlier != 0.0 {
             let cause = Cause::EarlierPurchases;
@@ -214,7 +214,7 @@ fn all_members(groups: &[CauseGroup]) -> u32 {
     groups.iter().fold(0, |all, group| all | group.members)
 }
 
-/// Returns the members of all groups without a bit in `acting`.
+/// Returns the members of all groups whose bit in `acting` is not set.
 fn excluded_members(groups: &[CauseGroup], acting: u32) -> u32 {
     let without = groups.iter().enumerate().filter(|(at, _)| acting & (1 << at) == 0);
     without.fold(0, |all, (_, group)| all | group.members)

@@ -13,7 +13,7 @@ pub enum Cause {
     Parameters,
     /// The tools with the smallest contributions, merged into one cause.
     OtherCalls,
-    /// One-time purchases that were paid in the previous week.
+    /// One-time purchases that were paid for in the previous week.
     EarlierPurchases,
     /// A setting that continued in both weeks, whether or not the player changed the setting.
     Continued(SuspendedSetting),
@@ -101,7 +101,7 @@ fn tool_call_name(tool: ToolId) -> &'static str {
     }
 }
 
-/// A difference of a cause between the two weeks.
+/// A detail of a cause: a value that differs between the two weeks, or a number of occurrences.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CauseDetail {
     /// A setting with different values in the two weeks.

@@ -71,7 +71,8 @@ impl WeekPair<'_> {
         found
     }
 
-    /// Fixes world inputs at their values of the previous week. Utilization is relative to days without the player's changes.
+    /// Fixes world inputs at their values of the previous week. `undone` contains the days of the explained week
+    /// without the player's calls. The fixed utilization is computed from the usage on these days.
     pub(super) fn fix_inputs(
         &self,
         causes: impl Iterator<Item = Cause>,
@@ -93,7 +94,8 @@ impl WeekPair<'_> {
         fixed_inputs
     }
 
-    /// Returns the utilization that the usage of the previous week would cause, with the random draws of the same weekday.
+    /// Returns, for each day of the explained week, the factor that scales the load to the usage of the same weekday
+    /// of the previous week. The random draws also come from that earlier day.
     fn fix_service(&self, undone: &[DayFigures]) -> Vec<FixedService> {
         let week = self.start.params.run.days_per_week;
         let used = |days: &[DayFigures], wanted: u32| {

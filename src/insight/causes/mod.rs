@@ -39,7 +39,7 @@ use week_resimulation::WeekResimulation;
 pub enum CauseProgress {
     /// Current day and last day of the simulation up to the explained week.
     Replaying(u32, u32),
-    /// Number of weeks re-simulated and the minimum total.
+    /// Number of weeks re-simulated so far, and the minimum number of weeks to re-simulate.
     Simulated(usize, usize),
 }
 

@@ -26,7 +26,7 @@ fn coalition_weights(causes: usize) -> Vec<f64> {
     let mut weights = Vec::with_capacity(causes);
     let mut choices = 1.0;
     for before in 0..causes {
-        // `causes` times the number of sets of this size that exclude the cause.
+        // The denominator is `causes` times the number of sets of this size that exclude the cause.
         weights.push(1.0 / (causes as f64 * choices));
         choices = choices * (causes - 1 - before) as f64 / (before + 1) as f64;
     }

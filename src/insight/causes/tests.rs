@@ -1,4 +1,5 @@
-//! Changed settings are found with the same effect as in a branch without them. Contributions add up. Hidden state
+//! The contribution of a changed setting equals the difference to a branch without the change. Contributions add up.
+//! Hidden state
 //! stays hidden.
 
 use std::ops::ControlFlow;

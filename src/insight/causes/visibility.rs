@@ -6,7 +6,7 @@ use novamind_record::mode::Mode;
 use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
-/// The level of detail in which world inputs are shown.
+/// The level of detail at which world inputs are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum InputVisibility {
     /// All hidden market inputs are shown as a single cause.
@@ -29,7 +29,7 @@ pub(crate) fn input_visibility(manifest: &Manifest, ended: bool) -> Result<Input
         (Mode::Sandbox | Mode::Lesson, false) => Ok(InputVisibility::MarketAsOne),
         (Mode::Baseline, false) => Err(Rejection::new(
             "not_in_this_mode",
-            "an unfinished baseline run rejects \"why\" and \"whatif\", which re-simulate the company, because agents cannot re-simulate it",
+            "\"why\" and \"whatif\" are not available in an unfinished baseline run, because agents cannot re-simulate the company",
         )),
     }
 }

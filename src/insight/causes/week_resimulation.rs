@@ -58,7 +58,7 @@ pub(super) struct WeekResimulation {
     /// Tools that the player called in the week.
     pub(super) calls: Vec<RemovableCause>,
     pub(super) inputs: Vec<RemovableCause>,
-    /// Days of the week without any call; empty until simulated.
+    /// Figures of the week's days, simulated without the player's calls; empty before this simulation.
     days_without_calls: Vec<DayFigures>,
     simulated_weeks: BTreeMap<ExcludedCauses, SimulatedWeek>,
     /// Causes that continue from the previous week.
@@ -155,7 +155,7 @@ impl WeekResimulation {
         wanted: &[ExcludedCauses],
         progress: CauseProgressFn<'_>,
     ) -> Option<()> {
-        // Utilization is relative to days without any call.
+        // Fixed inputs include the utilization, which is computed from the usage in a simulation without the player's calls.
         let undone = ExcludedCauses { calls: (1 << self.calls.len()) - 1, inputs: 0 };
         if self.days_without_calls.is_empty() && wanted.iter().any(|without| without.inputs != 0) {
             let outcome = self.simulate(undone, &mut |_| ControlFlow::Continue(()))?;

@@ -57,13 +57,13 @@ pub(crate) struct RejectedCall {
     pub seq: Option<u64>,
     /// Decision day of the call.
     pub day: u32,
-    /// Called tool.
+    /// Tool of the rejected call.
     pub tool: ToolId,
     /// Why the call was rejected.
     pub rejection: Rejection,
 }
 
-/// Re-simulates the days after a state with edited steps. Days after the last step keep the current settings.
+/// Re-simulates the days after a state, with edits to the recorded steps. Days after the last step keep the current settings.
 /// `progress` is called once per simulated day. Returns `None` if `progress` stops the simulation.
 pub(crate) fn simulate_branch(
     start: &MemorySnapshot,
@@ -113,7 +113,7 @@ pub(crate) fn first_different_day(
     Some(None)
 }
 
-/// A re-simulation in progress.
+/// A running re-simulation of recorded days with edits.
 struct BranchSimulation<'a> {
     edits: &'a Edits,
     remaining_steps: &'a [RecordedStep],

@@ -28,7 +28,7 @@ impl RenumberedCall {
             let number = here.customer_number(group, n);
             if number.is_none() {
                 let message = format!(
-                    "customer {customer} of the run, number {n} of {group}, does not exist in this branch: it has fewer leads"
+                    "customer {customer} of the run, number {n} of {group}, does not exist in this branch, which has fewer leads"
                 );
                 absent.push(Rejection::new("customer_not_found", message));
             }

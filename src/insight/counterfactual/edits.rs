@@ -63,9 +63,9 @@ pub(crate) struct Redraw {
 pub(crate) struct AddedCall {
     /// Decision day; the call follows the recorded calls of that day.
     pub day: u32,
-    /// Called tool.
+    /// Tool of the added call.
     pub tool: ToolId,
-    /// Arguments of the call.
+    /// Arguments of the added call.
     pub args: Value,
 }
 

@@ -18,7 +18,7 @@ pub(crate) struct MemorySnapshot {
     pub overrides: Overrides,
     /// Random streams of the run.
     pub streams: Streams,
-    /// Names of the enterprises.
+    /// Names of the enterprises of the run.
     pub names: EnterpriseNames,
     /// State of the company and its market.
     pub world: World,

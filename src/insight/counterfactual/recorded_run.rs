@@ -14,18 +14,19 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::is_lesson_over;
 use novamind_session::{Origin, read_origin};
 
-/// Maximum number of states in memory besides day 0. Each state contains the complete company.
+/// Maximum number of states that are kept in memory, in addition to the state of day 0. Each state contains the
+/// complete company.
 const MAX_SNAPSHOTS: usize = 4;
 
 /// The recorded steps of a run, with states from which the steps can be re-simulated.
 pub(crate) struct RecordedRun {
     /// Path of the trajectory file.
     path: PathBuf,
-    /// Length of the trajectory when it was read, in bytes.
+    /// Length of the trajectory at the time of the last read, in bytes.
     length_bytes: u64,
     pub(crate) manifest: Manifest,
     steps: Vec<RecordedStep>,
-    /// Whether the run has ended, including the lesson to which it belongs.
+    /// Whether the run has ended. For a run of a lesson, the lesson must also be over.
     pub(crate) is_ended: bool,
     snapshots: BTreeMap<u32, Arc<MemorySnapshot>>,
 }
@@ -142,7 +143,7 @@ impl RecordedRun {
         });
         let Some(differs) = differs.filter(|_| day > 0) else { return Ok(()) };
         Err(RunError::InvalidRequest(format!(
-            "{}: the re-simulation of day {day} differs from the record (different: {}). Nothing was changed. Find the line with `novamind verify`",
+            "{}: the re-simulation of day {day} differs from the record (different: {}). Nothing was changed. To find the line, run `novamind verify`",
             self.path.display(),
             differs.part
         )))

@@ -27,22 +27,23 @@ pub struct RecordedCall {
     pub seq: u64,
     /// Decision day of the call.
     pub day: u32,
-    /// Called tool.
+    /// Tool of the recorded call.
     pub tool: ToolId,
-    /// Arguments of the call.
+    /// Arguments of the recorded call.
     pub args: Value,
     /// Whether the run accepted the call.
     pub accepted: bool,
-    /// The call that this call undid or redid, if any. The restored settings stay even if the other call is edited.
+    /// The call that this call undid or redid, if any. An edit of that call does not change the settings that this
+    /// call restored.
     pub reversal: Option<Reversal>,
 }
 
 /// A recorded decision of the player.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RecordedDecision {
-    /// A tool call.
+    /// A tool call by the player.
     Call(RecordedCall),
-    /// A parameter change.
+    /// A parameter change in a debug run.
     Parameter {
         /// Line number of the change in the trajectory.
         seq: u64,
@@ -67,7 +68,7 @@ impl RecordedDecision {
         }
     }
 
-    /// Returns the decision day.
+    /// Returns the decision day of the call or parameter change.
     pub fn day(&self) -> u32 {
         match self {
             RecordedDecision::Call(RecordedCall { day, .. }) | RecordedDecision::Parameter { day, .. } => {
@@ -135,7 +136,7 @@ pub(crate) struct RecordedDays {
     pub state_hash: String,
     /// Hash of each part of the state, by name.
     pub parts: BTreeMap<String, String>,
-    /// Language model's scores of the player's posts.
+    /// Scores that the language model gave to the player's posts.
     pub scores: Vec<JudgedPost>,
 }
 

@@ -14,7 +14,7 @@ use novamind_world::random::Streams;
 
 /// Number of simulated leads per market.
 pub const LEAD_SAMPLE_SIZE: u32 = 2000;
-/// Seed of the simulated leads. The seed is equal in every run and differs from the seed of the run's customers.
+/// Seed of the simulated leads. The seed is the same in every run and differs from the seed of the run's customers.
 const SAMPLE_SEED: u64 = 0x5EED;
 const PRICE_STEPS: usize = 60;
 const CURVE_QUANTILES: [f64; 3] = [0.1, 0.5, 0.9];
@@ -98,15 +98,15 @@ struct Market {
 pub struct CurveExplorer {
     /// Group whose curve is shown.
     pub group: Group,
-    /// Source of the curve.
+    /// Source of the curve: true traits or estimates.
     pub basis: CurveBasis,
     /// Current terms of each plan.
     pub plans: ByPlan<PlanPoint>,
-    /// Discount for individual leads of every channel, $ per month.
+    /// Discount for individual leads from every channel, $ per month.
     pub discount: f64,
     /// Discount for subscribers, $ per month. The discount also reduces the first bill.
     pub ongoing_discounts: ByPlan<f64>,
-    /// Points of the curve, sorted by price from 0.
+    /// Points of the curve, in ascending order of price, starting at 0.
     pub points: Vec<CurvePoint>,
     /// The likely market, followed by the two extreme markets that match the estimates.
     markets: Vec<Market>,

@@ -13,7 +13,7 @@ use novamind_world::market::competitors::{CompetitorEvent, next_move, severity};
 pub struct NextCompetitorMove {
     /// Day of the next move.
     pub day: u32,
-    /// Random size of the move, scaled by its growth over the run.
+    /// Random size of the move, scaled by the growth of moves over the run.
     pub sampled_size: f64,
     /// Share of the shared quality bank that can be copied.
     pub copied_share: f64,

@@ -30,7 +30,8 @@ pub struct DayDifference {
     pub figures: Vec<(String, f64, f64)>,
     /// Number of customers who are subscribers at the end of both days and differ.
     pub differing_customers: usize,
-    /// Number of customers who are subscribers only at the end of the first day, and the same number for the second day.
+    /// Number of customers who are subscribers at the end of the first day only, and number of customers who are
+    /// subscribers at the end of the second day only.
     pub only_in_one: (usize, usize),
     /// The first differing customers, sorted by customer number.
     pub first_customers: Vec<CustomerDifference>,
@@ -39,7 +40,7 @@ pub struct DayDifference {
 /// The differences of a customer between the ends of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CustomerDifference {
-    /// Customer number.
+    /// Number of the customer whose values differ.
     pub customer: u32,
     /// Group of the customer, from the first day if the customer is a subscriber at the end of that day.
     pub group: Group,
@@ -186,7 +187,7 @@ impl Inspector<'_> {
             return Ok(RunDifference { last_day, first_day, difference: None });
         };
         let moment = |run: &Session, inspection_permit: &InspectionPermit, seen: &StateHashRecorder| {
-            // The end of a requested day was already recorded during the simulation.
+            // If the user requested a day, the end of this day was already recorded during the simulation.
             if let Some(end) = seen.take(day) {
                 return Ok(end);
             }

@@ -22,7 +22,8 @@ pub struct EvaluatedPlan {
     pub quality_if_answered: f64,
     /// Upper price limit, $ per seat per month. The enterprise accepts prices below the limit.
     pub accepts_below: f64,
-    /// Whether the enterprise accepts every price, because the quality exceeds the highest quality that it requires.
+    /// Whether the enterprise accepts every price, because the perceived quality exceeds the highest quality that the
+    /// enterprise requires.
     pub accepts_any_price: bool,
     /// Price that the enterprise would name in its next turn, $ per seat per month; 0 if the enterprise would not answer.
     #[serde(rename = "would_name")]
@@ -50,7 +51,7 @@ pub struct EnterpriseThreadDay {
     pub remaining_turns: u32,
     /// Relationship of the enterprise to the company, 0..=1.
     pub relationship: f64,
-    /// Change in the relationship if the player answers late today; never positive.
+    /// Change in the relationship if the player answers today and the answer is late; never positive.
     pub late_penalty: f64,
     /// Day on which the enterprise will answer; `None` on the player's turn.
     pub reply_day: Option<u32>,

@@ -53,7 +53,7 @@ pub(crate) struct QualityBanks {
     pub(crate) shared_bonus: f64,
     /// Part of `shared_bonus` that competitors have not copied.
     pub(crate) shared: f64,
-    /// Quality gain of each group by targeted development.
+    /// Quality gain of each group from targeted development.
     pub(crate) group_bonus: ByGroup<f64>,
     /// Part of `group_bonus` that competitors have not copied.
     pub(crate) group_banks: ByGroup<f64>,
@@ -77,11 +77,11 @@ pub(crate) struct GroupDayEnd {
     pub(crate) quality_floor: f64,
     /// Market cap of the group; 0 means no limit.
     pub(crate) market_cap: f64,
-    /// Factor of the economy on budgets.
+    /// Factor by which the economy changes budgets.
     pub(crate) willingness_to_pay: f64,
-    /// Factor of the economy on the speed of replies.
+    /// Factor by which the economy changes the speed of replies.
     pub(crate) deal_velocity: f64,
-    /// Factor of the economy on the drift of seats.
+    /// Factor by which the economy changes the drift of seats.
     pub(crate) seat_count: f64,
 }
 
@@ -122,7 +122,7 @@ impl HiddenDayRecorder {
         HiddenDayRecorder { keeps_threads: true, ..HiddenDayRecorder::default() }
     }
 
-    /// Returns whether the recorder includes threads.
+    /// Returns whether the recorder records threads.
     pub(crate) fn keeps_threads(&self) -> bool {
         self.keeps_threads
     }
@@ -231,8 +231,8 @@ impl DayObserver for HiddenDayRecorder {
     }
 }
 
-/// Returns whether the enterprise's answer in a thread can still change something. The thread is open, or it is dead
-/// and an answer is pending.
+/// Returns whether the enterprise's answer in a thread can still change something. True if the thread is open, or if
+/// the thread is dead and an answer is pending.
 fn is_reply_pending(thread: &Thread, reappearing: bool) -> bool {
     thread.is_open() || thread.active_turn(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
 }

@@ -20,7 +20,7 @@ pub(crate) struct HiddenTables {
     shown: Option<CustomersSnapshot>,
 }
 
-/// The content of `hidden.customers`.
+/// The state that the table `hidden.customers` currently shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum CustomersSnapshot {
     /// The current state, including calls since the last simulated day.

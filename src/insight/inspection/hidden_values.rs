@@ -11,7 +11,7 @@ use novamind_world::identifiers::{ByGroup, Group};
 /// True values of a group at the end of a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueGroupValues {
-    /// Whether the group had been discovered by the day. Other groups have no leads.
+    /// Whether the group had been discovered by the day. Undiscovered groups have no leads.
     pub is_known: bool,
     /// Reputation of the company in the group.
     pub reputation: f64,

@@ -1,4 +1,4 @@
-//! Recorder of the days of one individual.
+//! A recorder of one individual's sign-up decision and of the individual's state on each later day.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -29,11 +29,11 @@ pub struct LeadPlanTerms {
 /// An individual's decision as a lead.
 #[derive(Debug, Clone)]
 pub struct SignupDecision {
-    /// Day of the decision.
+    /// Day on which the individual decided as a lead.
     pub day: u32,
     /// Source through which the lead arrived.
     pub source: Source,
-    /// Evaluation of each plan.
+    /// The lead's evaluation of each plan.
     pub plans: ByPlan<LeadPlanTerms>,
     /// The plan with the largest surplus before noise, or plan A if no plan has a surplus. The lead accepts or rejects
     /// this plan.
@@ -60,7 +60,7 @@ pub enum SubscriberOutcome {
 /// A subscriber's state on a day, at the time of the decisions.
 #[derive(Debug, Clone)]
 pub struct IndividualDay {
-    /// Day of the state.
+    /// Day to which this state of the subscriber belongs.
     pub day: u32,
     /// Plan of the subscriber at the start of the day.
     pub plan: Plan,

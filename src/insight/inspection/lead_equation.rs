@@ -80,7 +80,7 @@ pub struct LeadEquation {
     pub group: Group,
     /// Day of the leads, from 1.
     pub day: u32,
-    /// Whether the group had been discovered by the day. Other groups have no leads.
+    /// Whether the group had been discovered by the day. Undiscovered groups have no leads.
     pub is_known: bool,
     /// Word-of-mouth leads before the factors, by source group.
     pub word_of_mouth: Vec<(Group, f64)>,
@@ -129,7 +129,7 @@ impl LeadEquation {
         self.factors.expected()
     }
 
-    /// Returns the expected leads if the factors in `held` had the given values.
+    /// Returns the number of leads that would be expected if the factors in `held` had the given values.
     pub fn expected_leads_with(&self, held: &[(LeadFactor, f64)]) -> f64 {
         let mut factors = self.factors;
         held.iter().for_each(|(factor, value)| *factor.factor_mut(&mut factors) = *value);

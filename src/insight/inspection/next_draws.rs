@@ -14,7 +14,7 @@ use novamind_world::random::{Part, bernoulli_from_word};
 use novamind_world::retention::due_today;
 use novamind_world::retention::renewal::{group_involuntary_rate, payment_failure_words};
 
-/// A part of the world whose next draws can be inspected.
+/// A part of the simulation whose next random draws can be inspected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RandomPart {
     /// Number of leads in each group.
@@ -84,7 +84,7 @@ impl RandomPart {
     }
 }
 
-/// One draw of a random stream.
+/// A draw from a random stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Draw {
     /// The draw as a uniform variate in [0, 1).
@@ -103,7 +103,7 @@ pub enum DrawEffect {
         /// Number of leads that the draws produce.
         number: u32,
     },
-    /// Customers whose payment fails.
+    /// Payments of individuals that fail on the day.
     FailedPayments {
         /// Probability of a failed payment in the month.
         rate: f64,
@@ -150,7 +150,7 @@ pub struct KeyedDraws {
     pub group: Option<Group>,
     /// First draws of the stream.
     pub draws: Vec<Draw>,
-    /// Effect of the draws.
+    /// Effect of the draws on the simulation.
     pub effect: DrawEffect,
 }
 

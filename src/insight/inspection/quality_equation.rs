@@ -111,7 +111,7 @@ pub struct QualityEquation {
     pub shared: f64,
     /// Sources of the shared quality gain.
     pub gains: SharedQualityGains,
-    /// Quality gain of the group by targeted development.
+    /// Quality gain of the group from targeted development.
     pub group_gain: f64,
     /// Delivered quality of each plan.
     pub plans: ByPlan<DeliveredPlanQuality>,

@@ -129,7 +129,7 @@ pub(crate) struct SatisfactionDay {
     weight: f64,
 }
 
-/// Sums of each block on a day, by group and block index.
+/// Sums over the subscribers of each block on a day, by group and block index.
 pub(crate) type SatisfactionSumsByBlock = BTreeMap<(Group, u32), SatisfactionSums>;
 
 impl SatisfactionDay {

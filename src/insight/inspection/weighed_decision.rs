@@ -1,4 +1,4 @@
-//! The decision of an individual by term, and the terms that determined the decision.
+//! An individual's decision, split into terms, and the terms that determined the decision.
 
 use serde::Serialize;
 
@@ -104,14 +104,14 @@ pub struct DecisiveTerm {
 /// An evaluated decision of an individual.
 #[derive(Debug, Clone)]
 pub struct WeighedDecision {
-    /// Evaluation of each plan.
+    /// The individual's evaluation of each plan.
     pub plans: ByPlan<RenewalPlanTerms>,
     /// Participation curve, including market expectations and the economy.
     pub curve: Curve,
     /// Best acceptable plan; `None` if no plan is acceptable.
     pub choice: Option<Plan>,
     /// Terms whose removal, one at a time, reverses the decision to stay or cancel. If the decision is to cancel, the
-    /// terms are sorted by descending surplus.
+    /// terms are sorted by the surplus of the best plan without the term, largest first.
     pub decisive_terms: Vec<DecisiveTerm>,
 }
 

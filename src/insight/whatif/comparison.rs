@@ -44,7 +44,7 @@ pub struct BranchFigures {
     /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. The branch does not
     /// execute these calls.
     pub newly_accepted: Vec<(u64, u32, ToolId)>,
-    /// First day at whose end the branch differs from the unchanged run; `None` if it never differs.
+    /// First day at whose end the branch differs from the unchanged run; `None` if the branch never differs.
     pub first_different_day: Option<u32>,
 }
 
@@ -53,7 +53,7 @@ pub struct BranchFigures {
 pub struct CallDifference {
     /// Decision day of the call.
     pub day: u32,
-    /// Called tool.
+    /// Tool of the call that differs.
     pub tool: ToolId,
     /// Line of the call in the record of the run; `None` for an added call.
     pub seq: Option<u64>,
@@ -61,7 +61,7 @@ pub struct CallDifference {
     pub recorded: Option<Value>,
     /// Arguments in the branch; `None` if the branch omits the call.
     pub edited: Option<Value>,
-    /// For an added call: day and line of the next call of the same tool in the run.
+    /// For an added call: day and line of the next call to the same tool in the run.
     pub next_recorded: Option<(u32, u64)>,
 }
 

@@ -44,9 +44,9 @@ pub enum DecisionEdit {
     Add {
         /// Week at whose start the call is executed, counted from 1; `None` for the first week of the what-if.
         week: Option<u32>,
-        /// Called tool.
+        /// Tool of the added call.
         tool: ToolId,
-        /// Arguments of the call.
+        /// Arguments of the added call.
         args: Value,
     },
     /// Sets a parameter after the calls of the day. Only debug runs allow this edit.
@@ -86,7 +86,7 @@ pub(super) fn build_edits(
 pub(super) struct BranchStart<'a> {
     pub day: u32,
     pub settings: &'a Settings,
-    /// Parameters in force.
+    /// Parameters in force at the start of the branches.
     pub params: &'a Params,
     /// Mode of the run.
     pub mode: Mode,

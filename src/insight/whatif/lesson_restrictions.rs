@@ -1,4 +1,4 @@
-//! Restrictions of a what-if in an unfinished lesson: no results before the guess and no calls of unavailable tools.
+//! Restrictions of a what-if in an unfinished lesson: no results before the guess and no calls to unavailable tools.
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! What-if: re-simulates days of a run with some decisions changed and all others kept.
 //!
-//! Branches have the random draws of the run, so a difference is exactly the effect of the edit. Optionally, several
-//! futures are drawn. All branches then have the same futures.
+//! Branches have the random draws of the run, so a difference is exactly the effect of the edit. Optionally, each
+//! branch is simulated with several futures. All branches have the same futures.
 
 mod adoption;
 mod comparison;
@@ -63,11 +63,12 @@ pub struct WhatIf {
     shows_hidden: bool,
     /// Progress in the unfinished lesson of the run, if any.
     lesson: Option<LessonProgress>,
-    /// Whether the lesson of the run changes the capacity automatically. The branches do the same.
+    /// Whether the lesson of the run changes the capacity automatically. If so, the branches also change the capacity
+    /// automatically.
     automates_capacity: bool,
 }
 
-/// The state at the start of the branches, and the recorded days around it.
+/// The state at the start of the branches, and the recorded days before and after this state.
 struct BranchPoint {
     start: Arc<MemorySnapshot>,
     earlier: Vec<DayFigures>,
@@ -394,7 +395,7 @@ impl BranchPoint {
         (1..=weeks).map(|week| (from + week * days_per_week).min(self.until)).collect()
     }
 
-    /// Returns the figures of the week before the branches start, for their usage.
+    /// Returns the figures of the week before the branches start, or `None` if the earlier days do not cover a complete week.
     fn week_before(&self, days_per_week: u32) -> Option<WeekFigures> {
         let from = self.earlier.len().checked_sub(days_per_week as usize)?;
         let mut week = WeekFigures::default();

@@ -35,7 +35,7 @@ fn compare(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchComp
     compared.expect("an answer").expect("it is not stopped")
 }
 
-/// Plays a run with decisions in weeks 1, 5 and 8 that starts a project twice.
+/// Plays a run with decisions in weeks 1, 5 and 8. The second attempt to start the same R&D project is rejected.
 fn play_run(runs: &Path, mode: Mode) -> Session {
     let mut session = play_weeks(runs, mode, 3, Some(("set_prices", json!({"B": 30}))));
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect("a project");

@@ -8,9 +8,10 @@ use crate::policy::Policy;
 pub struct CompetitorSetting {
     /// Name of the setting in tables.
     pub name: &'static str,
-    /// Name of the scenario.
+    /// Name of the scenario that configures the competitors.
     pub scenario: &'static str,
-    /// Minimum and maximum share of a targeted bank that an event drains; `None` keeps the values of the scenario.
+    /// Minimum and maximum share of a group's quality bank that a competitor event drains; `None` keeps the values of
+    /// the scenario.
     drain_range: Option<(&'static str, &'static str)>,
 }
 
@@ -33,7 +34,7 @@ pub const COPY_SETTINGS: [CompetitorSetting; 7] = [
     scenario_setting("hard", "competitor-hard"),
 ];
 
-/// Settings of the draining axis, plus hard competitors for comparison.
+/// Settings of the draining axis: drained shares from none to 0.2, and named scenarios for comparison.
 pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
     scenario_setting("off", "competitor-off"),
     drain_setting("no drain", "0.0", "0.0"),
@@ -43,7 +44,7 @@ pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
     drain_setting("drain to 0.2", "0.0", "0.2"),
 ];
 
-/// Returns the index of the arm with which the others are compared.
+/// Returns the index of the arm with which the other arms are compared.
 pub fn reference_arm(settings: &[CompetitorSetting]) -> usize {
     settings.iter().position(|competitor_setting| competitor_setting.name == "default").unwrap_or(0)
 }

@@ -24,7 +24,7 @@ pub struct AblationAxis<'a> {
 
 /// The results of a policy in short runs, with and without competitors.
 pub struct ShortRun<'a> {
-    /// Name of the policy.
+    /// Name of the policy that plays.
     pub name: &'a str,
     /// Competitor settings: off, default, hard.
     pub settings: &'a [CompetitorSetting],
@@ -116,7 +116,11 @@ fn adjacent_difference_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
         Column::number("seeds", "seeds with a loss", Measure::Count),
         Column::text("verdict", "order"),
     ];
-    let mut table = LabTable::new(&format!("{}_steps", axis.name), "Steps, paired differences", columns);
+    let mut table = LabTable::new(
+        &format!("{}_steps", axis.name),
+        "Steps between adjacent settings, paired differences",
+        columns,
+    );
     for (at, pair) in axis.settings.windows(2).enumerate() {
         let pairs = axis.results.paired_figures(at, at + 1, |run| subscribers_on(run, day));
         let Some(paired_difference) = PairedDifference::from_pairs(pairs) else { continue };

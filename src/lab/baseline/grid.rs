@@ -10,7 +10,7 @@ use novamind_world::params::ParameterSource;
 /// Maximum number of combinations in a grid.
 pub const MAX_COMBINATIONS: usize = 2_000;
 
-/// Separator between the levels in a label.
+/// Separator between the names of the levels in a label.
 const LEVEL_SEPARATOR: &str = " / ";
 
 /// A grid of policies.
@@ -152,7 +152,7 @@ impl PolicyGrid {
     }
 }
 
-/// Rule for the names of axes and levels, as a part of error messages.
+/// Rule for the names of axes and levels, worded for use in error messages.
 const LABEL_RULE: &str = "is one line of text without \" / \", which separates the levels of a combination";
 
 /// Column names of reports, which axes must not use.

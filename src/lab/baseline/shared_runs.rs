@@ -1,5 +1,5 @@
 //! Detection of equal runs. Configurations that differ only in their cash floor make the same decisions until cash is
-//! between the floors. Such runs are simulated only once.
+//! between the floors. Runs with the same decisions are simulated only once.
 
 use super::grid::GridPoint;
 use crate::experiment::RunResult;

@@ -67,7 +67,7 @@ fn note_versions(lines: &[Line]) -> Vec<NoteVersion> {
 
 /// Names of the figures as in `lab compare`, each with its horizon and column heading.
 const FIGURE_COLUMNS: [(&str, &str, &str); 10] = [
-    ("survival", "", "life, days"),
+    ("survival", "", "survival, days"),
     ("ad spend on the truly best channel", "", "ads on best channel"),
     ("ad spend on the best channel, as measured", "", "ads on best tried"),
     ("targeted share of development", "", "targeted dev."),

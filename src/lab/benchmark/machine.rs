@@ -28,7 +28,7 @@ fn run_fixed_work(steps: u64) -> f64 {
     value
 }
 
-/// Returns the peak memory of the process in megabytes, or `None` if the system does not report it.
+/// Returns the peak memory of the process in megabytes, or `None` if the system does not report the peak memory.
 pub fn peak_memory_megabytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

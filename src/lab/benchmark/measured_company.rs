@@ -79,7 +79,7 @@ impl MeasuredCompany {
         Ok(MeasuredCompany { session: Session::create(new, &bench.configuration)?, policy })
     }
 
-    /// Creates a company in the default market and plays it until it has at least `subscribers` subscribers.
+    /// Creates a company in the default market and plays weeks until the company has at least `subscribers` subscribers.
     pub fn with_subscribers(
         subscribers: u32,
         keep: RunStorage,

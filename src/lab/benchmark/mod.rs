@@ -27,7 +27,7 @@
 //! | share | step |
 //! |---|---|
 //! | 6 % | usage of all subscribers |
-//! | 22 % | first pass over subscribers: support calls (a third of it draws a word for every slot of a block), satisfaction, and every seventh day posting weights |
+//! | 22 % | first pass over subscribers: support calls (a third of this time draws a random word for every slot of a block), satisfaction, and every seventh day posting weights |
 //! | 1 % | resolved issues |
 //! | 18 % | second pass: issue updates, renewal decisions of due subscribers, their payments |
 //! | 19 % | 3,900 new leads: traits, decisions, rows |
@@ -208,9 +208,9 @@ pub struct BenchCase {
     pub measure: fn(&BenchContext) -> Result<Samples, BenchError>,
 }
 
-/// Options of a measurement.
+/// Options that every benchmark case receives.
 pub struct BenchContext {
-    /// Number of repetitions.
+    /// Number of repetitions of each measurement.
     pub repetitions: usize,
     /// Scratch folder for runs. Its contents can be deleted.
     pub scratch_folder: PathBuf,

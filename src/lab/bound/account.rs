@@ -35,7 +35,7 @@ pub struct BoundGroup {
 /// A line of the account with its computed and published figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccountRow {
-    /// Line of the account.
+    /// Account line to which the figures belong.
     pub line: AccountLine,
     /// Computed figure of the line, dollars.
     pub computed: f64,
@@ -56,7 +56,7 @@ pub struct BoundAccount {
     pub daily_usage: f64,
     /// Quality that all customers lose to overload.
     pub overload_penalty: f64,
-    /// Figures of each group.
+    /// Account figures of each customer group.
     pub groups: Vec<BoundGroup>,
     /// Lines of the account, in order.
     pub lines: Vec<AccountRow>,
@@ -65,13 +65,13 @@ pub struct BoundAccount {
 /// A row of the sensitivity table, which varies the slack.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensitivityRow {
-    /// Slack of the row.
+    /// Slack for which the row is computed.
     pub slack: f64,
     /// Cost of targeted development, dollars.
     pub targeted: f64,
     /// Number of renewals at which more than 99 % of the group's customers are satisfied.
     pub satisfied: usize,
-    /// Number of renewals, over all groups and renewal days.
+    /// Total number of renewals over all groups and renewal days.
     pub renewals: usize,
     /// Mean renewal share over groups and renewal days.
     pub mean_share: f64,

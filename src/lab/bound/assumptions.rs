@@ -7,7 +7,7 @@ pub struct BoundAssumptions {
     pub slack: f64,
     /// Number of days with costs.
     pub days: u32,
-    /// Length of the run in days, on which the competitors' calendar depends.
+    /// Length of the run in days, which affects the times and sizes of competitor events.
     pub run_days: u32,
     /// Days on which all customers renew.
     pub renewals: Vec<u32>,
@@ -25,7 +25,7 @@ pub struct BoundAssumptions {
     pub operations: f64,
     /// Spending on operations per customer or seat, $ per day.
     pub operations_each: f64,
-    /// Share of a day's targeted gain that is assumed to remain when spending is set. Competitors drain the rest.
+    /// Share of a day's targeted gain that is assumed to remain when spending is set. Competitors drain the remaining share.
     pub counted_gain: f64,
     /// Study level of every group.
     pub study_level: u8,

@@ -15,7 +15,7 @@ pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
 }
 
 /// Returns the increase in a group's expectations due to competitors and drift until a day. Excludes the quality that
-/// competitors copy from the group's own bank.
+/// competitors copy from the group's quality bank.
 pub fn added_expectation(group: Group, day: u32, climate: &SharedQualityPath, params: &Params) -> f64 {
     let applied = (1..day).filter(|day| is_drift_day(*day, &params.drift)).count() as f64;
     let taste = applied * (group_drift_step(group, params).quality + global_drift_step(&params.drift));

@@ -1,4 +1,5 @@
-//! q_shared and the competitors' reaction: means over seeds, computed with the functions of the simulator.
+//! The shared quality `q_shared` and the reaction of competitors, as means over seeds. Both are computed with the
+//! functions of the simulator.
 
 use super::assumptions::BoundAssumptions;
 use novamind_world::customers::drift::DriftTotals;
@@ -19,7 +20,7 @@ pub struct SharedQualityPath {
     pub shared: Vec<f64>,
     /// Increase in all customers' expectations due to competitors.
     pub raised_expectations: Vec<f64>,
-    /// Quality that competitors copied from a group's bank, if the targeted gain is 1 per day.
+    /// Quality that competitors copied from a group's quality bank, if the targeted gain is 1 per day.
     pub copied_quality: Vec<ByGroup<f64>>,
 }
 

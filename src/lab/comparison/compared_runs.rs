@@ -9,7 +9,7 @@ use novamind_report::ranking::{PublishedAgent, published_results};
 /// A row of the comparison: one figure with a value for each run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparisonRow {
-    /// Name of the figure.
+    /// Name of the compared figure.
     pub figure: String,
     /// Group, horizon in days, or day of the row; empty for a figure of the whole run.
     pub of: String,
@@ -53,7 +53,7 @@ pub struct PublishedRange {
 /// A comparison of several runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Names of the runs.
+    /// Names of the compared runs.
     pub runs: Vec<String>,
     /// Participant of each run; `None` for runs without a label.
     pub participants: Vec<Option<String>>,

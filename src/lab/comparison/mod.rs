@@ -13,7 +13,7 @@ use novamind_report::Logbook;
 use novamind_report::ranking::compare_results;
 use novamind_report::ranking_eligibility::{RankingCriteria, describe_unranked_runs};
 
-/// Compares runs.
+/// Compares runs by result, weekly cash, decisions and behavior.
 pub fn compare_runs(runs: &[Logbook]) -> Comparison {
     let mut figures: Vec<_> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
     figures.extend(figures::group_rows(runs));

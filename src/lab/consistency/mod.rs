@@ -234,7 +234,7 @@ pub fn contrasting_policies() -> Result<[Policy; 2], PolicyError> {
 /// Options of the consistency check.
 #[derive(Debug, Clone)]
 pub struct ConsistencySpec {
-    /// Tested seeds.
+    /// Seeds on which both policies are played.
     pub seeds: Vec<u64>,
     /// Name of the scenario; `None` for the scenario of the policies.
     pub scenario: Option<String>,

@@ -22,9 +22,9 @@ pub enum DrawDistribution {
         mean: f64,
         /// Standard deviation before rounding.
         std: f64,
-        /// Rounding mode.
+        /// How the variate is rounded to a whole number.
         rounding: RoundingMode,
-        /// Lower bound.
+        /// Lower bound to which smaller values are clamped.
         min: f64,
     },
     /// Exponential distribution plus an offset, clamped to two bounds.
@@ -33,7 +33,7 @@ pub enum DrawDistribution {
         mean: f64,
         /// Offset that is added to the exponential variate.
         offset: f64,
-        /// Lower bound.
+        /// Lower bound to which smaller values are clamped.
         min: f64,
         /// Upper bound; may be infinity.
         max: f64,
@@ -209,7 +209,7 @@ fn clamped_normal_moments(mean: f64, std: f64, least: f64, most: f64) -> Moments
     let (low, high) = ((least - mean) / std, (most - mean) / std);
     let (below, above) = (normal_cdf(low), 1.0 - normal_cdf(high));
     let inside = 1.0 - below - above;
-    // A density times an infinite bound is 0.
+    // The product of an infinite bound and the density at this bound is 0.
     let weigh = |z: f64| if z.is_finite() { z * normal_density(z) } else { 0.0 };
     let at_end = |end: f64, share: f64, power: f64| {
         if end.is_finite() { libm::pow(end, power) * share } else { 0.0 }

@@ -13,7 +13,7 @@ use novamind_world::retention::renewal::{involuntary_rate, payment_failure_words
 const RENEWAL_FILE: &str = "retention/renewal.rs";
 const SUPPORT_FILE: &str = "retention/support_pools.rs";
 
-/// Mean number of issues that the example support pool resolves per day, and its backlog.
+/// Mean number of issues that the support pool of the example resolves per day.
 const EXAMPLE_SOLVED_ISSUES: f64 = 3.0;
 const EXAMPLE_OPEN_ISSUES: usize = 8;
 /// Satisfaction of the example customer who opens an issue.

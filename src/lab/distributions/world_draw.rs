@@ -28,13 +28,13 @@ impl DrawContext {
 pub enum DrawFamily {
     /// No family; the draw is made once.
     Single,
-    /// All groups.
+    /// One draw for each customer group.
     Groups,
-    /// All groups of individuals.
+    /// One draw for each group of individuals.
     Individuals,
-    /// All groups of enterprises.
+    /// One draw for each group of enterprises.
     Enterprises,
-    /// All R&D tiers.
+    /// One draw for each R&D tier.
     ResearchTiers,
 }
 

@@ -26,7 +26,7 @@ pub struct ExperimentContext<'a> {
     pub pool: &'a rayon::ThreadPool,
     /// Flag that stops the experiment. Active runs are abandoned.
     pub stop: &'a AtomicBool,
-    /// Callback after every played run.
+    /// Callback that is called after every played run.
     pub on_run: &'a (dyn Fn() + Sync),
 }
 
@@ -35,9 +35,9 @@ pub struct ExperimentContext<'a> {
 pub enum ExperimentError {
     /// A run could not start, or a tool rejected a call.
     Run {
-        /// Name of the arm.
+        /// Name of the arm whose run failed.
         arm: String,
-        /// Error of the run.
+        /// Error of the failed run.
         error: Box<RunError>,
     },
     /// Results cannot be stored or read.
@@ -49,7 +49,7 @@ pub enum ExperimentError {
     },
     /// The experiment was stopped.
     Stopped {
-        /// Number of stored runs.
+        /// Number of runs whose results are stored.
         kept: usize,
         /// Total number of runs in the experiment.
         of: usize,
@@ -66,7 +66,7 @@ impl fmt::Display for ExperimentError {
                 path.display()
             ),
             ExperimentError::Stopped { kept, of } => {
-                write!(formatter, "stopped: {kept} of {of} runs are stored; the same command resumes")
+                write!(formatter, "stopped: {kept} of {of} runs are stored; repeat the command to resume")
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Experiments: several arms, each with a policy, are played on the same seeds in parallel. Each result is stored as
 //! soon as its run ends.
 //!
-//! [`Experiment::prepare`] loads results of earlier commands. [`PreparedExperiment::run`] plays the remaining runs. A
-//! stopped command resumes when it is repeated. The resumed command prints the same output as an uninterrupted command.
+//! [`Experiment::prepare`] loads results of earlier commands. [`PreparedExperiment::run`] plays the remaining runs. If
+//! a stopped command is repeated, the experiment resumes. The output then equals the output of an uninterrupted command.
 
 mod engine;
 mod key;

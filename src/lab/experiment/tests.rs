@@ -56,7 +56,7 @@ fn stored_results_are_reused() {
     assert_eq!((second.expect("results"), played), (first.clone(), 0));
     let (afresh, played) = run_experiment(&test_experiment(), &path, true, 99);
     assert_eq!((afresh.expect("results"), played), (first.clone(), 6));
-    // A new name of an arm does not change its keys. A new day, parameter or figure changes the keys.
+    // Renaming an arm does not change its keys. Changing the days, a parameter or the recorded figures changes the keys.
     let mut renamed = test_experiment();
     renamed.arms[0].name = "nothing".to_owned();
     assert_eq!(run_experiment(&renamed, &path, false, 99).1, 0);
@@ -101,7 +101,7 @@ fn truncated_file_loses_at_most_one_run() {
         let left = bytes[..cut].iter().filter(|byte| **byte == b'\n').count();
         let (results, played) = run_experiment(&test_experiment(), &path, false, 99);
         assert_eq!(results.expect("results"), experiment_results, "cut at {cut}");
-        // A line without a line terminator is complete.
+        // The last line is complete even if its line terminator is missing.
         assert!(played == 6 - left || (cut + 1 == bytes.len() && played == 0), "cut at {cut}: {played}");
         let (again, played) = run_experiment(&test_experiment(), &path, false, 99);
         assert_eq!((again.expect("results"), played), (experiment_results.clone(), 0), "cut at {cut}");

@@ -128,7 +128,8 @@ impl<'a> TextLayout<'a> {
         TextLayout { columns, cells, rows, widths }
     }
 
-    /// Returns how many leading text columns are needed to identify each row. Returns 1 if all of them are not sufficient.
+    /// Returns how many leading text columns are needed to identify each row. Returns 1 if even all leading text
+    /// columns do not identify each row.
     fn count_identifying_columns(&self) -> usize {
         let is_words =
             |at: &usize| self.columns.get(*at).is_some_and(|column| column.kind == ColumnKind::Text);

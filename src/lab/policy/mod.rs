@@ -40,7 +40,7 @@ pub struct PolicyStart {
     pub cash: Option<f64>,
     /// Whether demand surges occur; `None` to use the scenario's value.
     pub surges: Option<bool>,
-    /// Name of the scenario.
+    /// Name of the scenario that the run uses.
     pub scenario: Option<String>,
     /// Last day of the run.
     pub days: Option<u32>,

@@ -4,18 +4,18 @@ use super::{FinishedRun, best_run};
 use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure};
 use novamind_base::statistics::SampleStatistics;
 
-/// One attempt: a new run for a program.
+/// An attempt of a program, which plays a new run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttemptResult {
     /// Number of the attempt, from 1.
     pub number: u32,
     /// Name of the attempt's run.
     pub run: String,
-    /// Number of starts of the program.
+    /// Number of times that the program was started.
     pub starts: u32,
     /// Exit code of the program after its last start; `None` if a signal ended the program.
     pub exit_code: Option<i32>,
-    /// Last simulated day.
+    /// Last simulated day of the attempt's run.
     pub day: u32,
     /// Result of the run; `None` if the run is unfinished.
     pub result: Option<FinishedRun>,
@@ -50,7 +50,7 @@ pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
         let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
         let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
         exhibit.notes.push(format!(
-            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` compares runs that have the published length and starting cash with published runs.",
+            "Bankrupt: {bankrupt} of {}; mean survival {:.1} days. `novamind lab table` compares runs that have the published length and starting cash with published runs.",
             finished.len(),
             SampleStatistics::from_values(&lives).mean
         ));

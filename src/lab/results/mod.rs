@@ -76,7 +76,7 @@ pub enum PlayerKind {
     Participant,
     /// A participant without a label.
     Unnamed,
-    /// A policy.
+    /// A policy that played runs.
     Policy,
     /// The idle company, which is played for the table.
     IdleCompany,
@@ -139,7 +139,7 @@ pub struct ResultsRow {
     pub beaten_count: usize,
 }
 
-/// The results table.
+/// The results table: own runs, the idle company and the published results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsTable {
     /// Rows of the table, best result first.
@@ -308,7 +308,7 @@ fn published_rows() -> Vec<ResultsRow> {
 /// Returns the notes that define the figures of the table.
 fn table_notes() -> Vec<String> {
     vec![
-        "The best run has the most final cash; if all runs went bankrupt, it has the longest life. The spread of lives is the population standard deviation."
+        "The best run has the most final cash; if all runs went bankrupt, it has the longest survival. The spread of survival is the population standard deviation."
             .to_owned(),
         "Calls a week: for own runs, accepted state-changing calls, averaged over runs; for published runs, turns of an agent, which can contain several calls."
             .to_owned(),

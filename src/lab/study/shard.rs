@@ -17,7 +17,7 @@ const SHARD_PREFIX: &str = "# novamind study shard ";
 pub struct Shard {
     /// Number of the shard, from 1.
     pub shard: usize,
-    /// Total number of shards.
+    /// Total number of shards of the study.
     pub of: usize,
 }
 

@@ -14,7 +14,7 @@ use novamind_tools::{ParameterNumbers, ToolKind};
 
 const NEEDS_HELP: &str = "\
 needs                     list problems that cost money or soon will, each with the amount and a call that addresses it
-Urgent ones come first and are marked with !. Within each kind, the order is by money at risk in the next four weeks.
+Urgent problems come first and are marked with !. Within each kind, the order is by money at risk in the next four weeks.
 You can type the call below a problem as it is. Type check before it to preview its effect, for example
                           check set_capacity_tier 2";
 
@@ -36,9 +36,9 @@ curve GROUP               show the quality that 10, 50 and 90 % of the leads of 
                           plans, and their conversion and revenue per lead; for example curve S1
 curve GROUP PRICE QUALITY show the expected result of a single product, without quota and discount, for
                           example curve S1 30 0.4
-The curve evaluates 2,000 sampled leads with the functions of the simulator. In debug and finished runs they are drawn from
-the true parameters of the group, and the inspection is recorded. In all other runs they are drawn from the results of
-market studies, so that each figure is a range that covers the error of the study.";
+The curve evaluates 2,000 sampled leads with the functions of the simulator. In debug and finished runs, the leads are drawn
+from the true parameters of the group, and the inspection is recorded. In all other runs, they are drawn from the results
+of market studies, so that each figure is a range that covers the error of the study.";
 
 const CHECK_HELP: &str = "\
 check CALL                preview the effect and cost of a tool call; nothing is changed, drawn or recorded. For example
@@ -88,7 +88,7 @@ fn command_help(name: &str, led: bool) -> Option<String> {
     Some(text.to_owned())
 }
 
-/// Command and help line that only participants of a study get.
+/// Command and help line that are only for participants of a study.
 const WITHDRAW: (&str, &str) =
     ("withdraw", "withdraw                 erase everything you did in this study, after a confirmation");
 /// Commands that are rejected in runs of participants of a study.
@@ -148,8 +148,8 @@ pub(super) fn help(
     ))
 }
 
-/// Returns the help on `next` with the coverage of naive forecasts. Participants of a study do not get the coverage,
-/// because coverage was measured with other companies.
+/// Returns the help on `next` with the coverage of naive forecasts. Participants of a study do not see the coverage,
+/// because the coverage was measured with other companies.
 fn next_help(led: bool) -> String {
     let forms = "\
 next \"WHY\" naive                         naive forecasts
@@ -194,7 +194,7 @@ mod tests {
         }
         let help_text =
             help(Some("needs"), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
-        assert!(help_text.contains("Urgent ones come first"), "{help_text}");
+        assert!(help_text.contains("Urgent problems come first"), "{help_text}");
     }
 
     #[test]

@@ -128,8 +128,10 @@ fn describe_turn(row: &[Cell]) -> Option<String> {
     let text = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
         ("agent", _) => format!("you offered {}", describe_offer(&offers)),
-        ("customer", _) if words.is_empty() => format!("they asked for {}", dollars_and_cents(price?)),
-        ("customer", _) => format!("they wrote: {words}"),
+        ("customer", _) if words.is_empty() => {
+            format!("the enterprise asked for {}", dollars_and_cents(price?))
+        }
+        ("customer", _) => format!("the enterprise wrote: {words}"),
         _ if words.is_empty() => return None,
         _ => words.to_owned(),
     };

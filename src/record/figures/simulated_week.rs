@@ -19,12 +19,12 @@ pub struct WeekGroupFigures {
 }
 
 impl WeekGroupFigures {
-    /// Returns sign-ups as a share of leads; NaN without leads.
+    /// Returns sign-ups as a share of leads, or NaN if there were no leads.
     pub fn conversion(&self) -> f64 {
         f64::from(self.figures.signed) / f64::from(self.figures.leads)
     }
 
-    /// Returns cancellations as a share of the subscribers before the week; NaN without subscribers.
+    /// Returns cancellations as a share of the subscribers before the week, or NaN if there were no subscribers.
     pub fn churn(&self) -> f64 {
         churn(self.figures.left.into(), self.subscribers_before.into()).unwrap_or(f64::NAN)
     }
@@ -35,7 +35,7 @@ impl WeekGroupFigures {
 pub struct SimulatedWeek {
     /// Figures that are visible to the player.
     pub figures: WeekFigures,
-    /// Mean satisfaction of individuals at the end of the week; NaN without subscribers.
+    /// Mean satisfaction of individuals at the end of the week, or NaN if there are no subscribers.
     pub satisfaction: f64,
     /// Figures of each group.
     pub groups: ByGroup<WeekGroupFigures>,
@@ -63,7 +63,7 @@ impl SimulatedWeek {
         Group::all().map(|group| f64::from(self.groups[group].figures.leads)).sum()
     }
 
-    /// Returns the churn of individuals; NaN without subscribers.
+    /// Returns the churn of individuals, or NaN if there were no subscribers before the week.
     pub fn individual_churn(&self) -> f64 {
         let individuals = Group::all().filter(|group| !group.is_enterprise());
         let before: u32 = individuals.map(|group| self.groups[group].subscribers_before).sum();

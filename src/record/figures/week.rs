@@ -10,7 +10,7 @@ use novamind_world::events::{
 };
 use novamind_world::params::Params;
 
-/// Figures of a week, or of its days that are simulated already.
+/// Figures of a complete week, or of the simulated days of an incomplete week.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WeekFigures {
     /// Last simulated day of the week.
@@ -51,15 +51,15 @@ pub struct WeekFigures {
     pub seats_lost: u32,
     /// Usage of the busiest day, in units.
     pub busiest_day: u64,
-    /// Highest overload on any day.
+    /// Highest daily overload in the week.
     pub overload_peak: f64,
-    /// Total outage time in minutes.
+    /// Total outage time in the week, in minutes.
     pub downtime_minutes: u32,
-    /// Whether an outage occurred on any day.
+    /// Whether an outage occurred on any day of the week.
     pub outage: bool,
-    /// Highest 95th-percentile latency on any day, milliseconds.
+    /// Highest daily 95th-percentile latency in the week, in milliseconds.
     pub p95_ms_peak: f64,
-    /// Highest error rate on any day.
+    /// Highest daily error rate in the week.
     pub error_rate_peak: f64,
     /// Ledger totals by category since the end of the previous week.
     pub booked: CategoryTotals,
@@ -82,7 +82,7 @@ pub struct WeekFigures {
 }
 
 impl WeekFigures {
-    /// Returns individual sign-ups as a share of individual leads, 0 to 1; NaN without leads.
+    /// Returns individual sign-ups as a share of individual leads, 0 to 1, or NaN if there were no leads.
     pub fn conversion(&self) -> f64 {
         match self.new_individual_leads {
             0 => f64::NAN,

@@ -9,13 +9,13 @@ use novamind_world::events::Category;
 pub enum FigureUnit {
     /// An amount in dollars.
     Dollars,
-    /// A number of objects.
+    /// A count, for example of subscribers or issues.
     Count,
     /// A share, where 1 is 100 %.
     Share,
-    /// A share that is shown to hundredths of a percent.
+    /// A share that is shown as a percentage with two decimals.
     PreciseShare,
-    /// A level that is shown to thousandths.
+    /// A level that is shown with three decimals.
     Level,
 }
 

@@ -52,10 +52,10 @@ struct ScenarioFile {
     world: Table,
 }
 
-/// Largest configuration file in bytes.
+/// Maximum size of a configuration file, in bytes.
 const MAX_FILE_BYTES: u64 = 16 << 20;
 
-/// Reads a regular file of limited size. Devices and pipes can have no end.
+/// Reads a regular file of limited size. Rejects devices and pipes, because they can be endless.
 fn read_small_file(path: &Path) -> std::io::Result<String> {
     let file = open_regular_file(path)?;
     if file.metadata()?.len() > MAX_FILE_BYTES {
@@ -330,7 +330,7 @@ mod tests {
         }
         digests.sort_unstable();
         digests.dedup();
-        // `default` and `short` differ only in their days.
+        // The scenarios `default` and `short` have the same parameters and differ only in their length.
         assert_eq!(digests.len(), novamind_assets::scenarios().len() - 1);
     }
 

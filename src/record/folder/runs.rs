@@ -187,7 +187,7 @@ fn summarize_run(folder: &Path) -> RunSummary {
     }
 }
 
-/// Returns whether parameters may have been set during the run: in debug runs, lessons and branches.
+/// Returns whether parameters may have been set during the run, which is possible in debug runs, lessons and branches.
 fn may_set_parameters(manifest: &Manifest) -> bool {
     manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
 }
@@ -300,9 +300,9 @@ fn find_matching_run(
     let mut fitting = list.iter().filter(|(_, run)| id.len() >= 2 && run.id.starts_with(id));
     match (fitting.next(), fitting.next()) {
         (Some((folder, _)), None) => Ok(folder.clone()),
-        (Some(_), Some(_)) => {
-            Err(RunError::InvalidRequest(format!("several run ids begin with {id}; type more of the id")))
-        }
+        (Some(_), Some(_)) => Err(RunError::InvalidRequest(format!(
+            "several run ids begin with {id}; enter more characters of the id"
+        ))),
         _ => Err(missing()),
     }
 }
@@ -318,7 +318,7 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
 }
 
-/// Returns the earlier runs of a participant in all related folders. Without a label, returns the unlabelled runs in
+/// Returns the earlier runs of a participant in all related folders. Without a label, returns the unlabeled runs in
 /// this folder.
 pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };

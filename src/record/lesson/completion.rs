@@ -1,4 +1,4 @@
-//! Check whether a lesson is over. Hidden state is not shown before the lesson is over, because the next part can have
+//! Checks whether a lesson is over. Hidden state is not shown before the lesson is over, because the next part can have
 //! the same random draws.
 
 use std::path::Path;

@@ -85,7 +85,7 @@ pub enum RationaleRequirement {
     Off,
 }
 
-/// One company of a lesson, with its steps.
+/// A part of a lesson: one company and the student's steps with this company.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonPart {
@@ -163,7 +163,7 @@ pub struct LessonStep {
     /// Goals of the step.
     #[serde(rename = "goal", default)]
     pub goals: Vec<LessonGoal>,
-    /// Hints, from a vague hint to one that nearly gives the solution.
+    /// Hints in the order in which they are shown, from vague to almost the complete solution.
     #[serde(default)]
     pub hints: Vec<String>,
 }
@@ -176,18 +176,18 @@ pub struct Guess {
     pub question: String,
     /// Answer format of the question.
     pub form: GuessForm,
-    /// When the outcome of the guess is shown.
+    /// Time at which the outcome of the guess is shown.
     pub told: OutcomeTiming,
 }
 
-/// When the outcome of a guess is measured and shown.
+/// The time at which the outcome of a guess is measured and shown.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum OutcomeTiming {
-    /// At the end of the step with the guess.
+    /// The outcome is measured and shown at the end of the step with the guess.
     #[default]
     Step,
-    /// At the end of the part with the guess.
+    /// The outcome is measured and shown at the end of the part with the guess.
     Part,
 }
 
@@ -237,13 +237,13 @@ impl TryFrom<RawGuess> for Guess {
             (Some(choices), Some(answer)) if figure.is_none() && sql.is_none() => {
                 if choices.len() < 2 || !(1..=choices.len()).contains(&answer) {
                     return Err(
-                        "a guess needs at least two choices, and answer must be the number of a choice"
+                        "a guess needs at least two `choices`, and `answer` must be the number of a choice"
                             .to_owned(),
                     );
                 }
                 GuessForm::Choice { choices, answer: answer - 1 }
             }
-            _ => return Err("a guess needs a figure, sql, or choices with an answer".to_owned()),
+            _ => return Err("a guess needs `figure`, `sql`, or `choices` with `answer`".to_owned()),
         };
         Ok(Guess { question, form, told: outcome_timing })
     }
@@ -320,13 +320,13 @@ impl TryFrom<RawGoal> for LessonGoal {
         ];
         let mut bounds = bounds.into_iter().flatten();
         let (Some(bound), None) = (bounds.next(), bounds.next()) else {
-            return Err("a goal needs exactly one of at_least, at_most and relative".to_owned());
+            return Err("a goal needs exactly one of `at_least`, `at_most` and `relative`".to_owned());
         };
         let measurement = Measurement::try_from(RawMeasurement { figure, sql, over })?;
         let in_dollars = match unit.as_deref() {
             None => measurement.is_in_dollars(),
             Some("$") if measurement.needs_database() => true,
-            Some(_) => return Err("the unit of a goal must be $, and needs sql".to_owned()),
+            Some(_) => return Err("the unit of a goal must be `$`, and requires `sql`".to_owned()),
         };
         Ok(LessonGoal { text, measurement, bound, in_dollars })
     }
@@ -394,7 +394,7 @@ impl TryFrom<RawPitfall> for Pitfall {
         let bound = match (above, below) {
             (Some(above), None) => PitfallBound::Above(above),
             (None, Some(below)) => PitfallBound::Below(below),
-            _ => return Err("a pitfall needs either above or below".to_owned()),
+            _ => return Err("a pitfall needs either `above` or `below`".to_owned()),
         };
         let measurement = Measurement::try_from(RawMeasurement { figure, sql, over: None })?;
         Ok(Pitfall { name, part: part_index(part)?, measurement, bound, say })
@@ -525,7 +525,7 @@ impl TryFrom<RawScheduledCalls> for ScheduledCalls {
     fn try_from(file: RawScheduledCalls) -> Result<ScheduledCalls, String> {
         let RawScheduledCalls { part, week, every, until, calls } = file;
         if every == Some(0) || (every.is_none() && until.is_some()) {
-            return Err("every must be at least 1 week, and until needs every".to_owned());
+            return Err("`every` must be at least 1 week, and `until` requires `every`".to_owned());
         }
         Ok(ScheduledCalls { part: part_index(part)?, week, every, until, calls })
     }

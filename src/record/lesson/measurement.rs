@@ -53,18 +53,18 @@ impl TryFrom<RawMeasurement> for Measurement {
                 let figure =
                     WeekFigure::parse_label(name).ok_or_else(|| format!("there is no figure {name}"))?;
                 if figure.company_value(&WeekFigures::default()).is_none() {
-                    return Err(format!("{name} is not measured in lessons; use sql"));
+                    return Err(format!("figure {name} is not available in lessons; use `sql`"));
                 }
                 NumberSource::Figure(figure)
             }
             (None, Some(sql)) => NumberSource::Sql(sql),
-            _ => return Err("a measurement needs either figure or sql".to_owned()),
+            _ => return Err("a measurement needs either `figure` or `sql`".to_owned()),
         };
         let over = match file.over.as_deref() {
             None | Some("end") => WeekAggregation::Last,
             Some("sum") => WeekAggregation::Sum,
             Some("mean") => WeekAggregation::Mean,
-            Some(other) => return Err(format!("over must be end, sum or mean, not {other}")),
+            Some(other) => return Err(format!("`over` must be `end`, `sum` or `mean`, not {other}")),
         };
         if over != WeekAggregation::Last && matches!(source, NumberSource::Sql(_)) {
             return Err("remove over: an SQL statement has to select the days itself".to_owned());

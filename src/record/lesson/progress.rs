@@ -107,7 +107,8 @@ impl LessonProgress {
         }
     }
 
-    /// Rejects simulating the next week, after `weeks` weeks, if the question of its step is unanswered.
+    /// Rejects the simulation of the next week if the question of its step is unanswered. `weeks` is the number of
+    /// weeks already simulated.
     ///
     /// # Errors
     /// The rejection `guess_first`.
@@ -139,7 +140,7 @@ impl LessonProgress {
         (0..self.current_part().steps.len()).rev().find(|step| self.has_started(*step)).unwrap_or(0)
     }
 
-    /// Returns the student's guess for a step. For a choice, this is the number of the choice, from 1.
+    /// Returns the student's guess for a step. For a question with choices, the guess is the number of the choice, from 1.
     pub fn guess(&self, step: usize) -> Option<f64> {
         self.last_event(LessonEvent::Guess, step)?.value
     }
@@ -154,7 +155,7 @@ impl LessonProgress {
         self.step(step).is_some_and(|lesson_step| lesson_step.guess.is_some()) && self.guess(step).is_none()
     }
 
-    /// Returns how many hints of a step were requested.
+    /// Returns the number of hints that the student requested in a step.
     pub fn hint_count(&self, step: usize) -> usize {
         self.events_of_step(LessonEvent::Hint, step).count()
     }

@@ -13,7 +13,7 @@ pub trait Medium: Send {
     fn sync(&self) -> io::Result<()>;
     /// Truncates the storage to a length in bytes.
     fn truncate(&mut self, length: u64) -> io::Result<()>;
-    /// Returns whether the file at `path` is still this file and, if `length` is given, has that length.
+    /// Returns whether `path` still names the open file and, if `length` is given, whether the file has that length.
     fn is_file_at(&self, path: &Path, length: Option<u64>) -> bool;
     /// Returns the first `length` bytes, even if the file was moved.
     fn read_prefix(&mut self, length: u64) -> io::Result<Vec<u8>>;

@@ -16,8 +16,7 @@ pub(super) struct SyncedFile {
     synced: u64,
     /// Accepted bytes after the synced prefix.
     unsynced: Vec<u8>,
-    /// Whether the content after `synced` is unknown. If so, `unsynced` must be rewritten before more bytes are
-    /// accepted.
+    /// Whether the content after `synced` is unknown. If true, `unsynced` must be rewritten before more bytes are accepted.
     needs_rewrite: bool,
 }
 
@@ -26,7 +25,7 @@ impl SyncedFile {
         SyncedFile { medium, synced, unsynced: Vec::new(), needs_rewrite: false }
     }
 
-    /// Returns whether the file at `path` is still this file and was not changed by another program.
+    /// Returns whether `path` still names the open file and no other program has changed the file.
     pub fn is_file_at(&self, path: &Path) -> bool {
         let known_length = (!self.needs_rewrite).then_some(self.length());
         self.medium.is_file_at(path, known_length)

@@ -32,7 +32,7 @@ pub struct TrajectoryWriter {
     /// Trajectory file; `None` for a run in memory.
     file: Option<RefCell<SyncedFile>>,
     path: PathBuf,
-    /// Lines that could not be written yet. These lines are written before the next line.
+    /// Lines that could not be written yet. The backlog is written before the next line.
     backlog: Vec<u8>,
     next_seq: u64,
     last_hash: String,
@@ -163,8 +163,8 @@ impl TrajectoryWriter {
         written.map_err(|error| self.save_copy_if_replaced(error))
     }
 
-    /// If the file was replaced or removed, writes a copy of all confirmed lines next to it and adds the path of the
-    /// copy to the error.
+    /// If the file was replaced or removed, writes a copy of all confirmed lines next to the old path and adds the
+    /// path of the copy to the error.
     fn save_copy_if_replaced(&mut self, error: RunError) -> RunError {
         let RunError::FileReplaced { path, .. } = error else { return error };
         let aside = self.saved_copy.get_or_insert_with(|| copy_path(&path)).clone();

@@ -27,7 +27,7 @@ pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<A
         let offers = GroupOffers::new(situation, estimates)?;
         let ads = situation.ads_by_group[estimates.group];
         let text = format!(
-            "{}: {} arrived in {} and none requested an offer. Ads for them cost {} a day.",
+            "{}: {} arrived in {} and none requested an offer. Ads for the group cost {} a day.",
             estimates.group,
             pluralize(lead_count, "enterprise"),
             pluralize(recent.len() as u32, "week"),

@@ -175,7 +175,10 @@ fn propose_cheaper_setting(
                 (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
             })
             .collect();
-        let text = format!("A quota below today's {} units a day limits their usage.", format_whole(held));
+        let text = format!(
+            "A quota below today's {} units a day limits the usage of these subscribers.",
+            format_whole(held)
+        );
         (text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)))
     })
 }

@@ -85,14 +85,14 @@ pub enum ActionTarget {
     Thread(u32),
     /// The page of a group.
     Group(Group),
-    /// The ledger.
+    /// The ledger of the company.
     Ledger,
 }
 
 /// A problem that needs action.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActionItem {
-    /// Kind of this problem.
+    /// Kind of the problem.
     pub problem: Problem,
     /// Sentences that describe the problem, with amounts.
     pub text: String,

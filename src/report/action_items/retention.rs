@@ -56,7 +56,7 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     Some(ActionItem {
         problem: Problem::Threads,
         text: format!(
-            "{who} for an answer ({}, {} a month at the requested or lowest list price). Without one, {fate} {by}.",
+            "{who} for an answer ({}, {} a month at the requested or lowest list price). Without an answer, {fate} {by}.",
             pluralize(seats, "seat"),
             format_money(a_month)
         ),
@@ -119,8 +119,8 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     })
 }
 
-/// Returns the day and changes of the last decision that could explain cancellations: some subscribers received their
-/// first bill after the decision in the last week.
+/// Returns the day and the changes of the last decision that could explain last week's cancellations. Older decisions
+/// cannot explain the cancellations, because all subscribers had been billed after these decisions before last week.
 fn last_judged_change<'a>(situation: &'a DiagnosisContext<'_>) -> Option<(u32, Vec<&'a SettingChange>)> {
     let recent = |decided: &&Decisions| decided.day + BILLING_DAYS + 7 > situation.observation.day;
     situation.decisions.iter().rev().take_while(recent).find_map(|decided| {

@@ -54,7 +54,7 @@ pub(super) fn missing_offers(situation: &DiagnosisContext<'_>) -> Option<ActionI
         problem: Problem::NoQuota,
         text: format!("{plans} {verb} a price and a quota of 0 units a day. {consequence}."),
         proposal: Some(format!(
-            "{} units a day cover {group}. It uses about {} (at most {}).",
+            "{} units a day cover {group}, which uses about {} (at most {}).",
             format_whole(quota),
             format_whole(situation.group_estimates(group)?.usage),
             format_whole(use_a_day)
@@ -238,7 +238,7 @@ impl<'a> GroupOffers<'a> {
     }
 
     fn affordable_plans(&self) -> impl Iterator<Item = Plan> + '_ {
-        // Enterprises negotiate their price.
+        // Enterprises negotiate their price, so every plan counts as affordable for them.
         let negotiates = self.estimates.group.is_enterprise();
         self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.estimates.budget)
     }
@@ -268,14 +268,14 @@ impl<'a> GroupOffers<'a> {
         let scope = match self.estimates.group.is_enterprise() {
             true => String::new(),
             false => {
-                format!(" within their estimated budget of {}", format_money(self.estimates.budget.round()))
+                format!(" within the estimated budget of {}", format_money(self.estimates.budget.round()))
             }
         };
         let more = self.affordable_plans().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
         match more.filter(|more| quality(*more) > delivered) {
-            None => format!("the best{scope} is {delivered:.4} on {plan}."),
+            None => format!("The best quality{scope} is {delivered:.4} on {plan}."),
             Some(more) => format!(
-                "{delivered:.4} on {plan}. {more} delivers {:.4}{scope}, but its quota is too small for them.",
+                "{plan} delivers quality {delivered:.4}. {more} delivers {:.4}{scope}, but its quota is too small.",
                 quality(more)
             ),
         }
@@ -332,7 +332,7 @@ impl<'a> GroupOffers<'a> {
         let study =
             terms.study_level(estimates.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
         let text = format!(
-            "Required quality rises as competitors improve, and the estimate is {} old. A level {} study updates it for {} in {}.",
+            "Required quality rises as competitors improve, and the estimate is {} old. A level {} study updates the estimate for {} in {}.",
             pluralize(day - estimates.as_of, "day"),
             study.level,
             format_money(study.cost),
@@ -364,7 +364,7 @@ impl<'a> GroupOffers<'a> {
                         TrueValueRange::from_estimate(estimates.budget, estimates.max_relative_error)
                             .format_money()
                     ),
-                    format!("{} is below even the low end of that range.", format_money(price)),
+                    format!("A price of {} is below the whole budget range.", format_money(price)),
                     ActionTarget::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
                 ))
             }
@@ -380,12 +380,12 @@ impl<'a> GroupOffers<'a> {
                     .collect();
                 Some((
                     format!(
-                        "Quota: {} units a day on {plan}. Mean usage{} is {}.",
+                        "The quota of {plan} is {} units a day. Mean usage{} is {}.",
                         format_whole(self.situation.settings.quotas[plan].units()),
                         if group.is_enterprise() { " of the smallest enterprises" } else { "" },
                         TrueValueRange::from(estimates.account_usage_range()).format_units()
                     ),
-                    format!("{} units a day cover even the high end of that range.", format_whole(quota)),
+                    format!("A quota of {} units a day covers the whole usage range.", format_whole(quota)),
                     ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
                 ))
             }
@@ -393,7 +393,7 @@ impl<'a> GroupOffers<'a> {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let text = format!(
-                    "Quality: {} Required on average: {floor} ({as_of}).",
+                    "{} The mean required quality is {floor} ({as_of}).",
                     self.describe_best_plan(plan, delivered)
                 );
                 let (proposal, place) = propose_better_quality(
@@ -411,10 +411,10 @@ impl<'a> GroupOffers<'a> {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
-                    "{plan} delivers {delivered:.4} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
+                    "{plan} delivers quality {delivered:.4} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
                     format_money(self.price(plan))
                 );
-                let remedy = "Only a lower price or higher quality can win them.";
+                let remedy = "Only a lower price or higher quality can win these customers.";
                 Some(match propose_better_model(self.situation, group, plan, delivered, delivered) {
                     Some((model, place)) => (problem, format!("{remedy} {model}"), place),
                     None => (problem, remedy.to_owned(), ActionTarget::Group(group)),
@@ -479,7 +479,7 @@ fn propose_better_quality(
     // Settings stay in force for at least a week.
     let cost = PROPOSED_DEVELOPMENT_SPEND * days.max(7.0);
     let reached = format!(
-        "Development for {group} at {} a day reaches that quality in {}, for {} in total.",
+        "Development for {group} at {} a day reaches the required quality in {}, for {} in total.",
         format_money(PROPOSED_DEVELOPMENT_SPEND),
         pluralize(days as u32, "day"),
         format_money(cost)
@@ -487,7 +487,7 @@ fn propose_better_quality(
     let text = match cost > at_risk {
         true => {
             format!(
-                "{reached} This is more than the {} lost in four weeks, but the effect lasts.",
+                "{reached} The cost exceeds the {} lost in four weeks, but the effect lasts.",
                 format_money(at_risk)
             )
         }

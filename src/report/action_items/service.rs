@@ -19,7 +19,7 @@ const MAX_BACKLOG_SHARE: f64 = 0.02;
 /// Number of days in which the proposed operations clear the backlog.
 const BACKLOG_CLEARANCE_DAYS: f64 = 7.0;
 
-/// Reports a problem if usage exceeds capacity or will soon exceed it.
+/// Reports a problem if usage exceeds capacity or will soon exceed capacity.
 pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week()?;
     let tiers = &situation.terms.capacities;
@@ -116,7 +116,7 @@ pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
             percent(now, 1)
         ),
         proposal: Some(format!(
-            "{} a day reduce this share to {}.",
+            "{} a day reduce the share to {}.",
             format_money(more),
             percent(share(more), 1)
         )),

@@ -166,7 +166,7 @@ fn quality_below_the_requirement_is_found() {
     let need = assert_first_problem(
         &session,
         Problem::NoSales(group("S2")),
-        &["Quality: the best within their estimated budget of $"],
+        &["The best quality within the estimated budget of $"],
     );
     let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
     assert_eq!(arguments["targeted_spend"]["S2"], 5_000.0);
@@ -195,14 +195,14 @@ fn plan_with_higher_quality_but_too_small_quota_is_named() {
         "C has the better model"
     );
     let named = format!(
-        "Quality: {:.4} on B. C delivers {:.4} within their estimated budget of $",
+        "B delivers quality {:.4}. C delivers {:.4} within the estimated budget of $",
         delivered_quality.by_plan[Plan::B],
         delivered_quality.by_plan[Plan::C]
     );
     assert_first_problem(
         &session,
         Problem::NoSales(group("S2")),
-        &[named.as_str(), "but its quota is too small for them"],
+        &[named.as_str(), "but its quota is too small"],
     );
 }
 
@@ -220,7 +220,7 @@ fn offers_changed_today_are_not_diagnosed() {
     };
     let need = about_s1(&session).expect("few sign");
     assert!(
-        need.text.contains("Quality: the best within their estimated budget of $")
+        need.text.contains("The best quality within the estimated budget of $")
             && need.text.contains(" on A."),
         "{}",
         need.text
@@ -234,7 +234,7 @@ fn offers_changed_today_are_not_diagnosed() {
 fn too_small_quota_is_named_if_quality_suffices() {
     let calls = healthy_calls_with(&[("set_usage_quotas", json!({"A": 4, "B": 4, "C": 4}))]);
     let session = play_company(7, 1e6, &calls, 3);
-    assert_first_problem(&session, Problem::NoSales(group("S1")), &["Quota: 4 units a day on"]);
+    assert_first_problem(&session, Problem::NoSales(group("S1")), &["is 4 units a day."]);
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn outages_are_reported_with_the_operations_spend_that_reduces_them() {
     let need = assert_first_problem(
         &session,
         Problem::Outages,
-        &["Outages took", words, "$350 a day reduce this share to 1.5%"],
+        &["Outages took", words, "$350 a day reduce the share to 1.5%"],
     );
     let ActionTarget::Call(ToolId::SetDailySpend, arguments) = &need.target else { panic!("{need:?}") };
     let dollars = arguments["operations"].as_f64().expect("dollars");
@@ -382,7 +382,7 @@ fn expiring_threads_item_links_to_the_most_valuable_thread() {
     let need = assert_first_problem(
         &session,
         Problem::Threads,
-        &["enterprises wait for an answer", "Without one, their threads end by day"],
+        &["enterprises wait for an answer", "Without an answer, their threads end by day"],
     );
     let most = waiting.iter().max_by_key(|thread| thread.seats).expect("threads");
     assert_eq!(need.target, ActionTarget::Thread(most.thread));
@@ -569,7 +569,7 @@ fn quality_item_names_the_best_plan_and_keeps_other_development() {
     let all = action_items(&session);
     let need = all.iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs");
     assert!(
-        need.text.contains("Quality: the best within their estimated budget of $"),
+        need.text.contains("The best quality within the estimated budget of $"),
         "A also has too small a quota: {}",
         need.text
     );

@@ -1,4 +1,4 @@
-//! A card that summarizes a run for sharing, as text of 80 columns or as a picture. It shows the cash curve, turning
+//! A card that summarizes a run for sharing, as text of 80 columns or as a picture. The card shows the cash curve, turning
 //! points, figures and the scenario.
 
 mod svg;
@@ -13,7 +13,7 @@ use novamind_record::trajectory::record::RunEndReason;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct LabeledFigure {
-    /// Formatted value.
+    /// Formatted value of the figure.
     value: String,
     name: String,
 }
@@ -74,7 +74,7 @@ impl Card {
                     format_whole(f64::from(last.enterprise_seats)),
                     format!("seats, day {}", report.observation.day),
                 ),
-                fact(format!("{grew} of {}", report.weeks.len()), "weeks that raised cash".to_owned()),
+                fact(format!("{grew} of {}", report.weeks.len()), "weeks with rising cash".to_owned()),
             ],
             voice: describe_voice(report),
             source: describe_source(report),

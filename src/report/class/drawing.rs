@@ -1,4 +1,4 @@
-//! SVG drawings of a class. All students are grey, and the style of the page highlights one student.
+//! SVG drawings of a class. All students are drawn in grey. The style of the page highlights one student.
 
 use std::fmt::Write;
 

@@ -9,7 +9,7 @@ use crate::plot::{PlotSeries, plot_report};
 use novamind_base::formatting::{compact_number, escape_control_characters, percent};
 use novamind_course::{ClassFinding, RunVerdict};
 
-/// Describes a finding and what the instructor can do about it.
+/// Describes a finding and the action that the instructor can take.
 pub fn describe_finding(finding: &ClassFinding) -> String {
     match finding {
         ClassFinding::Unreadable { label, path, problem } => {
@@ -33,7 +33,9 @@ pub fn describe_finding(finding: &ClassFinding) -> String {
             )
         }
         ClassFinding::OtherLesson { label, run } => {
-            format!("{label}: run {run} belongs to a different lesson or version of it and does not count")
+            format!(
+                "{label}: run {run} belongs to a different lesson or to another version of the lesson and does not count"
+            )
         }
         ClassFinding::OtherHandout { label, run, of: Some(of) } => {
             format!(

@@ -1,4 +1,4 @@
-//! Text for breakpoints: their conditions, the reason why a run stopped, and the day since which a condition is true.
+//! Text for breakpoints: their conditions, the reason why a run stopped, and the day since which a condition has been true.
 
 use super::clean_up_numbers;
 use crate::formatting::pluralize;

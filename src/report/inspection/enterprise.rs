@@ -15,7 +15,9 @@ pub fn describe_enterprise(view: &EnterpriseView) -> Vec<String> {
     view.threads_on_shown_day().for_each(|thread_day| lines.extend(describe_thread(thread_day)));
     if lines.len() == before {
         lines.push(match days.last() {
-            Some(last) => format!("no thread was open on day {day}; the last one was on day {}", last.day),
+            Some(last) => {
+                format!("no thread was open on day {day}; the last day with an open thread was {}", last.day)
+            }
             None => format!("no thread was open up to day {day}"),
         });
     }

@@ -84,7 +84,7 @@ fn describe_retaining_terms(turning: &[DecisiveTerm], view: &IndividualView) -> 
     let turned = |without: &DecisiveTerm| {
         let (plan, surplus) = without.plan?;
         Some(format!(
-            "without {}, it would be plan {plan}, by {surplus:.4}",
+            "without {}, plan {plan} would be acceptable (surplus {surplus:.4})",
             describe_term(without.term, view)
         ))
     };
@@ -171,7 +171,7 @@ fn signup_headline(view: &IndividualView) -> String {
         true => format!("misses by {:.4} with noise {noise:.4}", plan_terms.required - seen),
         false => format!("costs {:.2}, and the budget is {:.2}", plan_terms.offered.price, curve.c_max),
     };
-    format!("did not sign up on day {day}: plan {plan}, which it considered, {missing}")
+    format!("did not sign up on day {day}: the considered plan {plan} {missing}")
 }
 
 fn describe_signup(first: &SignupDecision) -> Vec<String> {

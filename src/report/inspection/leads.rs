@@ -8,8 +8,8 @@ pub fn factor_line_index(factor: LeadFactor) -> usize {
     2 + factor as usize
 }
 
-/// Describes the lead equation of the last day and the range of each factor over all days. Also shows λ with the
-/// factors in `held` fixed.
+/// Describes the lead equation of the last day and the range of each factor over all days. Also shows λ, the expected
+/// number of leads, with the factors in `held` fixed.
 pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
     let Some(lead_equation) = days.last() else { return Vec::new() };
     let mut lines = vec![format!("leads of {} on day {}", lead_equation.group, lead_equation.day)];

@@ -43,7 +43,7 @@ pub fn clean_up_line(text: &str) -> String {
     settled + rest
 }
 
-/// Writes a number in powers of ten if it has too many digits before the decimal point.
+/// Writes a number in powers of ten if the number has too many digits before the decimal point.
 fn to_scientific(number: &str) -> Option<String> {
     let plain = number.replace(',', "");
     let digits = plain.split('.').next().map_or(0, str::len);

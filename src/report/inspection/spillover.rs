@@ -25,11 +25,11 @@ pub struct SpilloverMap {
 /// Effects of one source group on all target groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpilloverRow {
-    /// The source group.
+    /// Group whose reputation change spreads to other groups.
     pub from: Group,
     /// Change of the source group's own reputation.
     pub own_change: String,
-    /// Effect on each target.
+    /// Effect on each target group.
     pub cells: Vec<SpilloverCell>,
 }
 

@@ -13,7 +13,7 @@ pub fn describe_next_draws(next_draws: &NextDraws) -> Vec<String> {
     let over = if next_draws.is_over { "; the run has ended, so this day is not simulated" } else { "" };
     let mut lines = vec![format!("next draws of {}, day {day}{over}", part.id())];
     if next_draws.is_replayed {
-        lines.push("  a recorded series replaces these draws for its length".to_owned());
+        lines.push("  a recorded series replaces these draws on the days that it covers".to_owned());
     }
     match streams.iter().any(|keyed_draws| keyed_draws.draws.len() > MAX_ROW_DRAWS) {
         true => streams.iter().for_each(|keyed_draws| lines.extend(all_draws(keyed_draws))),
@@ -97,7 +97,7 @@ fn describe_failed_payments(rate: f64, customers: &[u32]) -> String {
         more => format!(" and {more} more"),
     };
     match customers.is_empty() {
-        true => format!("{:.2} % of payments fail; none does", rate * 100.0),
+        true => format!("{:.2} % of payments fail; none on this day", rate * 100.0),
         false => format!("{:.2} % of payments fail: customers {}{more}", rate * 100.0, named.join(", ")),
     }
 }

@@ -28,7 +28,7 @@ use timeline::{Timeline, WeekSpan};
 /// Log of a run and of the player's actions in it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Logbook {
-    /// Run ID.
+    /// ID of the run.
     pub run: String,
     /// Label of the participant, as the experimenter assigned it.
     pub participant: Option<String>,
@@ -70,11 +70,11 @@ pub struct Logbook {
     pub ended_at: Option<String>,
     /// Reason why the run ended.
     pub ended: Option<RunEndReason>,
-    /// Last simulated day.
+    /// Last simulated day of the run.
     pub day: u32,
     /// Cash after the last simulated day, dollars.
     pub cash: f64,
-    /// Final score, dollars.
+    /// Final score of the run, dollars.
     pub score: Option<f64>,
     /// Simulated weeks with the actions before each week.
     pub weeks: Vec<WeekRecord>,
@@ -88,7 +88,7 @@ pub struct Logbook {
     pub sittings: SessionCount,
     /// Summary of the player's notes.
     pub notes: NotesSummary,
-    /// Number of weeks decided in less than ten active seconds.
+    /// Number of weeks that the player decided in less than ten active seconds.
     pub fast_weeks: u32,
     /// Sums of all counts and durations over the whole run.
     pub total: PlayerEffort,
@@ -128,7 +128,7 @@ pub struct WeekRecord {
     pub decision_day: u32,
     /// Last simulated day of the week.
     pub day: u32,
-    /// Number of simulated days.
+    /// Number of days that were simulated in the week.
     pub days_run: u32,
     /// Whether the week was copied from the parent run instead of being played in this run.
     pub inherited: bool,
@@ -151,7 +151,7 @@ pub struct WeekRecord {
     pub naive_forecasts: Vec<bool>,
     /// Whether at least one forecast is naive; `None` if no forecast was filed.
     pub filled_naively: Option<bool>,
-    /// Whether a time limit filed the week.
+    /// Whether the week was filed automatically because a time limit was reached.
     pub filed_at_limit: bool,
     /// Figures of the week, as recorded in its line of the trajectory.
     pub figures: Map<String, Value>,

@@ -36,7 +36,7 @@ pub(super) struct WeekSpan {
     pub forecasts: Vec<SubmittedForecast>,
     /// Whether at least one forecast is naive; `None` if no forecast was filed.
     pub filled_naively: Option<bool>,
-    /// Whether a time limit filed the week, without a rationale from the player.
+    /// Whether the week was filed automatically because a time limit was reached. The rationale is then not the player's.
     pub filed_at_limit: bool,
     pub figures: Map<String, Value>,
     pub state_hash: String,

@@ -107,7 +107,7 @@ fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// Describes a positive margin as a share of the price, and a loss as the ratio of compute to the price.
+/// Describes a positive margin as a share of the price, and a loss as the ratio of compute cost to the price.
 fn describe_margin(margin: Option<f64>, of: &str) -> String {
     match margin {
         None => format!("an unknown share of {of}"),

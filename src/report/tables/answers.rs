@@ -45,7 +45,7 @@ pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = Lin
             Record::Activity(Activity::Answer(answer)) if is_answer_to(answer, question_shown) => {
                 Some(Some((later, answer)))
             }
-            // If the question is shown again before it is answered, the answer belongs to the later line.
+            // If a question is shown again before the participant answers, the answer belongs to the later line.
             Record::Activity(Activity::Question(again))
                 if again.id == question_shown.id && is_same_question(again, question_shown) =>
             {

@@ -145,8 +145,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "first_forecast_error_182", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 182);
         "weeks_filled_naively", "count", "weeks with at least one naive forecast"
             => run.measures.filled_naively.0;
-        "weeks_filed_at_limit", "count", "weeks filed by a time limit; their rationale is not the player's and counts no \
-         words" => run.weeks.iter().filter(|week| week.filed_at_limit).count();
+        "weeks_filed_at_limit", "count", "weeks filed automatically at a time limit; words of their rationales are not counted, because the player did not write them" => run.weeks.iter().filter(|week| week.filed_at_limit).count();
         "acting_calls", "count", "accepted calls that changed the run; excludes read-only calls" => run.measures.tools.calls;
         "acting_calls_per_week", "per week", "accepted calls that changed the run, per simulated week" => rounded(run.measures.tools.per_week);
         "tools_used", "count", "number of different tools in accepted calls that changed the run" => run.measures.tools.tools.len();

@@ -94,7 +94,7 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "planning_words", "count", "planning words of the rationale (as in runs.csv)" => row.week.wording.planning;
         "if_words", "count", "occurrences of \"if\" in the rationale" => row.week.wording.ifs;
         "filled_naively", "0 or 1", "1: at least one forecast was naive" => row.week.filled_naively;
-        "filed_at_limit", "0 or 1", "1: a time limit filed the week" => row.week.filed_at_limit;
+        "filed_at_limit", "0 or 1", "1: the week was filed automatically at a time limit" => row.week.filed_at_limit;
         "forecast_7_point", "dollars", "cash predicted for 7 days ahead" => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.point);
         "forecast_7_lower", "dollars", LOWER_MEANING => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.lower);
         "forecast_7_upper", "dollars", UPPER_MEANING => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.upper);

@@ -85,7 +85,7 @@ pub enum TranscriptAction {
     },
     /// A database query.
     Query {
-        /// SQL statement.
+        /// SQL statement of the query.
         sql: String,
         /// Rows in the form that programs receive, or error code and message.
         answer: Result<Value, (String, String)>,

@@ -34,7 +34,8 @@ pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> 
     )
 }
 
-/// Formats a rejected call as a one-line comment. Escapes the name of an unknown tool, because it can contain any characters.
+/// Formats a rejected call as a one-line comment. Escapes the name of an unknown tool, because the name can contain
+/// any characters.
 pub(super) fn rejected_call_comment(tool: &CalledTool, args: &Value, code: &str) -> String {
     let name = tool.tool_id().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
     format!("# refused ({code}): {name} {args}")

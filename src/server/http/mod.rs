@@ -197,7 +197,8 @@ async fn accept_connections(
     }
 }
 
-/// Rejects a connection, and reads its input until it closes. Closing a connection with unread data can lose the response.
+/// Rejects a connection, and reads its input until the client closes the connection. Closing a connection with unread
+/// data can lose the response.
 async fn reject_connection(mut stream: TcpStream) {
     let message =
         format!("the server has {MAX_CONNECTIONS} open connections; send the request again in a second");

@@ -43,12 +43,13 @@ pub type ImportResult = (Seal, Option<LabPublicKey>, ImportOutcome);
 /// outcome. Before creating the run, checks the seal, the hash of every file, the hash chain of the trajectory, and
 /// that the archive has no other files.
 ///
-/// With `name`, imports the run under that name, next to another record of the same run. The lines keep the original run id.
+/// If `name` is given, imports the run under that name, even if the folder already contains a recording of the same
+/// run. The lines keep the original run id.
 ///
 /// # Errors
 /// [`RunError::InvalidArchive`] if the archive is damaged or unsafe, or is not an archive of a run; names the file.
-/// [`RunError::AlreadyExists`] if another state of the run exists, or the name is taken. [`RunError::InvalidRequest`]
-/// if `name` is invalid. After an error, nothing has changed.
+/// [`RunError::AlreadyExists`] if the folder contains the run with an earlier, later or different trajectory or
+/// manifest, or if `name` is in use. [`RunError::InvalidRequest`] if `name` is invalid. After an error, nothing has changed.
 pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportResult, RunError> {
     if let Some(name) = name.filter(|name| !is_valid_run_name(name)) {
         let message = format!(

@@ -117,7 +117,7 @@ impl LabPublicKey {
 /// Returns the signer of a seal, given the contents of `seal.sig`.
 ///
 /// # Errors
-/// A description of the problem if the signature is not valid for the seal.
+/// Returns a description of the problem if the signature is not valid for the seal.
 pub(super) fn verify_signature(seal: &str, signature: &str) -> Result<LabPublicKey, String> {
     let file: SignatureFile = toml::from_str(signature)
         .map_err(|error| format!("seal.sig cannot be read ({})", error.message()))?;

@@ -1,7 +1,7 @@
 //! Archives: a run as one file, sealed on export and checked on import.
 //!
-//! An archive is a tar file, compressed with gzip if its name ends in `.gz` or `.tgz`. It contains one folder, named
-//! after the run, with these files:
+//! An archive is a tar file, compressed with gzip if its name ends in `.gz` or `.tgz`. The archive contains one
+//! folder, named after the run, with these files:
 //! | file | content |
 //! |---|---|
 //! | `seal.toml` | length and BLAKE3 hash of every file, last line of the trajectory, and a checksum of the seal |
@@ -13,8 +13,8 @@
 //! | `memo.md` | the player's notes, if there are any |
 //! | `world.db` | the observable company in ordinary tables, for any SQLite tool |
 //!
-//! An archive contains no other files of the run folder. In particular, it contains no snapshot and therefore no
-//! hidden state. The export simulates the run again to create the database, so every archive is verified. The import
+//! An archive contains no other files of the run folder. In particular, an archive contains no snapshot and therefore
+//! no hidden state. The export simulates the run again to create the database, so every archive is verified. The import
 //! writes all files except the seal, the signature and the database. The database is rebuilt.
 
 mod export;

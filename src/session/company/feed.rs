@@ -30,7 +30,7 @@ pub struct Feed {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     built_in: BTreeMap<u32, String>,
     complains: Vec<bool>,
-    /// Judgements of the player's posts, in the order of the posts. Empty for posts that are not judged yet.
+    /// Judgements of the player's posts, in the order of the posts. A post that is not judged yet has an empty list.
     pub judgements: Vec<Vec<Judgement>>,
 }
 

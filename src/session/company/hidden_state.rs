@@ -42,7 +42,7 @@ impl<'a> HiddenState<'a> {
         }
     }
 
-    /// Returns the ledger entries of calls between the last two days.
+    /// Returns the ledger entries of the calls between the last simulated day and the day before.
     pub fn call_ledger(&self) -> &'a [LedgerEntry] {
         self.call_ledger
     }
@@ -87,7 +87,7 @@ impl<'a> HiddenState<'a> {
         self.world.market.yields[channel][group]
     }
 
-    /// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are no active
+    /// Returns the mean satisfaction and the mean relationship of a group's active subscribers; `None` if there are no active
     /// subscribers.
     pub fn mean_satisfaction(&self, group: Group) -> Option<(f64, f64)> {
         mean_satisfaction(self.world, group)

@@ -174,7 +174,7 @@ fn describe_companies(count: u32, group: Option<Group>) -> String {
     format!("{} {noun}{of}", grouped_number(f64::from(count), 0))
 }
 
-/// Returns the plan at position `at` of all messages, with its lowest and highest price.
+/// Returns the plan that every message offers at position `at`, with its lowest and highest price.
 fn price_range_of_offering(messages: &[&OfferMessage], at: usize) -> (Plan, f64, f64) {
     let prices = messages.iter().map(|message| message.offerings[at].price);
     let (least, most) =

@@ -30,8 +30,7 @@ pub struct WeekResult {
     pub notices: Vec<(u32, String)>,
     /// Reason for the end of the run, if the run ended with this week.
     pub ended: Option<RunEndReason>,
-    /// Message about a problem: the closing line is not saved, the next day would exceed the lead limit, the
-    /// database is not written, or the language model did not respond.
+    /// Message about a problem with the closing line, the lead limit of the next day, the database or the language model.
     pub remark: Option<String>,
 }
 

@@ -1,8 +1,8 @@
 //! The simulated company and its texts, with parameters and seed. A snapshot stores the simulation and its
 //! [`History`](super::history::History).
 //!
-//! The texts, the facts hash and the database rows of a day do not affect the company. They are computed while the
-//! next day is simulated.
+//! The texts, the facts hash and the database rows of a day do not affect the company. A thread computes this output
+//! of a day while the next day is simulated.
 
 use std::sync::Arc;
 
@@ -273,7 +273,7 @@ struct FactsProcessor<'a> {
 
 impl FactsProcessor<'_> {
     /// Adds the facts to the feed, the hash chain and the database. The database writer shares the facts without
-    /// copying them. Does nothing without `notices`.
+    /// copying them. Does nothing if `notices` is `None`.
     fn process(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
         let Some(notices) = notices else { return };
         self.feed.add_posts(facts, self.params, self.streams);

@@ -9,7 +9,8 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::manifest_check::ManifestCheck;
 use novamind_record::folder::runs::all_run_folders;
 
-/// Returns the consent for a new baseline run. The participant gives consent now, or gave it for an earlier run.
+/// Returns the consent for a new baseline run. Uses the agreement in `new`, or the participant's consent to the same
+/// text in an earlier run.
 ///
 /// # Errors
 /// [`RunError::ConsentNeeded`] with the consent text if the participant has not agreed to it. Other errors if the

@@ -26,8 +26,8 @@ pub enum Attention {
     Active,
     /// The participant answered questions of the study.
     Answering,
-    /// The participant was idle: no key was pressed. If the interface does not monitor keys, no line was written for
-    /// more than ten minutes.
+    /// The participant was idle: no key was pressed. If the interface does not monitor keys, a gap of more than ten
+    /// minutes between lines counts as idle.
     Idle,
     /// The participant was away: the program was closed or suspended, or another window had the focus.
     Away,
@@ -224,7 +224,7 @@ impl Attendance {
         self.end_ns
     }
 
-    /// Returns how often the wall clock was set back between two lines.
+    /// Returns the number of times that the wall clock was set back between two lines.
     pub fn clock_set_back_count(&self) -> u32 {
         self.clock_set_back_count
     }
@@ -310,7 +310,7 @@ impl Attendance {
                 let watches_keys = presence.interface.as_deref() == Some(KEY_WATCHING_INTERFACE);
                 self.connection = ConnectionState::Open { watches_keys };
                 self.session_start_ns = self.end_ns;
-                // The program asks unanswered questions again.
+                // The program shows unanswered questions again after it has opened the run.
                 self.open_questions = 0;
                 (self.is_idle, self.is_suspended, self.has_lost_focus) = (false, false, false);
             }
@@ -349,7 +349,7 @@ impl Attendance {
         }
     }
 
-    /// Returns the number of weeks that were decided implausibly fast.
+    /// Returns the number of weeks whose decisions were implausibly fast.
     pub fn fast_week_count(&self) -> u32 {
         let is_fast =
             |week: &&AttendedWeek| week.is_implausibly_fast(&self.spent_between(week.from, week.to));
@@ -381,7 +381,7 @@ fn is_user_action(record: &Record) -> bool {
     }
 }
 
-/// Active time in seconds below which a week was decided implausibly fast.
+/// Active time in seconds below which the decisions of a week were implausibly fast.
 pub const FAST_WEEK_SECONDS: f64 = 10.0;
 
 /// The period in which a week, or single days, were decided and simulated.
@@ -505,7 +505,7 @@ mod tests {
             (335, presence_record(PresenceEvent::Closed)),
             (1335, opened_record("console")),
             (1340, view_record()),
-            // The program was killed here, so there is no `closed` line.
+            // The program was killed before this line, so there is no `closed` line.
             (1400, opened_record("console")),
             (1401, presence_record(PresenceEvent::FocusLost)),
             (1403, help_record()),

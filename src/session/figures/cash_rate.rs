@@ -1,5 +1,5 @@
-//! The rate at which cash changes: costs that the settings commit to, and income and variable costs of recent weeks.
-//! Naive forecasts and the runway are computed from this rate.
+//! The rate at which cash changes: costs to which the settings commit the company, and income and variable costs of
+//! recent weeks. Naive forecasts and the runway are computed from this rate.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ const RECENT_WEEKS: usize = 4;
 /// Components of the cash rate, in dollars per day.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct CashRate {
-    /// Costs that the settings commit to: capacity, operations, development, advertising.
+    /// Costs to which the settings commit the company: capacity, operations, development, advertising.
     pub committed: f64,
     /// Payments and ad revenue, mean of the last four weeks.
     pub income: f64,

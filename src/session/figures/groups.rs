@@ -143,7 +143,7 @@ pub(crate) fn finish_week(
     }
 }
 
-/// Returns mean satisfaction and mean relationship of a group's active subscribers, or `None` if the group has no
+/// Returns the mean satisfaction and the mean relationship of a group's active subscribers, or `None` if the group has no
 /// active subscribers.
 pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();

@@ -17,7 +17,7 @@ pub enum JournalEntry {
         seq: u64,
         /// Decision day.
         day: u32,
-        /// Called tool.
+        /// Tool that was called.
         tool: ToolId,
         /// Arguments of the call.
         args: Value,

@@ -12,17 +12,17 @@ use novamind_record::figures::WeekFigures;
 use novamind_tools::Forecast;
 use novamind_world::events::Category;
 
-/// Number of weeks up to which a company is young.
+/// Maximum age of a young company, in completed weeks.
 const YOUNG_WEEKS: usize = 4;
-/// Ratio of current income to the income four weeks before above which income counts as growing. Below the inverse
-/// ratio, income counts as shrinking.
+/// Income counts as growing above the income four weeks earlier times this factor, and as shrinking below that income
+/// divided by this factor.
 const MIN_GROWTH_RATIO: f64 = 1.3;
 /// Number of past errors per horizon that affect the width of an interval.
 const MAX_REMEMBERED_ERRORS: usize = 8;
 /// Weight of past errors in the width of an interval. The width is multiplied by this weight times the root mean
-/// square of past errors (in intervals), if the product is above 1.
+/// square of `error_intervals` of past forecasts, if the product is above 1.
 const PAST_ERROR_WEIGHT: f64 = 1.5;
-/// Maximum past error that is considered, in intervals.
+/// Upper limit of `error_intervals` of a past forecast.
 const MAX_ERROR_INTERVALS: f64 = 10.0;
 /// Minimum expected cash flow, dollars per day.
 const MIN_FLOW_PER_DAY: f64 = 1.0;
@@ -82,7 +82,7 @@ impl GrowthStage {
     }
 }
 
-/// An interval around the predicted value, in shares of the expected flow.
+/// An interval around the predicted value, as shares of the expected flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ErrorInterval {
     /// Stage of the companies to which the interval applies.
@@ -201,7 +201,7 @@ pub struct Hindcast {
     /// Whether the interval contains the outcome including purchases.
     pub is_covered: bool,
     due_week: usize,
-    /// Error of the forecast, in intervals.
+    /// Error of the forecast, as a multiple of the distance from the prediction to the end of the interval.
     error_intervals: f64,
 }
 

@@ -116,7 +116,7 @@ mod without {
                 .to_owned())
         }
 
-        /// Returns an error. Never called, because the endpoint cannot be created.
+        /// Returns an error. The function is never called, because the endpoint cannot be created.
         ///
         /// # Errors
         /// Always fails.

@@ -256,8 +256,8 @@ impl Session {
         self.simulation.state_hash()
     }
 
-    /// Rejects an inspection if hidden state must not be shown. The result depends only on the mode, the study, the
-    /// lesson, and whether run and lesson have ended.
+    /// Rejects an inspection if hidden state must not be shown. The decision depends only on the mode, the study, the
+    /// lesson, and whether the run and the lesson have ended.
     ///
     /// # Errors
     /// The rejection `not_in_this_mode`.

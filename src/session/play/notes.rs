@@ -91,7 +91,8 @@ impl Session {
     }
 }
 
-/// Returns the file with the last recorded notes. This is the draft if the program stopped before replacing the notes file.
+/// Returns the file with the last recorded notes. Returns the draft file if the program stopped before replacing the
+/// notes file.
 pub(crate) fn current_notes_file(folder: &Path, trajectory: &Trajectory) -> PathBuf {
     let (file, draft) = (folder.join(NOTES_FILE), folder.join(DRAFT_FILE));
     let kept = last_notes_digest(trajectory);

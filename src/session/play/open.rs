@@ -60,8 +60,8 @@ impl Session {
         Session::open_with_cache(folder, access, projection, key, None)
     }
 
-    /// Opens a run like [`Session::open_sealed`]. With `keeping`, stores the simulated state and database for later
-    /// read-only commands.
+    /// Opens a run like [`Session::open_sealed`]. If `keeping` is set, stores the simulated state and the database for
+    /// later read-only commands.
     ///
     /// # Errors
     /// The same errors as [`Session::open`].

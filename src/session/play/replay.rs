@@ -196,7 +196,7 @@ impl Session {
     }
 }
 
-/// Compares the recorded figures with the reached figures, which are derived from the state.
+/// Compares the recorded figures with the figures that the replay computed from its state.
 fn compare_figures(reached: &ClosedDays, recorded: &ClosedDays) -> Result<(), String> {
     let name = if reached.days_run != recorded.days_run {
         "days_run"

@@ -1,7 +1,7 @@
 //! Undo and redo of the setting changes of the current week.
 //!
-//! Undo and redo are regular calls that restore values with the tool that set them. Their lines name the call that is
-//! undone or redone. Calls without effect are skipped.
+//! Undo and redo are regular calls that restore values with the tool that set them. The line of an undo or redo names
+//! the call that is undone or redone. Calls without effect are skipped.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! The language model of a run: scoring the player's posts on the next day, rewording posts at the end of a week,
-//! replaying recorded responses, and connecting the model to a reopened run.
+//! The language model of a run. The model scores the player's posts on the next day and rewords posts at the end of a
+//! week. The module also replays recorded responses, and connects the model to a reopened run.
 
 use std::path::Path;
 

@@ -226,8 +226,8 @@ impl Playback {
         self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
     }
 
-    /// Returns whether hidden state of the recorded run may be shown. This depends on whether the recorded run has
-    /// ended, not on the position.
+    /// Returns whether hidden state of the recorded run may be shown. The result depends on whether the recorded run
+    /// has ended, not on the position.
     pub fn can_inspect(&self) -> bool {
         let Origin { manifest, folder, .. } = &self.origin;
         let is_over = || self.has_end_record() && is_lesson_over(folder.as_deref(), manifest);
@@ -363,8 +363,8 @@ fn standalone_rejection() -> Rejection {
     Rejection::new("not_possible", message)
 }
 
-/// Applies the lines after the first `applied` lines. Returns the number of applied lines, and either `Continue` after
-/// the last line, `Break` if `progress` stopped the seek, or the index and error of an invalid line.
+/// Applies the lines after the first `applied` lines. Returns the number of applied lines and the outcome: `Continue`
+/// after the last line, `Break` if `progress` stopped the seek, or the index and error of an invalid line.
 fn apply_lines(
     session: &mut Session,
     path: &Path,

@@ -52,7 +52,7 @@ impl CapturedPipe {
         Ok(CapturedPipe { buffer: kept, end })
     }
 
-    /// Waits until the pipe is closed, at most `time`. Returns whether the pipe was closed in time.
+    /// Waits for at most `time` until the pipe is closed. Returns whether the pipe was closed in time.
     pub fn closes_within(&self, time: Duration) -> bool {
         self.end.recv_timeout(time) != Err(RecvTimeoutError::Timeout)
     }

@@ -41,7 +41,7 @@ impl Channel {
         Ok((Channel { socket, partial_line: Vec::new() }, OwnedFd::from(other)))
     }
 
-    /// Waits for a request from the script, at most `time`.
+    /// Waits for a request from the script, for at most `time`.
     pub fn receive(&mut self, time: Duration) -> ChannelEvent {
         if let Some(request) = self.take_line() {
             return ChannelEvent::Request(request);

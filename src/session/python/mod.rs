@@ -37,7 +37,8 @@ pub(crate) enum ScriptRequest {
     Vars,
 }
 
-/// The host of a script. It reports whether the player has stopped the script, and answers requests within the remaining time.
+/// The host of a script, which reports whether the player has stopped the script, and answers the requests of the
+/// script within the remaining time.
 pub(crate) struct ScriptHost<'a> {
     pub(crate) is_stopped: &'a dyn Fn() -> bool,
     pub(crate) answer: &'a mut dyn FnMut(ScriptRequest, Duration) -> Result<Value, Rejection>,

@@ -1,5 +1,5 @@
-//! The process of a script. It is started in a clean environment, its requests are answered, and it is terminated
-//! together with its child processes.
+//! The process of a script. The session starts the process in a clean environment, answers the requests of the script,
+//! and terminates the process together with its child processes.
 
 use std::ffi::OsString;
 use std::os::unix::process::{CommandExt, ExitStatusExt};

@@ -71,7 +71,8 @@ fn script_result(
                 (None, signal) => format!("python3 was terminated by signal {}", signal.unwrap_or_default()),
             };
             let traceback = process.stderr.last_text(MAX_TRACEBACK_CHARACTERS);
-            // The last line of the traceback is the error message. Put it first for displays that show only one line.
+            // The last line of the traceback is the error message. Put this message first, because some displays show
+            // only one line.
             let what = traceback.trim_end().lines().next_back().filter(|line| !line.trim().is_empty());
             let what = what.map_or_else(|| how.clone(), |what| format!("{}; {how}", what.trim()));
             Err(script_failed(format!(

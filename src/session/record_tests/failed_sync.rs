@@ -65,7 +65,7 @@ fn failed_append_keeps_earlier_lines() {
             "killing the program loses nothing"
         );
         cache.fail_next_syncs(0);
-        // The next line is not synced, but it triggers a rewrite of earlier lines that is synced.
+        // Appending the next line does not sync that line, but rewrites and syncs the earlier lines.
         writer.append(1, &memo_record(1), Durability::Written).expect("a line");
         assert!(memo_lengths(&cache.bytes_after_power_cut()).iter().all(|length| *length == 1));
     }
@@ -127,7 +127,7 @@ fn writer_creates_no_file_if_the_folder_cannot_be_synced() {
     let path = folder.path().join("afterwards.jsonl");
     sync_probe::reset(true);
     assert!(TrajectoryWriter::create(&path).is_err());
-    assert!(!path.exists(), "the next attempt creates the name again");
+    assert!(!path.exists(), "the next attempt can create the file again");
     sync_probe::reset(false);
     TrajectoryWriter::create(&path).expect("a file");
     assert!(sync_probe::has_synced(&path));

@@ -120,7 +120,7 @@ impl<'a> ActivityLog<'a> {
         let event = clock.event;
         let stopped = (event == ClockEvent::Stopped).then(|| parse_seconds(&now()));
         self.record(Activity::Clock(clock));
-        // Set this even if the rules exclude clock lines from the record, because the screen is covered in any case.
+        // Update the clock even if the rules exclude clock lines from the record, because the screen is covered in any case.
         self.log.clock.stopped_at = stopped;
         self.log.clock.is_stopped_by_limit &= event != ClockEvent::Started;
     }
@@ -136,7 +136,7 @@ impl<'a> ActivityLog<'a> {
             let used_ms = ((f64::from(left.minutes) * 60.0 - left.seconds) * 1e3) as u64;
             let limit = Limit { limit: left.scope, event, minutes: left.minutes, used_ms };
             self.record(Activity::Limit(limit.clone()));
-            // Set this even if the rules exclude limit lines from the record.
+            // Mark the limit as reported even if the rules exclude limit lines from the record.
             self.log.clock.reported_limits.insert((limit.limit, event != LimitEvent::Warned));
             self.log.clock.is_stopped_by_limit |= event == LimitEvent::Paused;
             limits.push(limit);

@@ -12,7 +12,7 @@ pub(crate) struct SessionClock {
     pub(super) stopped_at: Option<f64>,
     /// Whether a time limit has stopped the clock and the clock was not started since.
     pub(super) is_stopped_by_limit: bool,
-    /// Reported limits, each with whether the limit was reached (true) or near (false).
+    /// Reported limits. The flag is true if the limit was reached, and false if the limit was near.
     pub(super) reported_limits: BTreeSet<(LimitScope, bool)>,
 }
 

@@ -47,7 +47,7 @@ pub fn record_external_read(folder: &Path, command: &str, detail: &str) -> Resul
         Activity::ExternalRead(ExternalRead { command: command.to_owned(), detail: detail.to_owned() });
     let trajectory = Trajectory::read(&path)?;
     if trajectory.unfinished_bytes > 0 || has_pending_week(&trajectory) {
-        // Complete an interrupted run first by opening it for play.
+        // First open the interrupted run for play, which removes an unfinished line and completes an interrupted week.
         drop(lock);
         let mut session = Session::open(folder, Access::Write, true)?;
         session.activity().record(activity);

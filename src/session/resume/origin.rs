@@ -33,8 +33,8 @@ impl Origin {
         Ok(Session::new_read_only(manifest, self.folder.clone(), params, Some(projector)))
     }
 
-    /// Replays recorded lines in memory. Calls `after_line` with the session after each line. With `has_database`, the
-    /// database is up to date at each `lesson` line.
+    /// Replays recorded lines in memory. Calls `after_line` with the session after each line. If `has_database` is
+    /// true, the database is up to date at each `lesson` line.
     ///
     /// # Errors
     /// A line does not reproduce the recorded state, or `after_line` returns an error.

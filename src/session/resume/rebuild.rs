@@ -81,8 +81,8 @@ pub fn open_database_file(
 }
 
 impl Session {
-    /// Opens a run read-only. If the run has ended and had to be simulated, stores a snapshot and the database in its
-    /// folder, so that the next command opens the run immediately.
+    /// Opens a run read-only. If the run has ended and had to be simulated, stores a snapshot and the database in the
+    /// run folder. The next command then opens the run immediately.
     ///
     /// # Errors
     /// The same errors as [`Session::open`].
@@ -95,7 +95,7 @@ impl Session {
         Session::open_with_cache(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
-    /// Writes the snapshot of an ended run that was simulated to be read. Does nothing if the run is in use, or if its
+    /// Writes the snapshot of an ended run that a read-only command has simulated. Does nothing if the run is in use, or if its
     /// folder cannot be written.
     fn store_final_snapshot(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {

@@ -1,7 +1,7 @@
 //! The snapshot file, `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens quickly.
 //!
-//! A snapshot is used only if it is intact, was written by this version for this run and these parameters, and
-//! belongs to a line that is in the trajectory. Otherwise, the run is simulated from its start, which takes longer
+//! A snapshot is used only if it is intact, if this version wrote it for this run and these parameters, and if its
+//! line is in the trajectory. Otherwise, the run is simulated from its start, which takes longer
 //! (docs/formats/snapshot.md).
 //!
 //! The file consists of a title line, an envelope and sealed canonical bytes. The sealed bytes contain the header as
@@ -65,7 +65,7 @@ struct Header {
     database: Option<String>,
 }
 
-/// The stored history of a session. Its values are borrowed for writing and owned after reading.
+/// The stored history of a session. The values are borrowed for writing and owned after reading.
 #[derive(Serialize, Deserialize)]
 struct StoredHistory<'a> {
     weeks: Cow<'a, [WeekFigures]>,
@@ -242,8 +242,8 @@ pub(crate) struct SnapshotSource<'a> {
 }
 
 impl SnapshotSource<'_> {
-    /// Returns a function that writes the snapshot. Its argument is the digest of the database file, if known. The
-    /// state is copied immediately, so the function can run on another thread while the company changes.
+    /// Returns a function that writes the snapshot. The argument of the function is the digest of the database file,
+    /// if known. The state is copied immediately, so the function can run on another thread while the company changes.
     pub(crate) fn writer(
         &self,
         state_hash: String,

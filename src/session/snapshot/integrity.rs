@@ -29,7 +29,7 @@ pub struct Integrity {
 
 impl Integrity {
     /// Reads the snapshot and the position of the database. Must be called before the trajectory is read, because
-    /// another program may append lines in between.
+    /// another program may append lines between the two reads.
     pub fn read(folder: &Path, manifest: &Manifest, key: &SealKey) -> Integrity {
         let mut remarks = Vec::new();
         let snapshot = Snapshot::read(folder, key).unwrap_or_else(|problem| {
@@ -148,8 +148,8 @@ pub(crate) fn is_database_unchanged(folder: &Path, key: &SealKey) -> bool {
 /// Returns the number, from 1, of the line that is missing or changed according to a stored position, and the problem.
 fn find_contradiction(trajectory: &Trajectory, position: &ProjectionPosition) -> Option<(u64, &'static str)> {
     let last = trajectory.lines.last()?;
-    // An incomplete line is removed with a message. A week without its `week` and `end` lines is simulated again. Such
-    // lines may be missing.
+    // An incomplete line is removed with a message. A week without its `week` and `end` lines is simulated again.
+    // These lines may therefore be missing.
     let is_open = matches!(last.record, Record::Advance(_) | Record::Voice(VoiceAnswer::Scores(_)));
     let has_model = matches!(&trajectory.lines[0].record, Record::Start(start) if start.voice.is_some());
     // With a language model, two more lines may be missing, because the model is not asked again for texts and scores.

@@ -11,13 +11,13 @@ use novamind_world::settings::{PerPlan, Settings};
 pub struct IdenticalPlans {
     /// The less expensive plan, or the first plan if the prices are equal.
     pub cheap: Plan,
-    /// The other plan.
+    /// The more expensive plan, or the second plan if the prices are equal.
     pub dear: Plan,
     /// List price of the less expensive plan, dollars per month.
     pub cheap_price: f64,
-    /// List price of the other plan, dollars per month.
+    /// List price of the more expensive plan, dollars per month.
     pub dear_price: f64,
-    /// Active subscriptions to the other plan.
+    /// Active subscriptions to the more expensive plan.
     pub subscribers: u32,
     /// Whether the plans already differed only in price at the end of the last week.
     pub before: bool,

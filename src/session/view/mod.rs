@@ -80,7 +80,7 @@ impl<'a> CompanyView<'a> {
         week_end(self.simulation.world.day + 1, self.simulation.params.run.days_per_week, self.manifest.days)
     }
 
-    /// Returns the social feed's posts of other authors, ordered by number.
+    /// Returns the posts of other authors in the social feed, ordered by number.
     pub fn posts(&self) -> &'a [PublicPost] {
         &self.simulation.feed.posts
     }

@@ -55,7 +55,7 @@ pub struct Observation {
     pub booked_since: CategoryTotals,
     /// Rate at which cash currently changes.
     pub pace: CashRate,
-    /// Costs to which the settings at the end of the last week commit, dollars per day.
+    /// Costs to which the settings at the end of the last week committed the company, dollars per day.
     pub committed_before: f64,
     /// Weeks until cash is 0 at the current rate; `None` if cash lasts to the last day.
     pub runway_weeks: Option<f64>,

@@ -111,8 +111,8 @@ impl CompanyView<'_> {
         }
     }
 
-    /// Returns the projects that will finish after the last day. Their completion days are not hidden: the tool call
-    /// that started a project returned its day.
+    /// Returns the projects that will finish after the last day. The completion days are not hidden: the tool call
+    /// that started a project returned the completion day.
     pub(crate) fn late_projects(&self) -> Vec<LateProject> {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let projects = self.simulation.world.product.research.iter();

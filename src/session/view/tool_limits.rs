@@ -68,7 +68,7 @@ pub struct ToolLimits {
 }
 
 impl ToolLimits {
-    /// Returns the limits of a study level, if the level exists.
+    /// Returns a study level with its cost, duration and error, or `None` if the level does not exist.
     pub fn study_level(&self, level: u8) -> Option<&StudyLevel> {
         self.levels.iter().find(|study_level| study_level.level == level)
     }

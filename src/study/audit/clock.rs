@@ -10,8 +10,8 @@ const MAX_CORRECTION_SECONDS: f64 = 2.0;
 const MAX_DRIFT: f64 = 500e-6;
 
 /// Returns the lines before which the wall clock was changed, each with an explanation. The wall clock must not go
-/// back between two lines. It must agree with the monotonic clock between two `session` lines that were written since
-/// the same start of the machine.
+/// back between two lines. The wall clock must agree with the monotonic clock between two `session` lines that were
+/// written since the same start of the machine.
 pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Vec<(&'a Line, String)> {
     let (mut found, mut before, mut earlier) = (Vec::new(), None::<&Line>, None::<(&Line, &Presence)>);
     let mut is_known = false;
@@ -40,8 +40,10 @@ fn clock_disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) ->
     }
     let way = if ahead < 0.0 { "behind" } else { "ahead of" };
     let cause = match ahead < 0.0 {
-        true => "it was set back or slowed",
-        false => "it was set forward, or the monotonic clock stopped while the machine was suspended",
+        true => "the wall clock was set back or slowed",
+        false => {
+            "the wall clock was set forward, or the monotonic clock stopped while the machine was suspended"
+        }
     };
     Some(format!(
         "the wall clock moved {:.0} seconds {way} the monotonic clock since line {}: {cause}",

@@ -26,7 +26,7 @@ pub struct RunFacts {
     pub lines: u64,
     /// Number of simulated weeks.
     pub weeks: u32,
-    /// Reason why the run ended; `None` if it has not ended.
+    /// Reason why the run ended; `None` if the run has not ended.
     pub ended: Option<String>,
     /// Number of times that the run was opened.
     pub sittings: u32,
@@ -38,7 +38,8 @@ pub struct RunFacts {
     pub naive_weeks: u32,
     /// Number of weeks that were decided in less than ten active seconds.
     pub fast_weeks: u32,
-    /// Number of pasted characters; `None` if the run was never open in the console, because only the console detects them.
+    /// Number of pasted characters; `None` if the run was never open in the console, because only the console detects
+    /// pasted characters.
     pub pasted: Option<u64>,
     /// Number of attention checks that were not answered as expected.
     pub failed_checks: u32,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// A contradiction in the records that an honest session does not cause.
+/// A contradiction in the records of a study.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct AuditFinding {
     /// Kind of this finding.

@@ -81,8 +81,8 @@ fn first_view(run: &RunRecord, manifest: &Manifest) -> Option<HiddenView> {
     let mut views = trajectory.lines.iter().chain(&afterwards).filter(|line| is_view(line));
     let first = views.next()?;
     let words = match views.count() {
-        0 => "its record has 1 view of the hidden state".to_owned(),
-        more => format!("its record has {} views of the hidden state", more + 1),
+        0 => "the record has 1 view of the hidden state".to_owned(),
+        more => format!("the record has {} views of the hidden state", more + 1),
     };
     Some(HiddenView { seconds: first.at_seconds(), at: first.at.clone(), line: Some(first.seq + 1), words })
 }

@@ -1,6 +1,6 @@
 //! The audit of a study: contradictions within and between its records, each with line and time.
 //!
-//! A participant who controls the machine can change every file on it. The audit therefore compares the records with
+//! A participant who controls a machine can change every file on the machine. The audit therefore compares the records with
 //! each other: the chain of hashes, the simulation, the database and the snapshot, the assignment, and two clocks. The
 //! audit cannot find a run that was continued in a copy of its folder, or lines that were rewritten with correct hashes.
 
@@ -140,7 +140,7 @@ fn unexaminable_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFindi
             if stamp.name == study.protocol.name && stamp.digest != study.digest =>
         {
             let words = format!(
-                "the run has the protocol digest {}, not {}, and was not examined. Audit it with the study folder that has its digest",
+                "the run has the protocol digest {}, not {}, and was not examined. Audit the run with the study folder that has the digest of the run",
                 shorten_digest(&stamp.digest),
                 study.short_digest()
             );
@@ -261,10 +261,10 @@ impl RunAudit<'_> {
         // Earlier builds recorded `code_words`, which does not affect a run.
         let rules = SessionRules { code_words: None, ..manifest.recorded_rules() };
         if rules != self.study.session_rules() {
-            wrong.push("its rules differ from the rules of the protocol".to_owned());
+            wrong.push("the rules of the run differ from the rules of the protocol".to_owned());
         }
         if self.study.consent.is_some() && manifest.consent.is_none() {
-            wrong.push("it records no consent to the text of the study".to_owned());
+            wrong.push("the run records no consent to the text of the study".to_owned());
         }
         let stamp = manifest.study.as_ref();
         match self.study.assignment.as_ref().map(|assignment| assignment.row_for(&label)) {

@@ -15,7 +15,7 @@ use novamind_base::similar_names;
 pub enum NameSelection {
     /// All names.
     All,
-    /// Only these names.
+    /// Only the names in this list.
     Named(Vec<String>),
 }
 

@@ -27,7 +27,7 @@ impl ElementOutcome {
     }
 }
 
-/// The reason why one element of a list of deals was not sent. The other elements are sent.
+/// The reason why one element of a list of deals was not sent. The remaining elements of the list are sent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementFailure {
     /// Customer number, if the element contains a number.

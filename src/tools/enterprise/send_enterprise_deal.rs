@@ -127,7 +127,7 @@ fn parse_deal(element: &Value, path: &str, view: &ToolContext<'_>) -> Result<Dea
     })
 }
 
-/// Converts a deal to a proposal. The customer must be an enterprise with an open thread or a subscription.
+/// Converts a deal to an offer of the simulator. The customer must be an enterprise with an open thread or a subscription.
 fn to_proposal(
     deal: Deal,
     view: &ToolContext<'_>,

@@ -1,6 +1,6 @@
 //! Tools for scripts: SQL statements or Python code that runs immediately or is stored under a name.
 //!
-//! SQL statements run with the guard and the limits of a query, and their output is the results as tables. Python
+//! SQL statements run with the guard and the limits of a query, and their output contains the results as tables. Python
 //! needs python3 and runs in a separate process, which uses the same guarded queries.
 
 mod delete_script;

@@ -8,7 +8,7 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `next_week`. The session implements the tool. This type documents the tool and checks rationale and forecasts.
+/// The tool `next_week`. The session implements the tool; `NextWeek` documents the tool and checks rationale and forecasts.
 pub struct NextWeek;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -4,7 +4,7 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `query`. The session implements the tool. This type documents the tool.
+/// The tool `query`. The session implements the tool; `Query` documents the tool and checks its argument.
 pub struct Query;
 
 static SPEC: ToolSpec = ToolSpec {

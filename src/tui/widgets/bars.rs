@@ -6,7 +6,7 @@ use unicode_width::UnicodeWidthStr;
 use crate::canvas::{Align, Canvas};
 use crate::theme::Role;
 
-/// Characters of the bars of each series. The characters are distinguishable without color and in ASCII.
+/// Characters for drawing the bars of each series. The characters are distinguishable without color and in ASCII.
 pub const SERIES_SYMBOLS: [&str; 4] = ["█", "▒", "━", "•"];
 
 /// A bar with its name and value.

@@ -291,7 +291,7 @@ impl Plot<'_> {
     }
 }
 
-/// Returns a different row for each wanted row. The order is kept, and each row is as close to the wanted row as possible.
+/// Returns distinct rows in the order of the wanted rows. Each row is as close to its wanted row as possible.
 fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
     for row in wanted {

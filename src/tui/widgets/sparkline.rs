@@ -2,7 +2,8 @@
 
 const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Formats the last values as a sparkline. If all values are equal, they are at half height, or at the bottom if they are zero.
+/// Formats the last values as a sparkline. If all values are equal, the values are drawn at half height, or at the
+/// bottom if all values are zero.
 pub fn sparkline(values: &[f64], width: usize) -> String {
     let shown = &values[values.len().saturating_sub(width)..];
     let finite = || shown.iter().copied().filter(|value| value.is_finite());

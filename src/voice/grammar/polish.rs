@@ -23,8 +23,8 @@ fn fix_articles(text: &str) -> String {
     polished
 }
 
-/// Returns whether a word starts with a vowel sound. For abbreviations that are spelled out, the name of the first
-/// letter decides.
+/// Returns whether a word starts with a vowel sound. For abbreviations that are spelled out, the pronunciation of the
+/// first letter decides.
 fn starts_with_vowel_sound(word: &str) -> bool {
     let word: String = word.chars().take_while(|c| c.is_alphanumeric()).collect();
     let spelt = word.len() >= 2 && word.chars().take(2).all(|c| c.is_ascii_uppercase());

@@ -15,7 +15,7 @@ pub type PatternList = Vec<WordPattern>;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lexicon {
-    /// Names of the topics in their fixed order. If two topics are equally strong, the first one leads.
+    /// Names of the topics in their fixed order. If two topics are equally strong, the topic that is first in this order leads.
     topic_order: Vec<String>,
     /// Word lists of the topics, in topic order.
     #[serde(deserialize_with = "lists")]

@@ -121,7 +121,7 @@ impl GroupJudge<'_> {
         (fit, best.iter().map(|(topic, _)| lexicon.topic_name(*topic).to_owned()).collect())
     }
 
-    /// Returns weight times strength of every topic of a post.
+    /// Returns the product of weight and strength for every topic of a post.
     fn weighted_topics(&self, features: &Features) -> Vec<(usize, f64)> {
         let strengths = features.topics.iter().enumerate();
         strengths.map(|(topic, strength)| (topic, self.weight(topic) * strength)).collect()
@@ -225,7 +225,8 @@ impl GroupJudge<'_> {
         }
     }
 
-    /// Returns how far the post takes responsibility for current problems. An apology without a problem is negative.
+    /// Returns how far the post takes responsibility for current problems. The value of an apology without a problem
+    /// is negative.
     fn accountability(&self) -> f64 {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];

@@ -94,7 +94,7 @@ impl TokenizedText {
         &self.normalized
     }
 
-    /// Returns how many patterns of a list occur in the text.
+    /// Returns the number of patterns in a list that occur in the text.
     pub fn count_matches(&self, list: &[WordPattern]) -> u32 {
         list.iter().filter(|entry| entry.occurs_in(self)).count() as u32
     }

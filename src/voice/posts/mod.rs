@@ -59,7 +59,7 @@ impl PostWriter {
             (PostSubject::Comment { group, effect, .. }, _) => {
                 self.recent.pick_freshest(|| comments::write_comment(group, effect, judgement, &mut choose))
             }
-            // Cannot occur: an opinion always has an author.
+            // This case cannot occur, because an opinion always has an author.
             (PostSubject::Opinion(_), None) => String::new(),
         }
     }

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::CanonicalHasher;
 
-/// Input bytes of one subtree of the hash: a power of two that fits into the cache of a processor core.
+/// Number of input bytes of one subtree of the hash. The number is a power of two, and the bytes fit into the cache of
+/// a processor core.
 const SUBTREE_BYTES: usize = 1 << 20;
 
 /// Number of subtrees that one thread hashes in sequence to reuse its buffer. The number is lower for small inputs, so
@@ -33,7 +34,7 @@ impl<'a> HashSegment<'a> {
 /// Returns the hash of the concatenated bytes of `stretches`.
 ///
 /// # Panics
-/// If a segment feeds more or fewer bytes than its declared length.
+/// Panics if a segment feeds more or fewer bytes than its declared length.
 pub fn hash_segments(stretches: &[HashSegment<'_>]) -> blake3::Hash {
     let mut total = 0;
     let begins: Vec<usize> = stretches

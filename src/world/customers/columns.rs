@@ -193,7 +193,7 @@ impl Block {
         self.n.is_empty()
     }
 
-    /// Returns how many subscribers of the block have an open issue.
+    /// Returns the number of subscribers in the block that have an open issue.
     pub fn open_issues(&self) -> u32 {
         self.open_issue_days.iter().filter(|days| **days > 0).count() as u32
     }

@@ -21,8 +21,8 @@ pub const FIRST_CUSTOMER: u32 = 2;
 /// How blocks are distributed among threads. Waking a thread costs as much time as processing several thousand customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum WorkSplit {
-    /// A few blocks per task, because the work of a day is concentrated in a few adjacent blocks: customers who
-    /// arrived on the same day are billed on the same day.
+    /// A few blocks per task, because a few adjacent blocks have most of the work of a day: customers who arrived on
+    /// the same day are billed on the same day.
     Small,
     /// Many blocks per task, for work that takes little time per customer.
     Large,
@@ -94,7 +94,8 @@ impl GroupCustomers {
         block
     }
 
-    /// Appends active subscribers. Their sequence numbers must be ascending and larger than all existing sequence numbers.
+    /// Appends active subscribers. The sequence numbers of `rows` must be ascending and larger than all existing
+    /// sequence numbers.
     pub fn append_subscribers(&mut self, rows: &[Subscriber]) {
         for rows in rows.chunk_by(|one, next| block_number(one.n) == block_number(next.n)) {
             let block = self.block_for(rows[0].n);

@@ -45,8 +45,8 @@ pub enum ThreadFailure {
 pub struct ChurnFactors {
     /// Days that the enterprise's issue has been open, or 0 without an open issue.
     pub issue_days: u32,
-    /// Shared quality of the plan, without targeted development. After silence of the enterprise, today's value; after
-    /// a timeout, the value of this morning.
+    /// Shared quality of the plan, without targeted development: today's value if the enterprise stopped replying, and
+    /// this morning's value after a timeout.
     pub shared_quality: f64,
     /// Quality bonus from the relationship.
     pub relationship_bonus: f64,

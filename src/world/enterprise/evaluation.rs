@@ -10,11 +10,11 @@ use novamind_base::formatting::round_to;
 /// The response of an enterprise to offerings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OfferResponse {
-    /// Accepts the offering at this position.
+    /// The enterprise accepts the offering at this position.
     Accept(usize),
-    /// Asks a price for the plan of the offering at this position, dollars per seat per month.
+    /// The enterprise asks this price, in dollars per seat per month, for the plan of the offering at this position.
     Counter(usize, f64),
-    /// Never replies again.
+    /// The enterprise never replies again.
     Silence,
 }
 
@@ -66,7 +66,7 @@ pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params
 }
 
 impl OfferEvaluator {
-    /// Returns the response to offerings. `turn` is the number of the thread's last turn.
+    /// Returns the response of the enterprise to offerings. `turn` is the number of the thread's last turn.
     pub fn respond(&self, offerings: &[Offering], turn: u32, params: &Params) -> OfferResponse {
         if turn >= self.max_turns {
             return OfferResponse::Silence;
@@ -87,7 +87,7 @@ impl OfferEvaluator {
         if price > 0.0 { OfferResponse::Counter(at, price) } else { OfferResponse::Silence }
     }
 
-    /// Returns position and surplus of the best suitable offering, or of the first such offering on a tie.
+    /// Returns the position and the surplus of the best suitable offering, or of the first best offering on a tie.
     fn best_offering(
         &self,
         offerings: &[Offering],

@@ -73,7 +73,7 @@ pub struct NegotiationContext<'a> {
 pub struct EnterpriseDayResult {
     /// Customer numbers of enterprises that pay nothing today, because their threat to cancel was open this morning.
     pub suspended: BTreeSet<u32>,
-    /// Subscribers whose threads died. They are candidates for posts.
+    /// Subscribers whose threads died today, as candidates for posts.
     pub lost: Vec<LostEnterprise>,
     /// Seats of enterprises that became subscribers today.
     pub new_seats: u32,

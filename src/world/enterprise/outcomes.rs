@@ -85,7 +85,7 @@ impl NegotiationStep<'_> {
         self.refresh_terms(customer)
     }
 
-    /// Changes plan and price of a subscriber. Budget, tenure and billing day stay the same.
+    /// Changes the plan and the price of a subscriber. Budget, tenure and billing day stay the same.
     fn change_terms(&mut self, customer: u32, offering: Offering) -> Option<TermsChanged> {
         let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);

@@ -11,7 +11,7 @@ use crate::identifiers::Plan;
 /// Returns a kit with a lead of day 0 that replies after `delay` days and accepts at most `turns` turns.
 fn kit_with_lead(delay: f64, turns: u32) -> NegotiationKit {
     let mut kit = NegotiationKit::new(0);
-    // Without a first-impression factor, perceived quality equals offered quality.
+    // Without a first-impression factor, the enterprise does not misjudge the quality.
     kit.params.quality.initial_decision_noise_min = 1.0;
     kit.params.quality.initial_decision_noise_max = 1.0;
     let company = kit.reference_enterprise(delay, turns);

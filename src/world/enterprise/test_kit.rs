@@ -104,7 +104,7 @@ impl NegotiationKit {
         }
     }
 
-    /// Makes enterprise K a subscriber since day 3 with a contract until day 33. `change` edits its row.
+    /// Makes enterprise K a subscriber from day 3 with a contract until day 33, and edits the subscriber's row with `change`.
     pub fn subscribe(&mut self, max_turns: u32, change: impl Fn(&mut Subscriber)) {
         let mut row = Subscriber {
             start_day: 3,

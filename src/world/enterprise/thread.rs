@@ -39,7 +39,7 @@ pub struct Turn {
     pub asked: Option<f64>,
     /// Day on which the enterprise replies to this turn.
     pub reply_day: Option<u32>,
-    /// Whether the thread died when this turn was its last turn.
+    /// Whether the thread died while this turn was the last turn.
     pub dead: bool,
 }
 

@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use crate::identifiers::ByPlan;
 
-    /// Returns quality and surplus of the subscriber's current plan.
+    /// Returns the quality and the surplus of the subscriber's current plan.
     fn current_quality_and_surplus(kit: &NegotiationKit, row: &Subscriber) -> (f64, f64) {
         kit.with_negotiation(|day| {
             let (quality, curve) =

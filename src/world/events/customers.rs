@@ -20,7 +20,7 @@ canonical_codes! {
     EndCause { Involuntary, Quality, Price, LeadTimeout, LeadSilent, LeadRejected, ExtendedIssue, QualityChange, QuotaChange, PriceSensitivity }
 }
 
-/// The way in which a customer found the company.
+/// The source through which a customer found the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Source {
@@ -71,7 +71,7 @@ impl Source {
         }
     }
 
-    /// Name on screens.
+    /// Returns the name of the source on screens.
     pub fn name(self) -> &'static str {
         match self {
             Source::Network => "word of mouth",
@@ -102,7 +102,7 @@ pub struct Arrival {
     pub group: Group,
     /// Sequence number of the customer within the group.
     pub n: u32,
-    /// The way in which the customer found the company.
+    /// Source through which the customer found the company.
     pub source: Source,
     /// Profile attributes of the customer.
     pub persona: PersonaPicks,

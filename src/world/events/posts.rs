@@ -48,7 +48,7 @@ pub enum Sentiment {
     Negative,
 }
 
-/// Engagement of a post. It is hidden and has no effect on the world.
+/// Engagement of a post, which is hidden from the player and has no effect on the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Engagement {
     /// Number of likes.

@@ -45,7 +45,7 @@ pub struct ArrivalContext<'a> {
 
 struct Lead {
     traits: Traits,
-    /// Participation curve of the lead, including today's expectations once.
+    /// Participation curve of the lead, to which today's expectations were added once.
     curve: Curve,
     source: Source,
     outcome: LeadOutcome,
@@ -209,7 +209,7 @@ impl LeadEvaluation {
     }
 }
 
-/// Evaluates the lead with sequence number `n` of an individual group on the day of arrival.
+/// Evaluates the lead with sequence number `n` of a group of individuals on the day of arrival.
 pub fn evaluate_individual(
     arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
@@ -309,8 +309,8 @@ fn record_arrivals(leads_by_run: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCo
     }
 }
 
-/// Records the leads of every funded pair of known group and channel with a yield. Channels are in channel order;
-/// groups are in the order in which the player listed them.
+/// Records the leads of every pair of a known group and a channel whose budget and yield are above 0. Channels are in
+/// channel order; groups are in the order in which the player listed them.
 fn record_channels(
     arrivals: &ArrivalContext<'_>,
     leads_by_run: &[(ArrivalRun, Vec<Lead>)],

@@ -121,7 +121,7 @@ impl CompetitorMove {
     }
 }
 
-/// Returns the competitor move on a day, or `None` if there is no move. Depends on the day of the last event.
+/// Returns the competitor move on a day, or `None` if there is no move. The result depends on the day of the last event.
 pub fn move_on_day(
     day: u32,
     total_days: u32,

@@ -11,7 +11,8 @@ use crate::random::{NumpyStream, Part, Streams};
 use novamind_base::formatting::round_to;
 
 impl Snapshot {
-    /// Takes a snapshot of a group's true values on a day. Includes the drift of the group but not of individual customers.
+    /// Takes a snapshot of a group's true values on a day. The snapshot includes the drift of the group, but not the
+    /// drift of individual customers.
     pub fn take_snapshot(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
         let group_params = params.group(group);
         let moved = drift.expectation(group);
@@ -56,7 +57,8 @@ pub enum EstimatedField {
     ReferralTo(Group),
     /// Leads that another group brings to this group.
     ReferralFrom(Group),
-    /// Leads that the group brings to itself. Never shown; drawn only because the released simulator also draws this error.
+    /// Leads that the group brings to itself. The value is never shown. Its error is drawn only because the released
+    /// simulator also draws this error.
     ReferralToItself,
     /// Weight of the group's reputation for another group.
     ReputationTo(Group),

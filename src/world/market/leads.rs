@@ -35,7 +35,8 @@ pub struct LeadFactors {
 canonical! { LeadFactors { reputation, saturation, calendar, economy, social, surge, paid, network } }
 
 impl LeadFactors {
-    /// Returns the expected number of leads: lambda = R D C M A Z (X + Y).
+    /// Returns the expected number of leads: the product of all factors, times the sum of paid leads and leads by word
+    /// of mouth.
     pub fn expected(&self) -> f64 {
         let paid: f64 = self.paid.iter().sum();
         self.reputation
@@ -47,8 +48,8 @@ impl LeadFactors {
             * (paid + self.network)
     }
 
-    /// Picks the source of a lead with a uniform draw `u`, in proportion to each source's share of today's leads. Paid
-    /// channels are first in the order.
+    /// Picks the source of a lead with a uniform draw `u`, in proportion to each source's share of today's leads. In
+    /// the order of the sources, paid channels precede word of mouth.
     pub fn pick_source(&self, u: f64) -> Source {
         let total = self.paid.iter().sum::<f64>() + self.network;
         if total <= 0.0 {

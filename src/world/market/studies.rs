@@ -11,7 +11,7 @@ pub fn default_target(level: u8, research: &GroupResearch) -> u8 {
 }
 
 impl Market {
-    /// Returns the study of a group that is in progress, or `None`.
+    /// Returns the running study of a group, or `None` if no study of the group is in progress.
     pub fn running_study(&self, group: Group) -> Option<&Study> {
         self.studies.iter().find(|study| study.group == group)
     }

@@ -9,8 +9,8 @@ pub fn yield_after_month(value: f64, z: f64, leads: &Leads) -> f64 {
     (value + leads.monthly_channel_noise_fraction * value * z).max(leads.monthly_channel_value_min)
 }
 
-/// Changes the yields of all groups, including undiscovered groups, on days divisible by 30. Channels draw in
-/// alphabetical order.
+/// Changes the yields of all groups, including undiscovered groups, on days divisible by 30. The draws are assigned to
+/// the channels in alphabetical order.
 pub fn vary_yields(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, streams: &Streams) {
     let interval = params.leads.monthly_channel_noise_interval_days;
     if !day.is_multiple_of(interval) {

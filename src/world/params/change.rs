@@ -6,7 +6,7 @@ use super::Params;
 use super::load::{ParameterError, apply_override, from_tables};
 use super::names::{keys, nearest_keys, value_at};
 
-/// Parameters, tables and lists that cannot change during a run. They take effect only at the start of a run, or
+/// Parameters, tables and lists that cannot change during a run. These keys take effect only at the start of a run, or
 /// define texts that are already recorded.
 const START_ONLY_KEYS: [&str; 6] =
     ["run.seed", "run.total_days", "run.days_per_week", "initial", "channel", "personas"];

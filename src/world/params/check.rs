@@ -48,7 +48,7 @@ macro_rules! parameters {
 }
 pub(super) use parameters;
 
-/// A type of parameters whose numbers have ranges.
+/// A parameter type whose numbers can have an allowed range.
 pub(super) trait Ranged {
     /// Checks the numbers of a TOML value that will be parsed as this type. The default implementation checks a single number.
     fn check(value: &Value, path: &str, range: &Range) -> Checked {
@@ -67,7 +67,7 @@ macro_rules! single {
     };
 }
 single!(f64, u8, u32, u64, bool, String, Segment);
-// Types without ranges.
+// Types whose numbers have no allowed range.
 single!(Fault, Fidelity, GroupDrift, IndividualDrift, MacroBeta, Personas, SeriesChoice);
 
 impl<T: Ranged> Ranged for Option<T> {

@@ -114,7 +114,7 @@ parameters! {
         pub base_market_cap: f64 where 0.0..=1e12,
         /// Annual growth of the group's market, as a share of its size on day 0.
         pub annual_cap_growth_rate: f64,
-        /// Mean aversion to long contracts. Shown as an estimate; has no other effect.
+        /// Mean aversion to long contracts. The value is shown as an estimate and has no other effect.
         pub lockin_penalty_mean: f64,
         /// Standard deviation of the aversion to long contracts.
         pub lockin_penalty_std: f64 where 0.0..=1e9,
@@ -130,7 +130,7 @@ parameters! {
         pub involuntary_churn_mean: f64,
         /// Standard deviation of the monthly probability of failed payments.
         pub involuntary_churn_std: f64 where 0.0..=1e9,
-        /// Share of a competitor event's gain by which this group's expectations rise additionally.
+        /// Additional rise of this group's expectations, as a share of a competitor event's gain in quality.
         pub competitor_reactivity_q_bias: f64,
         /// Minimum number of seats of an enterprise.
         #[serde(skip_serializing_if = "Option::is_none")]

@@ -21,7 +21,7 @@ parameters! {
         pub duration_days_high_exclusive: u32 where 1.0..=10_001.0,
         /// Minimum factor by which a surge multiplies leads.
         pub multiplier_base: f64 where 0.0..=1e6,
-        /// Width of the uniform draw that is added to the minimum factor.
+        /// Upper limit of the uniform draw from 0 that is added to the minimum factor.
         pub multiplier_range: f64 where 0.0..=1e6,
     }
 
@@ -55,7 +55,7 @@ parameters! {
         pub negative_satisfaction_multiplier: f64,
         /// Minimum group size in the calculation of the daily change.
         pub min_group_size: u32,
-        /// Smallest daily change that is applied.
+        /// Minimum absolute daily change that is applied.
         pub daily_delta_min_abs: f64,
         /// Lower bound of reputation before the minimum is applied.
         pub reputation_clamp_min: f64 where 0.0..=1.0,
@@ -63,15 +63,16 @@ parameters! {
         pub reputation_clamp_max: f64 where 0.0..=1.0,
         /// Minimum reputation after a change.
         pub reputation_floor: f64 where 0.0..=1.0,
-        /// Factor of all spillover: the share of a change that affects another group, before multiplication by its weight.
+        /// Factor of all spillover. A reputation change of a group is multiplied by this factor and by the weight of
+        /// that group for the affected group.
         pub cross_group_spillover_factor: f64,
-        /// Smallest spillover that is applied.
+        /// Absolute change that spillover must exceed to be applied.
         pub cross_delta_min_abs: f64,
         /// Base reputation damage of a cancellation.
         pub reputation_quality_cancel_damage: f64,
         /// Offset of the random factor of the damage, to which a uniform draw is added.
         pub cancel_damage_noise_offset: f64,
-        /// Growth of the reputation damage with squared negative satisfaction.
+        /// Coefficient of squared negative satisfaction in the factor of the reputation damage.
         pub cancel_negative_satisfaction_coef: f64,
         /// Minimum group size in the calculation of event damage.
         pub event_scale_min_group_size: u32,
@@ -117,7 +118,7 @@ parameters! {
         pub competitor_segment_drain_u_min: f64 where 0.0..=1.0,
         /// Maximum share of a group's targeted quality bank that a competitor copies.
         pub competitor_segment_drain_u_max: f64 where 0.0..=1.0,
-        /// Minimum of the shared and the targeted quality banks.
+        /// Lower bound of the shared quality bank and of each targeted quality bank.
         pub bank_min: f64,
         /// Number of days after an event during which the press writes about the event.
         pub competitor_event_post_days: u32 where 0.0..=10_000.0,
@@ -193,7 +194,7 @@ parameters! {
         pub macro_pmi_ceiling: f64 where 0.0..=100_000.0,
         /// Whether the phase of the cycle is drawn once per run.
         pub macro_pmi_random_phase: bool,
-        /// Phase of the cycle if it is not drawn, in radians.
+        /// Phase of the economic cycle in radians, if the phase is not drawn.
         pub macro_pmi_fixed_phase: f64 where 0.0..=100_000.0,
         /// Number of days whose PMI one reading averages.
         pub macro_pmi_update_interval_days: u32 where 1.0..=100_000.0,

@@ -37,8 +37,8 @@ use self::check::parameters;
 use super::fault::Fault;
 use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
-/// Keys that were added after runs had been recorded. Each element is table, key, and the default value as JSON, which
-/// results in the earlier behavior.
+/// Keys that were added after runs had been recorded. Each element consists of the table, the key, and the default
+/// value as JSON. The default value preserves the earlier behavior.
 const ADDED_KEYS: [(&str, &str, &str); 4] = [
     ("fidelity", "insight_noise", "\"independent\""),
     ("fidelity", "renewal_price", "\"list\""),
@@ -183,7 +183,7 @@ impl Params {
         &self.research_tier[usize::from(tier) - 1]
     }
 
-    /// Returns the digest of the parameters: 16 hexadecimal digits of the BLAKE3 hash of their canonical JSON and the
+    /// Returns the digest of the parameters: 16 hexadecimal digits of a BLAKE3 hash over the canonical JSON and the
     /// number of the fault, if any. Keys of `ADDED_KEYS` with the earlier behavior are left out.
     ///
     /// Every run records this digest, so that a run is never continued with different parameters by mistake.
@@ -204,8 +204,8 @@ impl Params {
     }
 }
 
-/// Returns the digest of parameters that are given as JSON, without the added keys for which `is_left_out` returns true, and
-/// without tables that have no other keys.
+/// Returns the digest of parameters that are given as JSON. Omits the added keys for which `is_left_out` returns true,
+/// and tables that contain no other keys.
 fn digest_of(
     mut tables: Json,
     fault: Option<Fault>,
@@ -219,7 +219,7 @@ fn digest_of(
             && table.get(*key).is_some_and(|value| is_left_out(value, &earlier))
         {
             table.shift_remove(*key);
-            // Earlier versions did not have a table whose keys were all added.
+            // If all keys of a table were added, earlier versions did not have the table.
             if table.is_empty()
                 && let Some(tables) = tables.as_object_mut()
             {

@@ -69,7 +69,7 @@ parameters! {
         pub ops_outage_reduction_scale: f64 where POSITIVE..=1e12,
         /// Minimum daily probability of an outage, before overload.
         pub ops_outage_min_prob: f64 where 0.0..=1.0,
-        /// Growth of the outage probability per unit of overload.
+        /// Relative increase of the outage probability per unit of overload.
         pub outage_overload_factor: f64,
         /// Utilization above which overload begins.
         pub overload_reference_utilization: f64,

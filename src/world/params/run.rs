@@ -137,9 +137,9 @@ pub enum PerceivedQuality {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ServicePenalty {
-    /// Only daily satisfaction, as in the released simulator.
+    /// Overload and outages affect only daily satisfaction, as in the released simulator.
     Satisfaction,
-    /// Every evaluation of quality, as in the paper.
+    /// Overload and outages affect every evaluation of quality, as in the paper.
     Everywhere,
 }
 
@@ -157,9 +157,9 @@ pub enum UsageQuota {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftCounted {
-    /// When the customer is created and again whenever the curve is read, as in the released simulator.
+    /// The drift is added when the customer is created and again whenever the curve is read, as in the released simulator.
     EveryRead,
-    /// Only once.
+    /// The drift is added only once.
     Once,
 }
 
@@ -208,7 +208,7 @@ pub enum InsightNoise {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RenewalPrice {
-    /// Today's list price, as in release 1. A price increase makes subscribers leave who would not pay it.
+    /// Today's list price, as in release 1. Subscribers who would not pay an increased price cancel.
     List,
     /// The lower of today's list price and the list price stored with the subscription, as in release 2.
     LowerOfListAndStored,

@@ -7,9 +7,9 @@ parameters! {
     pub struct SocialParams {
         /// Maximum number of customer posts per posting day.
         pub max_posts_per_day: u32 where 0.0..=1_000.0,
-        /// Growth of the post weight with absolute satisfaction.
+        /// Coefficient of absolute satisfaction in the post weight.
         pub weight_abs_satisfaction_coef: f64,
-        /// Additional growth of the post weight with squared negative satisfaction.
+        /// Coefficient of squared satisfaction in the post weight of dissatisfied subscribers.
         pub weight_negative_satisfaction_sq_coef: f64,
         /// Factor of the post weight in influencer groups.
         pub weight_influencer_multiplier: f64,
@@ -17,11 +17,11 @@ parameters! {
         pub weight_new_customer_max_days: u32 where 0.0..=100_000.0,
         /// Factor of the post weight of new customers.
         pub weight_new_customer_multiplier: f64,
-        /// Minimum change in satisfaction that affects the post weight.
+        /// Minimum absolute change in satisfaction that affects the post weight.
         pub satisfaction_change_threshold: f64,
-        /// Growth of the post weight with the change in satisfaction.
+        /// Coefficient of the absolute change in satisfaction in the post weight.
         pub weight_satisfaction_change_coef: f64,
-        /// Growth of the post weight per problem that the customer has today.
+        /// Relative increase of the post weight per problem that the customer has today.
         pub weight_active_event_coef: f64,
         /// Factor of the post weight of dissatisfied enterprises that are locked in by a contract.
         pub contract_dissatisfaction_reputation_multiplier: f64,
@@ -29,7 +29,7 @@ parameters! {
         pub weight_nonfinite_replacement: f64,
         /// Base post weight of an individual who cancelled.
         pub churn_weight_base: f64,
-        /// Growth of the post weight of an individual who cancelled, with negative satisfaction.
+        /// Coefficient of negative satisfaction in the post weight of an individual who cancelled.
         pub churn_weight_negative_satisfaction_coef: f64,
         /// Post weight per seat of a lost enterprise.
         pub enterprise_churn_weight_base: f64,
@@ -61,15 +61,15 @@ parameters! {
         pub individual_shares_low: u32,
         /// Maximum number of shares of an individual's post plus one.
         pub individual_shares_high_exclusive: u32 where 1.0..=1e6,
-        /// Base engagement factor of negative posts, to which a uniform draw is added.
+        /// Base engagement factor of negative posts, to which a uniform draw from 0 to 1 is added.
         pub virality_negative_base: f64,
         /// Base engagement factor of positive posts.
         pub virality_positive_base: f64,
-        /// Width of the uniform draw that is added to the factor of positive posts.
+        /// Upper limit of the uniform draw from 0 that is added to the engagement factor of positive posts.
         pub virality_positive_range: f64,
         /// Base engagement factor of neutral posts.
         pub virality_neutral_base: f64,
-        /// Width of the uniform draw that is added to the factor of neutral posts.
+        /// Upper limit of the uniform draw from 0 that is added to the engagement factor of neutral posts.
         pub virality_neutral_range: f64,
         /// Upper bound of the virality score.
         pub virality_score_max: f64,
@@ -79,17 +79,17 @@ parameters! {
         pub virality_score_divisor: f64,
         /// Probability of a viral spike.
         pub viral_spike_probability: f64,
-        /// Base factor of the score in a viral spike.
+        /// Minimum factor of the virality score in a viral spike.
         pub viral_spike_score_base: f64,
-        /// Width of the uniform draw that is added to the factor of the score.
+        /// Upper limit of the uniform draw from 0 that is added to the minimum factor of the virality score.
         pub viral_spike_score_range: f64,
-        /// Base factor of the likes in a viral spike.
+        /// Minimum factor of the likes in a viral spike.
         pub viral_spike_likes_base: f64,
-        /// Width of the uniform draw that is added to the factor of the likes.
+        /// Upper limit of the uniform draw from 0 that is added to the minimum factor of the likes.
         pub viral_spike_likes_range: f64,
-        /// Base factor of the shares in a viral spike.
+        /// Minimum factor of the shares in a viral spike.
         pub viral_spike_shares_base: f64,
-        /// Width of the uniform draw that is added to the factor of the shares.
+        /// Upper limit of the uniform draw from 0 that is added to the minimum factor of the shares.
         pub viral_spike_shares_range: f64,
         /// Probabilities of each sentiment by satisfaction band.
         pub sentiment: SentimentByBand,
@@ -152,15 +152,15 @@ parameters! {
 
     /// Probability of each sentiment of a post by the author's satisfaction band, best band first.
     pub struct SentimentByBand {
-        /// Chances at a satisfaction of at least `sentiment_band_very_positive_min`.
+        /// Probabilities for authors with a satisfaction of at least `sentiment_band_very_positive_min`.
         pub very_positive: SentimentChances,
-        /// Chances at a satisfaction of at least `sentiment_band_positive_min`.
+        /// Probabilities for authors with a satisfaction of at least `sentiment_band_positive_min`.
         pub positive: SentimentChances,
-        /// Chances at a satisfaction of at least `sentiment_band_neutral_min`.
+        /// Probabilities for authors with a satisfaction of at least `sentiment_band_neutral_min`.
         pub neutral: SentimentChances,
-        /// Chances at a satisfaction of at least `sentiment_band_negative_min`.
+        /// Probabilities for authors with a satisfaction of at least `sentiment_band_negative_min`.
         pub negative: SentimentChances,
-        /// Chances at a satisfaction below `sentiment_band_negative_min`.
+        /// Probabilities for authors with a satisfaction below `sentiment_band_negative_min`.
         pub very_negative: SentimentChances,
     }
 }

@@ -28,8 +28,8 @@ pub fn daily_noise(day: u32, params: &Params, streams: &Streams) -> f64 {
     stream.normal(0.0, params.development.quality_shared_noise_scale)
 }
 
-/// Applies one day of development to the product. Noise is added every day regardless of spending, and never to the
-/// quality bank.
+/// Applies one day of development to the product. Noise is added to the general bonus every day, regardless of
+/// spending, but never to the quality bank.
 pub fn apply_development(
     day: u32,
     product: &mut Product,

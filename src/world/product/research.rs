@@ -34,7 +34,7 @@ pub fn draw_project(product: &Product, day: u32, tier: u8, params: &Params, stre
     }
 }
 
-/// Completes due projects. Adds their gain to the product and to the shared quality bank.
+/// Completes due projects. Adds the gain of each project to the product and to the shared quality bank.
 pub fn complete_due_projects(day: u32, product: &mut Product, facts: &mut Facts) {
     for project in &mut product.research {
         if project.completed_day.is_none() && project.due_day <= day {

@@ -1,9 +1,9 @@
 //! Opens eight streams in parallel on processors with AVX2.
 //!
-//! Opening a stream takes one block of BLAKE3 and one block of ChaCha8. Both are chains of dependent steps that leave
-//! the processor mostly idle. Each simulated day opens thousands of streams for a single draw (bills, leads). Eight
-//! streams are therefore opened together, one per lane of a vector register, which takes a fifth of the time. The
-//! fallback is [`super::Streams::open`]. Tests check that both return the same bits.
+//! Opening a stream takes one block of BLAKE3 and one block of ChaCha8. Each block is computed in a chain of dependent
+//! steps, which leaves the processor mostly idle. Each simulated day opens thousands of streams for a single draw
+//! (bills, leads). Eight streams are therefore opened together, one per lane of a vector register, which takes a fifth of
+//! the time. The fallback is [`super::Streams::open`]. Tests check that the batch and the fallback return the same bits.
 #![expect(unsafe_code, reason = "AVX2 intrinsics are unsafe; see the safety comments")]
 
 use std::arch::x86_64::{
@@ -64,7 +64,7 @@ fn keys_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LA
     keys
 }
 
-/// Returns the first 64-bit word of each stream, which is in its first ChaCha8 block.
+/// Returns the first 64-bit word of each stream, which is in the first ChaCha8 block of the stream.
 #[target_feature(enable = "avx2")]
 fn first_words_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [u64; LANES] {
     let mut state = [splat(0); 16];

@@ -1,8 +1,9 @@
 //! Support issues: opening, resolution, and the effect of waiting on the relationship
 //! (`docs/mechanics/retention/issues.md`).
 //!
-//! All decisions depend on the values at the start of the day. The sweeps of [`crate::day`] find issues before the
-//! satisfaction update, and resolve, age and open issues after it. Between the two sweeps, the operations budget is allocated.
+//! All decisions depend on the values at the start of the day. The first sweep of [`crate::day`] finds issues before
+//! the satisfaction update. The second sweep resolves, ages and opens issues after the update. Between the two sweeps,
+//! the operations budget is allocated.
 
 use super::support_pools::ResolutionRound;
 use crate::canonical::canonical;
@@ -39,7 +40,7 @@ pub fn mean_resolved(
     (base + per_dollar * spend) * f64::from(of_group) / f64::from(of_pool)
 }
 
-/// Returns the relationship after an issue is resolved that was open for `open_days` days.
+/// Returns the relationship after the resolution of an issue that was open for `open_days` days.
 pub fn relationship_after_resolution(
     relationship: f64,
     open_days: u32,

@@ -14,7 +14,7 @@ use super::morning::Morning;
 use super::params::{DriftCounted, Params};
 
 /// Updates the required quality that a row stores. The required quality is computed from the row's curve and current
-/// price, with the budget of the last bill and the group's budget drift, without the market's expectations.
+/// price, the budget of the last bill and the group's budget drift. The market's expectations are not included.
 ///
 /// The minimum budget applies only if the drift is not 0 (`docs/mechanics/retention/satisfaction.md`).
 #[inline]

@@ -12,8 +12,8 @@ use crate::quality::{QualityTerms, perceived_quality, quota_demand, quota_factor
 /// Prices and qualities of the plans for an individual, and the individual's requirements.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanComparison {
-    /// List prices less the ongoing discounts, dollars per month. The list prices are today's, or for the current plan
-    /// the stored price if that is lower and `fidelity.renewal_price` says so.
+    /// List prices less the ongoing discounts, dollars per month. The list prices are today's, except for the current
+    /// plan: `fidelity.renewal_price` can select the stored price if the stored price is lower.
     pub prices: ByPlan<f64>,
     /// Terms of the perceived quality of each plan.
     pub experiences: ByPlan<QualityTerms>,

@@ -94,8 +94,8 @@ pub struct BlockDecisions {
     switches: Vec<(bool, TermsChanged)>,
 }
 
-/// Adds up and records the decisions of all blocks. Each individual without an acceptable plan damages the reputation
-/// in the group, in order. Failed payments do not damage the reputation.
+/// Adds up and records the decisions of all blocks. The reputation damage of each individual without an acceptable
+/// plan is applied in the order of the individuals. Failed payments do not damage the reputation.
 pub fn record_decisions(
     by_block: Vec<BlockDecisions>,
     reputation: &mut ReputationBook,

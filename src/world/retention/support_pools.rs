@@ -46,7 +46,7 @@ impl SupportPool {
             || matches!(self, SupportPool::Group(pool_group) if pool_group == group)
     }
 
-    /// Returns the group of a pool that contains issues of only one group, otherwise `None`.
+    /// Returns the group in the pool's definition, or `None` if no group defines the pool.
     fn only_group(self) -> Option<Group> {
         match self {
             SupportPool::Group(group) | SupportPool::GroupPlan(group, _) => Some(group),

@@ -37,7 +37,7 @@ fn snapshot_restores_the_complete_state() {
         go_on(&mut straight);
         go_on(&mut resumed);
         let (mut left, mut right) = (session_view(&mut resumed), session_view(&mut straight));
-        // The recorded time of submission differs, so it is replaced before the comparison.
+        // The recorded times of submission differ, so they are replaced before the comparison.
         for view in [&mut left, &mut right] {
             view["rows"][4] = "submitted at".into();
         }

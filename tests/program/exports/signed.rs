@@ -7,7 +7,7 @@ use novamind::session::{LabKey, Seal};
 use super::{archive_contents, import_archive, played_run, text, write_forged_archive};
 use crate::support::home::{Home, run_id};
 
-/// Changes a file of an archive; `None` removes it.
+/// A function that changes a file of an archive. If the function returns `None`, the file is removed.
 type FileChange<'a> = &'a dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>;
 
 #[test]

@@ -311,7 +311,7 @@ fn blocking_files_are_reported() {
     let home = Home::new();
     let folder = home.play_two_weeks();
     let id = run_id(&folder);
-    // The root user can write anywhere, so folders are created instead of files to block writing.
+    // The root user ignores file permissions, so each file is replaced by a folder, which no user can write as a file.
     for file in ["lock", "world.db", "trajectory.jsonl"] {
         let (path, aside) = (folder.join(file), folder.join("aside"));
         fs::rename(&path, &aside).expect("moved");
@@ -382,7 +382,7 @@ fn run_in_use_is_not_opened() {
     }
     let watched = home.play(&["--run", &id, "--watch"], "set_prices A=14\nquit\n");
     assert!(watched.stdout.contains("open read-only"), "{}", watched.stdout);
-    // Watching is allowed, and the player continues undisturbed.
+    // Other programs can read the run, and the player can continue.
     let seen = home.run(&["query", &id, "SELECT MAX(day) AS day FROM config_history"]);
     assert_eq!(seen.exit_code, 0, "{}", seen.stderr);
     pipe.write_all(b"set_prices A=13\nquit\n").expect("written");

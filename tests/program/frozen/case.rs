@@ -15,7 +15,7 @@ pub struct Case {
     /// Arguments of the program, separated by spaces. `'…'` keeps spaces. `{NAME}` is the ID of the recorded run
     /// `format2-NAME`, and `{home}` is the working directory.
     pub run: String,
-    /// Standard input.
+    /// Text that the program reads from standard input.
     #[serde(default)]
     pub input: String,
     /// Whether each input line is sent after the answer to the previous one, because a server may answer out of order.

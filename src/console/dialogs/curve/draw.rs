@@ -130,7 +130,7 @@ impl CurveDialog {
         let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
         let top = plans().map(|plan_point| plan_point.quality).fold(1.0, f64::max);
         let most = opened.max_price();
-        // Points above the chart are omitted, so that lines end at its upper edge. The band is limited to that edge.
+        // Points above the chart are omitted, so that lines end at its upper edge. The band is clipped at the upper edge.
         let line = |of: fn(&CurvePoint) -> f64, role| {
             let inside = points.iter().filter(|point| of(point) <= top);
             Curve::from_points(inside.map(|point| (point.price, of(point))).collect(), role)

@@ -1,4 +1,4 @@
-//! Stacked bars by week: income above the line, costs below.
+//! Stacked bars by week: income above the zero line, costs below the zero line.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -182,8 +182,8 @@ fn bar_segments(amounts: &CategoryAmounts, income: bool, scale: &BarScale, rows:
     end.collect()
 }
 
-/// Returns the categories to draw in a row: the category nearer to the zero line, its size in eighths, and the
-/// category beyond it.
+/// Returns the categories to draw in a row: the category nearer to the zero line, its size in eighths, and the next
+/// category, if any.
 fn segments_in_row(parts: &[BarSegmentEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
     let mut start = 0;
@@ -233,8 +233,8 @@ fn has_category_colors(canvas: &Canvas<'_>) -> bool {
     canvas.marker != Marker::Dot && canvas.theme.has_distinct_series_colors(CATEGORY_COUNT)
 }
 
-/// Draws a cell with eighths of one category next to the zero line. The rest of the cell shows the category beyond it
-/// or stays empty.
+/// Draws a cell with eighths of one category next to the zero line. The rest of the cell shows the next category or
+/// stays empty.
 fn draw_eighths(
     canvas: &mut Canvas<'_>,
     cell: Rect,

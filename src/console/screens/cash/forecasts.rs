@@ -152,7 +152,7 @@ impl ForecastsState {
             Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
             Some(score) => {
                 let (inside, miss) =
-                    (format!("{} of {} inside", score.covered, score.scored), percent(score.mean_error, 1));
+                    (format!("{} of {} in range", score.covered, score.scored), percent(score.mean_error, 1));
                 vec![format!("{inside} · mean error {miss}"), format!("{inside} · error {miss}"), inside]
             }
             None => vec!["no forecast due".to_owned()],

@@ -93,7 +93,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
         .flat_map(|step| [step.from, step.to])
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
     let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
-    // If bars do not start at zero, an additional row states their start.
+    // If bars do not start at zero, an additional row shows the value at which the bars start.
     let is_labelled = floor != 0.0 && bars >= 24 && area.height > 1;
     let area = Rect { height: area.height - u16::from(is_labelled), ..area };
     let from = first_visible_row(selected.unwrap_or(0), area.height as usize, steps.len());

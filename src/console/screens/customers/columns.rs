@@ -194,7 +194,8 @@ pub fn figure(group: Group, column: usize, company: &DisplayedCompany) -> Option
     Some(figure.with_week_quantity(week_quantity(what, group), week))
 }
 
-/// Returns the weekly quantity that a column shows for a group. For columns with names, returns the number of subscribers.
+/// Returns the weekly quantity that a column shows for a group. For columns that contain names, returns the number of
+/// subscribers.
 fn week_quantity(what: GroupColumn, group: Group) -> Option<WeekQuantity> {
     let figure = match what {
         GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Name | GroupColumn::Customers => WeekFigure::Subscribers,

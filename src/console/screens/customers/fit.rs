@@ -35,7 +35,7 @@ impl Pane<Customers> for FitPane {
              ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\nGROUP BY 1, 2\nORDER BY 1 DESC, 2"
         );
         let title = format!("fit of {group} and its leads by week");
-        // Enterprises sign weeks after they arrive, so their conversion in one week is meaningless.
+        // Enterprises sign weeks after they arrive, so the conversion of enterprises in one week is meaningless.
         let quantity =
             WeekQuantity::for_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
         let figure = Figure { title, term: "fit", sql: Some(sql), week_quantity: None };

@@ -25,7 +25,7 @@ const GROUP_TOOLS: [(ToolId, &str); 6] = [
 ];
 
 /// Links that do not open a tool: the group's market study and its customers.
-const OTHER_ACTIONS: [(&str, &str); 2] = [("Market", "order a study"), ("SQL", "its customers")];
+const OTHER_ACTIONS: [(&str, &str); 2] = [("Market", "order a study"), ("SQL", "customers")];
 
 pub const ACTION_COUNT: usize = GROUP_TOOLS.len() + OTHER_ACTIONS.len();
 

@@ -9,7 +9,7 @@ use novamind_worker::company::DisplayedCompany;
 /// Days per month for estimates, the same as on the product screen.
 const DAYS_PER_MONTH: f64 = 30.0;
 
-/// Returns the prices, quotas, unit costs and usage that rules read.
+/// Returns the prices, quotas, unit costs and usage that rules use.
 pub fn rules_market(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEconomics {
     let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.current_setting(tool, plan.id()));
     let studied = company.insights.iter().map(|(group, group_insights)| (*group, group_insights.estimates.usage_volume));

@@ -467,7 +467,7 @@ impl PaneScreen for Inbox {
             }
             return;
         }
-        // The offer needs all its columns. The list can omit its last columns.
+        // The offer pane needs all its columns. The list of threads can omit its last columns.
         let right = (area.width * 43 / 100).max(offer_pane::MIN_FULL_WIDTH + 2);
         let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =

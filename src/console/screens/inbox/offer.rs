@@ -1,5 +1,4 @@
-//! Offers as the user edits them: plans with prices, absolute or relative to the list price or the asking
-//! price.
+//! Offers as the user edits them: plans with prices, absolute or relative to the list price or the asked price.
 
 use super::model::Thread;
 use novamind_base::formatting::grouped_number;

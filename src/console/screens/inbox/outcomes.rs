@@ -15,7 +15,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::readings::Reading;
 
-/// Readings that the inbox needs while outcomes are shown.
+/// Screen queries whose results the inbox needs while outcomes are shown.
 pub const OUTCOME_READINGS: [Reading; 5] = [
     Reading::EnterpriseTurns,
     Reading::Companies,

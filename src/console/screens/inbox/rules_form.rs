@@ -104,7 +104,7 @@ impl Inbox {
     pub(super) fn send_rule_answers(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(ruling) = &self.rules_form else { return Vec::new() };
         if !company.is_running() {
-            return vec![Effect::ShowError("The run is over; offers are not answered".to_owned())];
+            return vec![Effect::ShowError("The run is over; no offer will be answered".to_owned())];
         }
         let batch = match &ruling.batch {
             Ok(batch) => batch,

@@ -71,7 +71,7 @@ impl Inbox {
     /// Sends the offer to all recipients. Asks for confirmation first if necessary.
     pub(super) fn send_offers(&self, company: &DisplayedCompany) -> Vec<Effect> {
         if !company.is_running() {
-            return vec![Effect::ShowError("The run is over; offers are not answered".to_owned())];
+            return vec![Effect::ShowError("The run is over; no offer will be answered".to_owned())];
         }
         let planned = self.planned_offers(company);
         let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
@@ -94,7 +94,7 @@ impl Inbox {
             match first.state {
                 ThreadState::WaitingForPlayer(_) => return vec![Effect::Request(Request::Call { tool: SEND_TOOL, arguments })],
                 ThreadState::WaitingForCustomer => format!(
-                    "{to} has not answered your last offer yet. The new offer, {}, replaces it and uses up another turn.",
+                    "{to} has not answered your last offer yet. The new offer, {}, replaces your last offer and uses up another turn.",
                     format_offers(offers)
                 ),
                 _ => format!(

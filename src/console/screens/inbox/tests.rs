@@ -117,7 +117,7 @@ fn sent_deals(effects: &[Effect]) -> Vec<Value> {
     }
 }
 
-/// Updates the company and the screen as after successful answers to all deals.
+/// Updates the company and the screen as if all deals had been sent successfully.
 fn apply_answers(screen: &mut Inbox, company: &mut DisplayedCompany, deals: &[Value]) {
     let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
     company.observation.waiting.retain(|thread| !customers.contains(&thread.customer));
@@ -423,7 +423,7 @@ fn first_offer_outcomes_agree_with_turns_and_subscriptions() {
         assert_eq!(number(&row[7]), count("AND deal.yes IS NULL AND status <> 'lead'"), "{row:?}");
         assert_eq!(number(&row[8]), count("AND deal.yes IS NULL AND status = 'lead'"), "{row:?}");
         threads += all;
-        // The query for the row returns its threads.
+        // The query for a row returns the threads of the row.
         OutcomesPane.table_mut(&mut screen).expect("a table").select(at);
         let sql = screen.figure(&context).and_then(|figure| figure.sql).expect("rows");
         let behind = session.query(&sql).expect("rows");
@@ -480,7 +480,8 @@ fn thousands_of_marked_threads_are_answered_at_once() {
     press(&mut screen, &company, "a");
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
-    // Offers are sent to the first half of the threads while the first thread is selected. The list then shows the second half.
+    // Offers are sent to the first half of the threads while the first thread is selected. The list then shows the
+    // second half of the threads.
     let (effects, _) =
         press(&mut screen, &company, "R ctrl-n 'offer\u{a0}where\u{a0}customer<2750:\u{a0}B\u{a0}85' ctrl-s");
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };

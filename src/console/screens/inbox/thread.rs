@@ -127,7 +127,7 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
         }
         let terms = match firm.status.as_str() {
             "subscribed" => format!("plan {} at {} since day {}", firm.plan, dollars_and_cents(firm.price), firm.since_day),
-            "lead" => format!("not a customer; asked on day {}", firm.since_day),
+            "lead" => format!("not a customer; asked for an offer on day {}", firm.since_day),
             other => format!("{other}; arrived on day {}", firm.since_day),
         };
         lines.extend(wrap(&text, width).into_iter().map(|line| (line, Role::Text)));

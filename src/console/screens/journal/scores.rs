@@ -103,8 +103,8 @@ impl Pane<Journal> for ScoresPane {
             let none = company.forecast_scores.iter().all(|score| score.scored == 0);
             let text = match (none, summary) {
                 (true, _) => "no forecast is due yet",
-                (false, true) => "error, width: share of cash",
-                (false, false) => "error: share of cash",
+                (false, true) => "error and width as shares of cash",
+                (false, false) => "error as a share of cash",
             };
             canvas.draw_text(row, text, Role::Dim);
         }

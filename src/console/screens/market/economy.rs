@@ -148,7 +148,7 @@ fn draw_curve(
     here: &EconomyMeasurement,
 ) {
     let lanes = if area.height >= 9 { 2 } else { 0 };
-    // The names of the lanes need additional columns left of the axis.
+    // The names of the lanes need additional columns to the left of the axis.
     let indent = if lanes > 0 { 2.min(area.width) } else { 0 };
     let upper = Rect { x: area.x + indent, width: area.width - indent, height: area.height - lanes, ..area };
     let today = company.observation.day.max(2);

@@ -83,7 +83,7 @@ impl Market {
     /// Selects a group and shows its insight report.
     pub fn show_group(&mut self, group: Group) {
         self.focus = MarketPane::Groups;
-        // The filter is cleared, because it could hide the group.
+        // The filter is cleared, because the filter could hide the group.
         self.table.handle_action(Action::Close, 1);
         if let Some(row) = self.groups.iter().position(|shown_group| *shown_group == group) {
             self.table.select(row);
@@ -350,7 +350,7 @@ fn move_in_table(table: &mut Table, action: Action, context: &ScreenContext<'_>)
     table.handle_action(action, context.page_rows);
 }
 
-/// Returns a figure about what the player knows of a group.
+/// Returns a figure for a fact that the player knows about a group.
 fn knowledge_figure(group: Group, company: &DisplayedCompany, term: &'static str, what: &str) -> Option<Figure> {
     let what = if study_level(company, group) == 0 { "facts about" } else { what };
     Some(Figure {

@@ -57,7 +57,7 @@ pub struct MarketFacts {
 }
 
 impl MarketFacts {
-    /// Replaces the figures that come from a reading.
+    /// Replaces the figures that are computed from a screen query.
     pub fn apply_rows(&mut self, reading: Reading, rows: &QueryResult) {
         let rows = rows.rows.iter();
         match reading {

@@ -20,7 +20,7 @@ pub fn competitor_lines(hidden: &HiddenValues) -> Vec<String> {
 }
 
 fn next_move_text(next: Option<&NextCompetitorMove>) -> String {
-    let Some(next) = next else { return "x-ray: no competitor move until the end".to_owned() };
+    let Some(next) = next else { return "x-ray: no competitor move before the run ends".to_owned() };
     match &next.outcome {
         Some(made) => {
             format!(
@@ -30,7 +30,7 @@ fn next_move_text(next: Option<&NextCompetitorMove>) -> String {
             )
         }
         None => format!(
-            "x-ray: next move on day {}: larger of {} and {} of the uncopied quality",
+            "x-ray: next move on day {}: raises expectations by the larger of {} and {} of the uncopied quality",
             next.day,
             grouped_number(next.sampled_size, 4),
             novamind_base::formatting::percent(next.copied_share, 0)

@@ -225,13 +225,13 @@ impl StartMenu {
             true => (
                 "Give up",
                 format!(
-                    "Run {id} is at {stand}. Giving up ends it for good, without a score. You can still open it and branch from it."
+                    "Run {id} is at {stand}. Giving up ends the run for good, without a score. You can still open it and branch from it."
                 ),
             ),
             false => (
                 "Delete",
                 format!(
-                    "Run {id} is at {stand}. Deleting it removes its record and everything in its folder for good."
+                    "Run {id} is at {stand}. Deleting the run permanently removes its record and everything in its folder."
                 ),
             ),
         })
@@ -251,7 +251,7 @@ impl StartMenu {
             // The consent question is drawn by the consent text.
             OpenFallback::AskConsent(_) => return,
             OpenFallback::Watch(_) => {
-                ("Read-only", "Watch it here, read-only? Changes made elsewhere appear here.")
+                ("Read-only", "Watch the run here, read-only? Changes made elsewhere appear here.")
             }
             OpenFallback::Recover(_) => {
                 ("Damaged", "Recover the undamaged part as a branch? The damaged run is not changed.")

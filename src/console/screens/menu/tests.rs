@@ -383,7 +383,7 @@ fn runs_are_replayed_from_the_list_and_the_first_page() {
 fn failed_open_offers_an_alternative() {
     let long = "trajectory.jsonl, line 8: the line does not follow from the one before. ".repeat(12);
     for (instead, words) in [
-        (OpenFallback::Watch("aaaa0001".to_owned()), "Watch it here"),
+        (OpenFallback::Watch("aaaa0001".to_owned()), "Watch the run here"),
         (OpenFallback::Recover("aaaa0001".to_owned()), "as a branch?"),
     ] {
         for page in [MenuPage::Home, MenuPage::Runs] {

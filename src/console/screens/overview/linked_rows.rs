@@ -59,7 +59,7 @@ pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &[LinkedRow
         }
         let room = lines.len().min((area.bottom() - y) as usize);
         let shown = wrap_sentences(&rows[at].text, rows[at].text_width(area.width), room);
-        // A text that is cut after a sentence leaves lines to the next row.
+        // If a text is cut after a sentence, the next row starts directly below the cut text.
         let place = Rect { y, height: shown.len() as u16, ..area };
         draw_row(canvas, place, &rows[at], &shown, placement.focused && at == selected);
         canvas.register_click(place, Click::Row(placement.index, at));

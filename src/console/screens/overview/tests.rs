@@ -163,7 +163,7 @@ fn action_items_are_not_truncated_if_they_fit() {
     let (_, company, screen) = played_screen::<Overview>(9);
     let large = screen_text(&screen, &company, 200, 57);
     for words in
-        ["Usage against capacity", "4-wk mean", "Delivered quality", "expected", "95 %", "New this week"]
+        ["Usage and capacity", "4-wk mean", "Delivered quality", "expected", "95 %", "New this week"]
     {
         assert!(large.contains(words), "{words} in\n{large}");
     }

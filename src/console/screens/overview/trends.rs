@@ -67,7 +67,7 @@ fn draw_metric_chart(canvas: &mut Canvas<'_>, area: Rect, metric: &Metric, title
 }
 
 pub fn draw_usage(canvas: &mut Canvas<'_>, area: Rect, days: &[ServiceDay]) {
-    let title = "Usage against capacity, units a day";
+    let title = "Usage and capacity, units per day";
     let words = match days.last() {
         Some(last) => format!(
             "{} of {} · {} used",

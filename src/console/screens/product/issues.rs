@@ -20,7 +20,7 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
-/// Bar glyphs by age of issues, the newest first. Older issues have denser glyphs.
+/// Bar glyphs by age of the issues, the newest issues first. Older issues have denser glyphs.
 const AGE_SYMBOLS: [char; 4] = ['░', '▒', '▓', '█'];
 
 const FIGURES_WIDTH: u16 = 45;

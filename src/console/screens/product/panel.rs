@@ -83,7 +83,8 @@ impl<P: ProductPanel> Pane<Product> for P {
     fn border(&self, product: &Product, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let open = context.keys.label(Action::Open).unwrap_or_default();
         let title = self.id().title();
-        // The corners, the spaces around the title and the note, and a piece of border between them need nine columns.
+        // The corners, the spaces around the title and the note, and a segment of the border between the title and the
+        // note need nine columns.
         let width = (area.width as usize).saturating_sub(title.len() + 9);
         PaneBorder {
             title: title.to_owned(),

@@ -33,7 +33,7 @@ pub struct PostFilter {
     pub kind: Option<PostKind>,
     /// Week in which posts were published, or `None` for all weeks.
     pub week: Option<u32>,
-    /// Thread of posts: the number of the player's post, and the number of the post that it answers.
+    /// Thread of posts: the number of the player's post, and the number of the post that the player's post answers.
     pub thread: Option<(u32, Option<u32>)>,
     /// Text that posts contain, compared without regard to case.
     pub text: String,

@@ -136,7 +136,7 @@ impl Social {
     }
 
     /// Returns the number of the player's post to whose thread a post belongs. The thread consists of the player's
-    /// post, its comments and the post that it answers.
+    /// post, the comments on this post, and the post that the player's post answers.
     fn thread_of_post(&self, post: &Post) -> Option<u32> {
         match post.kind {
             PostKind::Own => Some(post.number),

@@ -133,7 +133,8 @@ impl QueryEditor {
         self.on_change();
     }
 
-    /// Inserts the selected suggestion. If no suggestions are open, shows suggestions. If there are no suggestions, indents.
+    /// Inserts the selected suggestion. If no suggestions are open, shows suggestions. If there are no suggestions,
+    /// inserts spaces at the cursor up to the next multiple of four columns.
     pub fn accept_or_offer_completion(&mut self) {
         match self.completion.take().or_else(|| complete(&self.text(), self.cursor_offset(), 1)) {
             Some(completion) => {

@@ -130,7 +130,7 @@ impl Pane<Sql> for ResultsPane {
         let mark = if asked.is_some_and(|asked| sql.reads_hidden_state(asked)) { " · x-ray" } else { "" };
         let in_editor = sql.editor.statement();
         let in_editor = in_editor.as_ref().map(|statement| statement.sql.as_str());
-        // Several results are named by their tabs.
+        // If there are several results, the tabs show the titles of the results.
         let other = match &sql.running {
             Some(_) => None,
             None => sql.results.title_of_other_statement(in_editor),

@@ -59,7 +59,7 @@ impl ResultTabs {
         self.tabs.get(self.current_index).map(|tab| tab.sql.as_str())
     }
 
-    /// Returns the title of the only result, if its statement is not the one in the editor.
+    /// Returns the title of the only result, if the statement of the result is not the statement in the editor.
     pub fn title_of_other_statement(&self, in_editor: Option<&str>) -> Option<&str> {
         match self.tabs.as_slice() {
             [tab] if in_editor != Some(tab.sql.as_str()) => Some(&tab.title),

@@ -36,7 +36,7 @@ pub struct ToolForm {
     committed_cell: Option<CellPosition>,
     /// The block to which the user adds a row, and the field for the customer number.
     pub new_customer: Option<(usize, TextField)>,
-    /// Drafts that the last reset discarded, by path. A second reset restores them.
+    /// Drafts that the last reset discarded, by path. A second reset restores these drafts.
     discarded_drafts: BTreeMap<String, String>,
     /// The check of the call, if it has arrived.
     pub preview: Option<Result<Preview, Rejection>>,

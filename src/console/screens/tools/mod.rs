@@ -227,7 +227,7 @@ impl ScreenState for Tools {
             Response::ToolCalled(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
                     if answer.is_ok() && tool.executes_code() {
-                        // The form keeps its code, so that the user can change and send it again.
+                        // The form keeps its code, so that the user can change the code and send it again.
                         form.stop_typing();
                     } else if answer.is_ok() {
                         form.reset(context.company);
@@ -307,7 +307,7 @@ impl PaneScreen for Tools {
     fn set_focused_pane(&mut self, name: ToolsPane) {
         self.focus = name;
         if name == ToolsPane::List {
-            // The typed text stays a draft. Typing does not resume when the form gets the focus again.
+            // The typed text remains a draft. Typing does not resume when the form gets the focus again.
             self.forms.values_mut().for_each(ToolForm::stop_typing);
         }
     }

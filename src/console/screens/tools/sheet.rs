@@ -247,7 +247,7 @@ impl ToolSheet {
         ToolSheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 
-    /// Returns the sheet with updated current values and the drafts that still differ from them.
+    /// Returns the sheet with updated current values and the drafts that still differ from the current values.
     pub fn with_current_values(&self, company: &DisplayedCompany) -> ToolSheet {
         let mut sheet = ToolSheet::new(self.spec, company);
         for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {
@@ -285,7 +285,7 @@ impl ToolSheet {
         }
     }
 
-    /// Returns the drafts by path.
+    /// Returns the typed drafts by the path of their cells.
     pub fn drafts(&self) -> BTreeMap<String, String> {
         let typed = |place: CellPosition| {
             let draft = self.cell(place)?.draft.as_ref()?;

@@ -24,7 +24,7 @@ pub enum InputKind {
     Command,
 }
 
-/// Input after parsing.
+/// A parsed input line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParsedInput {
     /// A group, with the day if one was typed.

@@ -223,7 +223,8 @@ impl Xray {
         self.request_inspection()
     }
 
-    /// Selects the day to inspect. If the last day is selected, the selection stays on the last day while the run continues.
+    /// Selects the day to inspect. If the last day is selected, later last days are selected automatically while the
+    /// run continues.
     fn set_day(&mut self, day: Option<u32>) {
         self.day = day.filter(|day| *day != self.last_day);
     }

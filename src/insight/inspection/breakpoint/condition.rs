@@ -66,14 +66,14 @@ pub enum WorldEvent {
     Competitor,
     /// Drift of expectations and budgets on the day.
     Drift,
-    /// An active demand surge.
+    /// A demand surge that is active on the day.
     Surge,
     /// An outage on the day.
     Outage,
 }
 
 impl WorldEvent {
-    /// All world events.
+    /// All world events that a condition can test.
     pub const ALL: [WorldEvent; 4] =
         [WorldEvent::Competitor, WorldEvent::Drift, WorldEvent::Surge, WorldEvent::Outage];
 
@@ -173,11 +173,11 @@ impl fmt::Display for Condition {
 /// The state of a condition on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionState {
-    /// Evaluated day, from 1.
+    /// Day on which the condition is evaluated, from 1.
     pub day: u32,
     /// Value of the figure on the day; `None` for an event or if the figure has no value.
     pub value: Option<f64>,
-    /// Value of the figure on the previous day; `None` if it has no value.
+    /// Value of the figure on the previous day; `None` if the figure had no value on that day.
     pub before: Option<f64>,
     /// Whether the condition is true on the day.
     pub is_true: bool,

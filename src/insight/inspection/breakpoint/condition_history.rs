@@ -8,7 +8,7 @@ use novamind_tools::Rejection;
 /// The current state of a condition, with the last day on which it was true and the last day on which it was false.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConditionHistory {
-    /// The evaluated condition.
+    /// Condition whose history is described.
     pub condition: Condition,
     /// State of the condition on the last completed day.
     pub today: ConditionState,
@@ -19,7 +19,7 @@ pub struct ConditionHistory {
 }
 
 impl ConditionHistory {
-    /// Returns the first day since which the condition has been unchanged.
+    /// Returns the first day of the period in which the condition has had its current state.
     pub fn unchanged_since(&self) -> u32 {
         let other = if self.today.is_true { self.last_false } else { self.last_true };
         other.map_or(1, |other| other.day + 1)

@@ -255,7 +255,7 @@ fn parse_predicate(words: &mut TokenReader<'_>) -> Result<FigurePredicate, Condi
     words.parse_number().map(|threshold| FigurePredicate::Compared(relation, threshold))
 }
 
-/// Rejects a share above 1, which was probably meant in percent.
+/// Rejects a share above 1, which was probably meant as a percentage.
 fn check_share_threshold(
     measure: Measure,
     judgement: &FigurePredicate,

@@ -24,13 +24,13 @@ type GroupFigureFn = Option<fn(&GroupFigures) -> Option<f64>>;
 
 macro_rules! measures {
     ($($measure:ident = $id:literal, $kind:expr, $company:expr, $group:expr;)*) => {
-        /// A daily figure.
+        /// A daily figure of the company or of a group.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(missing_docs)] // Each is described by its name.
         pub enum Measure { $($measure),* }
 
         impl Measure {
-            /// All daily figures.
+            /// All daily figures that a condition can use.
             pub const ALL: &'static [Measure] = &[$(Measure::$measure),*];
 
             /// Returns the identifier of the figure in conditions and data.

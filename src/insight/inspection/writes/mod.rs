@@ -22,9 +22,9 @@ pub enum WriteSource {
     Reputation(ReputationCause),
     /// Ledger entries of a category, from calls before the day or from the simulation of the day.
     LedgerEntries(Category),
-    /// Cancellations with the same reason.
+    /// Cancellations for the given reason.
     Cancellations(EndCause),
-    /// New individual subscribers from the same source.
+    /// New individual subscribers from the given source.
     Signups(Source),
     /// Enterprises that accepted their first deal.
     FirstDeals,
@@ -37,9 +37,9 @@ pub struct FigureWrite {
     pub source: WriteSource,
     /// Amounts in the order of the changes, before limits.
     pub changes: Vec<f64>,
-    /// Value before the changes.
+    /// Value of the figure before the changes.
     pub before: f64,
-    /// Value after the changes.
+    /// Value of the figure after the changes.
     pub after: f64,
 }
 
@@ -63,7 +63,7 @@ impl FigureWrite {
 /// All changes in a figure on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureWrites {
-    /// The changed figure.
+    /// Figure whose changes are listed.
     pub target: WriteTarget,
     /// Day of the changes.
     pub day: u32,

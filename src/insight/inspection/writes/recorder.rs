@@ -27,7 +27,7 @@ struct RecordedWrites {
     writes: Vec<FigureWrite>,
     /// Company figures of the day.
     figures: DayFigures,
-    /// Changes on the requested day, once it is simulated.
+    /// Changes on the requested day; `None` until the day is simulated.
     result: Option<FigureWrites>,
 }
 

@@ -153,7 +153,7 @@ pub struct ExternalRead {
 pub struct Inspection {
     /// Kind of the inspection, for example `leads`, `customer` or `sql`.
     pub what: String,
-    /// Inspected group, customer or part, or the SQL statement; empty if the inspection has no choice.
+    /// Inspected group, customer or part, or the SQL statement; empty if inspections of this kind have no subject.
     pub which: String,
     /// Day whose hidden state was shown.
     pub shown_day: u32,

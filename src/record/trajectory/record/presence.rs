@@ -29,7 +29,7 @@ pub struct Presence {
     /// Milliseconds since the last key press, if the user was idle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub idle_ms: Option<u64>,
-    /// Length and last hash of `worlds.jsonl`, a file of earlier builds. This field is read and never written.
+    /// Length and last hash of `worlds.jsonl`, a file of earlier builds. The field is read and never written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worlds: Option<Value>,
 }

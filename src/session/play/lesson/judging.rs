@@ -158,7 +158,7 @@ impl Session {
             seed: Some(self.manifest().seed),
             scheduled_calls: &standing.lesson.plan.good.plays,
             weeks: Some(standing.current_part().step_weeks(step).1),
-            // Do not judge the goals of the reference play: this would need another reference play.
+            // Do not judge the goals of the reference play, because judging them would need another reference play.
             is_judged: false,
             needs_database: relative.any(|goal| goal.measurement.needs_database()),
         };

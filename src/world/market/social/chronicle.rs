@@ -11,7 +11,7 @@ use crate::settings::Settings;
 /// Number of past days in the record, in addition to today.
 pub const MEMORY_DAYS: usize = 28;
 
-/// Record of the company's recent days, oldest first. The last page is today.
+/// Record of the company's recent days, oldest first. The last page describes today.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chronicle {
     days: Vec<Page>,
@@ -62,7 +62,7 @@ impl Chronicle {
         Chronicle { days: vec![page] }
     }
 
-    /// Appends the page of a day at its end. Removes the oldest page if necessary.
+    /// Appends the page of a day at the end of the day. Removes the oldest page if the chronicle is full.
     pub fn append_day(&mut self, day: u32, service: &ServiceDay, settings: &Settings, product: &Product) {
         let surplus = (self.days.len()).saturating_sub(MEMORY_DAYS);
         self.days.drain(..surplus);

@@ -1,7 +1,7 @@
 //! Social media: posts of customers, the press, and the player's posts (docs/mechanics/market/social/README.md).
 //!
-//! Posts that the player did not write only inform and have no effect. The player's posts affect leads after the judge of
-//! the `voice` crate has determined the reaction of each group ([`reach::apply_reactions`]).
+//! Posts that the player did not write only inform the player and do not affect the world. The player's posts affect
+//! leads after the judge of the `voice` crate has determined the reaction of each group ([`reach::apply_reactions`]).
 
 pub mod chronicle;
 pub mod engagement;

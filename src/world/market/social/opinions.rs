@@ -114,8 +114,8 @@ impl OpinionContext<'_> {
         ]
     }
 
-    /// Returns how much the quality required at a subscriber's price exceeds the subscriber's minimum quality, and the
-    /// price as a share of the budget, 0..=1.
+    /// Returns two values for a subscriber: the quality required at the current price less the minimum quality, and
+    /// the price as a share of the budget, 0..=1.
     fn required_quality_and_budget_share(&self, block: &Block, at: usize) -> (f64, f64) {
         let needed = (block.required[at] - block.q_min[at]).max(0.0);
         let budget = block.effective_c_max[at];

@@ -90,7 +90,7 @@ pub fn economy_engagement([views, likes, shares]: [f64; 3], economy: &MacroEcono
 }
 
 /// Writes today's posts about the economy: one for each published PMI reading, and at intervals a round of opinions
-/// about the current state.
+/// about the current state of the economy.
 pub fn write_economy_posts(
     day: u32,
     economy: &Economy,

@@ -3,7 +3,7 @@
 use crate::events::Sentiment;
 use crate::params::{SentimentChances, SocialParams};
 
-/// Returns the probability of each sentiment at a satisfaction.
+/// Returns the probability of each sentiment for an author with the given satisfaction.
 pub fn sentiment_chances(satisfaction: f64, params: &SocialParams) -> &SentimentChances {
     match satisfaction {
         s if s >= params.sentiment_band_very_positive_min => &params.sentiment.very_positive,

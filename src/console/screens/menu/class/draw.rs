@@ -275,7 +275,7 @@ impl ClassPage {
             (least.min(value), most.max(value))
         });
         let head = Rect { height: 1.min(area.height), ..area };
-        canvas.draw_text(head, "x: guess, y: outcome; points on the line were exact", Role::Dim);
+        canvas.draw_text(head, "x: guess, y: outcome; exact guesses are on the line", Role::Dim);
         let chart = Rect { y: area.y + head.height, height: area.height - head.height, ..area };
         let diagonal = (most > least).then_some([(least, least), (most, most)]);
         self.draw_points(canvas, chart, &points, (&compact_number, AxisUnit::Number), diagonal);

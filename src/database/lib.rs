@@ -38,6 +38,8 @@ mod text_index;
 mod tokens;
 
 #[cfg(test)]
+mod release_2_tests;
+#[cfg(test)]
 mod tests;
 
 pub use catalogue::{Column, Scope, Table, hidden_tables, table, tables};

@@ -24,6 +24,7 @@ const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(
 fn entry(facts: Facts) -> ProjectionEntry {
     ProjectionEntry {
         notices: facts.notices.iter().map(|notice| novamind_voice::notice_text(notice, None)).collect(),
+        posts: facts.posts.iter().map(|post| format!("text of post {}", post.post)).collect(),
         turns: facts.turns.iter().map(|_| String::new()).collect(),
         readings: facts.readings.iter().map(novamind_voice::reading_text).collect(),
         addresses: facts

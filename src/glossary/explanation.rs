@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Subject, Term, subject_by_name, term};
-use novamind_database::{Column, Table};
+use novamind_database::{Column, Interface, Table};
 use novamind_tools::{Argument, ParameterNumbers, ToolSpec};
 
 /// A labelled section of an explanation.
@@ -75,8 +75,11 @@ fn term_parts(glossary_term: &'static Term) -> ExplanationParts {
     ];
     let terms = glossary_term.see.iter().filter_map(|id| term(id)).map(Subject::Term);
     let tools = glossary_term.tools.iter().filter_map(|name| subject_by_name(name));
-    let tables =
-        glossary_term.tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
+    let tables = glossary_term
+        .tables
+        .iter()
+        .filter_map(|name| novamind_database::table(Interface::Release1, name))
+        .map(Subject::Table);
     (glossary_term.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &glossary_term.places)
 }
 
@@ -94,8 +97,11 @@ fn tool_parts(spec: &'static ToolSpec) -> ExplanationParts {
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let arguments = spec.arguments.iter().map(|argument| Subject::Argument(spec, argument));
-    let tables =
-        spec.written_tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
+    let tables = spec
+        .written_tables
+        .iter()
+        .filter_map(|name| novamind_database::table(Interface::Release1, name))
+        .map(Subject::Table);
     let related = terms.map(Subject::Term).chain(arguments).chain(tables).collect();
     (format!("tool · {}", spec.module.id()), sections, related, &[])
 }
@@ -199,7 +205,7 @@ mod tests {
     #[test]
     fn every_subject_has_an_explanation() {
         let specs = || novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
-        let tables = || novamind_database::tables().iter();
+        let tables = || novamind_database::tables(Interface::Release1).iter();
         let subjects = super::super::terms()
             .iter()
             .map(Subject::Term)

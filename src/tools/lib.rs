@@ -40,7 +40,7 @@ mod time;
 #[cfg(test)]
 mod tests;
 
-pub use analytics::{GetSocialPosts, PostLimit, SocialPost};
+pub use analytics::{GetSocialPosts, PostAuthor, PostLimit, SocialPost};
 pub use arguments::Arguments;
 pub use catalogue::{Answer, AnyTool, CATALOGUE, find};
 pub use enterprise::{highest_customer, remap_customers};

@@ -23,6 +23,7 @@ use novamind_report::research::late_project_lines;
 use novamind_session::{EnterpriseNames, JournalEntry, SettingChange, undone_call_lines};
 use novamind_tools::ParameterNumbers;
 use novamind_tools::describe::{self, ToolDocument, document_tool};
+use novamind_world::params::Interface;
 
 impl Interpreter {
     pub(super) fn dashboard(&self) -> CommandResponse {
@@ -238,20 +239,18 @@ pub(super) fn tools_command(
 pub(super) fn tables_command(
     name: Option<&str>,
     arguments: &[Argument],
+    interface: Interface,
 ) -> Result<CommandResponse, ParseError> {
+    let tables = novamind_database::tables(interface);
     let Some(name) = name else {
-        let width = novamind_database::tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
+        let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
         let line =
             |table: &novamind_database::Table| format!("{:<width$}  {}\n", table.name, table.description);
-        let text: String = novamind_database::tables().iter().map(line).collect();
-        return Ok(CommandResponse::success(
-            "tables",
-            text,
-            json!({ "tables": novamind_database::tables() }),
-        ));
+        let text: String = tables.iter().map(line).collect();
+        return Ok(CommandResponse::success("tables", text, json!({ "tables": tables })));
     };
-    let table = novamind_database::table(name).ok_or_else(|| {
-        let names = novamind_database::tables().iter().map(|table| table.name.as_str());
+    let table = novamind_database::table(interface, name).ok_or_else(|| {
+        let names = tables.iter().map(|table| table.name.as_str());
         argument_error(
             arguments,
             &not_found_message(

@@ -62,7 +62,7 @@ pub fn router(
                 .delete(delete_script),
         )
         .route("/tools", get(tools))
-        .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
+        .route("/tables", get(table_documents))
         .route("/openapi.json", get(openapi_document))
         .route("/shutdown", post(shut_down))
         .fallback(not_found)
@@ -96,6 +96,10 @@ async fn tools(State(door): State<RouteState>) -> Response {
     let all: Vec<ToolDocument> =
         CATALOGUE.iter().map(|tool| document_tool(tool.spec(), &door.numbers)).collect();
     json_response(StatusCode::OK, &json!(all))
+}
+
+async fn table_documents(State(door): State<RouteState>) -> Response {
+    json_response(StatusCode::OK, &json!(tables(door.numbers.interface())))
 }
 
 async fn openapi_document(State(door): State<RouteState>) -> Response {

@@ -12,6 +12,7 @@ use novamind_tools::Rejection;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::sql::tokenize;
 use novamind_tui::theme::Role;
+use novamind_world::params::Interface;
 use std::time::Duration;
 
 const MAX_TABS: usize = 9;
@@ -194,7 +195,7 @@ fn tab_title(sql: &str) -> String {
     if let Some(title) = QueryHeader::parse(sql).title {
         return short(title);
     }
-    let named = tokenize(sql).into_iter().find_map(|token| table(&sql[token.range]));
+    let named = tokenize(sql).into_iter().find_map(|token| table(Interface::Release1, &sql[token.range]));
     short(named.map_or_else(|| single_line(strip_header(sql)), |table| table.name.clone()))
 }
 

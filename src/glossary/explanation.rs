@@ -37,8 +37,8 @@ impl Explanation {
             Subject::Term(term) => term_parts(term),
             Subject::Tool(spec) => tool_parts(spec),
             Subject::Argument(spec, argument) => argument_parts(spec, argument),
-            Subject::Table(table) => table_parts(table),
-            Subject::Column(table, column) => column_parts(table, column),
+            Subject::Table(table) => table_parts(table_of_release(table, numbers)),
+            Subject::Column(table, column) => column_parts(table_of_release(table, numbers), column),
         };
         let filled = |section: Section| Section { text: numbers.substitute(&section.text), ..section };
         let sections = sections.into_iter().filter(|section| !section.text.is_empty()).map(filled).collect();
@@ -127,6 +127,10 @@ fn argument_parts(spec: &'static ToolSpec, argument: &'static Argument) -> Expla
     (format!("argument of {}", spec.name()), sections, related, &[])
 }
 
+fn table_of_release(table: &'static Table, numbers: &ParameterNumbers) -> &'static Table {
+    novamind_database::table(numbers.interface(), &table.name).unwrap_or(table)
+}
+
 fn table_parts(table: &'static Table) -> ExplanationParts {
     let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
     let sections = vec![
@@ -145,6 +149,7 @@ fn column_parts(table: &'static Table, column: &'static Column) -> ExplanationPa
         section("", to_sentence(&column.description)),
         section("type", column.kind.clone()),
         section("values", column.values.join(", ")),
+        section("release", if table.columns.contains(column) { "" } else { "not published by this release" }),
         section("table", format!("{}: {}", table.name, table.description)),
         section("written", table.written.clone()),
     ];

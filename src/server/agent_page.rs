@@ -130,7 +130,8 @@ fn table_manual(numbers: &ParameterNumbers) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_world::params::{Interface, Params};
+    use novamind_database::Interface;
+    use novamind_record::folder::configuration::Configuration;
 
     #[test]
     fn agent_page_lists_every_tool_and_current_parameters() {
@@ -165,8 +166,9 @@ mod tests {
 
     #[test]
     fn documents_follow_the_release() {
-        let mut params = Params::bundled();
-        params.fidelity.interface = Interface::Release2;
+        let configuration = Configuration::bundled();
+        let scenario = configuration.load_scenario("release-2").expect("a scenario");
+        let params = configuration.load_parameters(&scenario, &[], true).expect("parameters");
         let numbers = ParameterNumbers::from_params(&params);
         let manual = table_manual(&numbers);
         assert!(!manual.contains("first_billing_done") && manual.contains("reply_to_agent_post_id"));

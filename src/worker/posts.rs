@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(who(make_post("S1", None)), (PostKind::Press, "press".to_owned()));
         assert_eq!(who(make_post("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
-    use crate::test_kit::played_session;
+    use crate::test_kit::{played_session, played_session_of};
     use novamind_record::trajectory::record::Via;
 
     #[test]
@@ -206,5 +206,16 @@ mod tests {
         assert!(
             shared.clone().count() == first.len() && shared.clone().all(|(now, then)| Arc::ptr_eq(now, then))
         );
+    }
+
+    #[test]
+    fn posts_of_release_2_have_no_authors() {
+        let session = played_session_of("release-2", 3);
+        let posts = read_posts(&session, None);
+        assert!(!posts.is_empty());
+        for post in posts.iter() {
+            assert_eq!((post.kind, post.heading()), (PostKind::Public, format!("post · #{}", post.number)));
+        }
+        assert!(read_posts(&played_session(3), None).iter().all(|post| post.kind != PostKind::Public));
     }
 }

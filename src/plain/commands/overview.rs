@@ -11,6 +11,7 @@ use super::help::not_found_message;
 use super::{Interpreter, argument_error, find_tool};
 use novamind_base::formatting::{dollars, grouped_number, pluralize, signed_dollars};
 use novamind_base::similar_names;
+use novamind_database::Interface;
 use novamind_record::trajectory::record::Reversal;
 use novamind_report::action_items::{ActionItem, ActionTarget, action_items};
 use novamind_report::cost_review::{identical_plan_lines, money_lines};
@@ -23,7 +24,6 @@ use novamind_report::research::late_project_lines;
 use novamind_session::{EnterpriseNames, JournalEntry, SettingChange, undone_call_lines};
 use novamind_tools::ParameterNumbers;
 use novamind_tools::describe::{self, ToolDocument, document_tool};
-use novamind_world::params::Interface;
 
 impl Interpreter {
     pub(super) fn dashboard(&self) -> CommandResponse {

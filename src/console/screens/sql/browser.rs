@@ -6,13 +6,12 @@ use ratatui::layout::Rect;
 
 use crate::action::Action;
 use crate::screens::panes::PanePlacement;
-use novamind_database::{Column, Table, hidden_tables, tables};
+use novamind_database::{Column, Interface, Table, hidden_tables, tables};
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_tui::widgets::table::first_visible_row;
-use novamind_world::params::Interface;
 
 /// Label of x-ray tables in the tree.
 const XRAY_LABEL: &str = "x-ray";

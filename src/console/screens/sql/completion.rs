@@ -1,9 +1,8 @@
 //! Completion of SQL: columns of the tables in the statement, tables, keywords, functions.
 
 use novamind_database::catalogue::{Column, Table};
-use novamind_database::{table, tables};
+use novamind_database::{Interface, table, tables};
 use novamind_tui::sql::{FUNCTIONS, KEYWORDS, TokenKind, Token, is_identifier_char, statement_at, tokenize};
-use novamind_world::params::Interface;
 
 /// A suggestion for the word at the cursor.
 #[derive(Debug, Clone, PartialEq, Eq)]

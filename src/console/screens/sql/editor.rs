@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::completion::{Completion, complete};
-use novamind_world::params::Interface;
+use novamind_database::Interface;
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::sql::{is_identifier_char, statement_at, tokenize};
 use novamind_tui::theme::Role;

@@ -6,13 +6,12 @@ use unicode_width::UnicodeWidthStr;
 
 use super::picker::single_line;
 use super::results::ResultView;
-use novamind_database::{QueryResult, table};
+use novamind_database::{Interface, QueryResult, table};
 use novamind_record::folder::query_library::{QueryHeader, strip_header};
 use novamind_tools::Rejection;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::sql::tokenize;
 use novamind_tui::theme::Role;
-use novamind_world::params::Interface;
 use std::time::Duration;
 
 const MAX_TABS: usize = 9;

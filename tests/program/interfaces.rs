@@ -167,7 +167,7 @@ fn abandoned_script_is_stopped() {
 #[test]
 fn server_of_release_2_publishes_its_tables_and_tools() {
     let home = Home::new();
-    let server = Server::start(&home, &["--seed", "1", "--scenario", "release-2"]);
+    let server = Server::start(&home, &["--new", "--seed", "1", "--scenario", "release-2"]);
     let asked = |sql: &str| server.post("/query", &json!({ "sql": sql }));
     let (status, rows) = asked("SELECT * FROM subscriptions");
     assert_eq!((status, rows["columns"].as_array().map(Vec::len)), (200, Some(15)), "{rows}");
@@ -183,6 +183,7 @@ fn server_of_release_2_publishes_its_tables_and_tools() {
     assert_eq!(server.stop(), 0);
 }
 
+#[cfg(unix)]
 #[test]
 fn http_client_reaches_the_same_state() {
     let home = Home::new();

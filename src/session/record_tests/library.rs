@@ -1,5 +1,6 @@
 use crate::create::NewRun;
 use crate::play::Session;
+use novamind_database::text_at;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::query_library::*;
 use novamind_record::trajectory::record::Via;
@@ -40,11 +41,28 @@ fn bundled_queries_run_in_every_phase() {
                    (SELECT note FROM ledger WHERE category = 'subscription_payment'))";
     assert!(!billed.is_empty());
     assert_eq!(first_bills(&mut session, derived), billed);
+    let (notice, _) = post_notice(&mut session);
+    assert!(notice.starts_with("Your post was seen ") && notice.contains("Reaction "), "{notice}");
+}
+
+/// Returns the notification about the only post, and the views of the post.
+fn post_notice(session: &mut Session) -> (String, String) {
+    let sql = "SELECT n.message, printf('%,d', a.views) FROM notifications n JOIN agent_social_media_posts a \
+               WHERE n.message LIKE '%We are here.%'";
+    let rows = session.query(sql).expect("a notification").rows;
+    assert_eq!(rows.len(), 1);
+    (text_at(&rows[0], 0).to_owned(), text_at(&rows[0], 1).to_owned())
 }
 
 #[test]
 fn bundled_queries_run_in_every_phase_under_release_2() {
-    run_queries_in_every_phase(NewRun { scenario: "release-2".to_owned(), ..NewRun::default() });
+    let new = NewRun { scenario: "release-2".to_owned(), ..NewRun::default() };
+    let mut session = run_queries_in_every_phase(new);
+    let (notice, views) = post_notice(&mut session);
+    let expected = format!(
+        "Your post received {views} views: \"We are here.\". The comments of customers show the public reaction."
+    );
+    assert_eq!(notice, expected);
 }
 
 fn run_queries_in_every_phase(new: NewRun) -> Session {

@@ -30,9 +30,9 @@ fn lock_memory_limit() -> MutexGuard<'static, ()> {
 }
 
 /// Plays a company for six weeks so that as many tables as possible have rows.
-fn played_session(folder: &Path) -> Session {
-    let storage = Storage::Runs(folder.to_owned());
-    let new = NewRun { seed: Some(7), days: Some(60), storage, ..NewRun::default() };
+fn played_session(folder: &Path, scenario: &str) -> Session {
+    let (storage, scenario) = (Storage::Runs(folder.to_owned()), scenario.to_owned());
+    let new = NewRun { seed: Some(7), days: Some(60), storage, scenario, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("the run starts");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
@@ -151,7 +151,7 @@ fn run_attacks(connection: &QueryConnection, attacks: &[Attack], secrets: &[Stri
 fn hostile_statements_are_rejected_or_bounded() {
     let _alone = lock_memory_limit();
     let runs = tempfile::tempdir().expect("a folder");
-    let session = played_session(runs.path());
+    let session = played_session(runs.path(), "default");
     let folder = session.folder().expect("a folder").to_owned();
     let (before, hash) = (database_contents(&folder), session.state_hash());
     let position = rusqlite::Connection::open(folder.join("world.db")).and_then(|connection| {
@@ -194,7 +194,7 @@ fn hostile_statements_are_rejected_or_bounded() {
 fn hidden_columns_and_tables_are_not_reachable() {
     let _alone = lock_memory_limit();
     let runs = tempfile::tempdir().expect("a folder");
-    let session = played_session(runs.path());
+    let session = played_session(runs.path(), "default");
     let mut attacks = Vec::new();
     let mut reader = csv::Reader::from_reader(include_str!("data/sealed.csv").as_bytes());
     for record in reader.records().map(|record| record.expect("a row")) {
@@ -235,6 +235,27 @@ fn hidden_columns_and_tables_are_not_reachable() {
     }
     assert!(attacks.len() > 700);
     run_attacks(&session.database().open_connection().expect("a connection"), &attacks, &[]);
+
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = played_session(runs.path(), "release-2");
+    let connection = session.database().open_connection().expect("a connection");
+    run_attacks(&connection, &attacks, &[]);
+    // What release 1 rejects, release 2 rejects as well, except `temp.TABLE` and EXPLAIN.
+    let secrets = ["hidden_columns_of_", "inner_", "customer_rows", "subscription_rows"].map(str::to_owned);
+    let mut rejected = read_attacks();
+    rejected.retain(|attack| {
+        let sql = attack.sql.to_uppercase();
+        attack.head.starts_with("refused")
+            && !sql.contains("TEMP.")
+            && !sql.trim_start().starts_with("EXPLAIN")
+    });
+    assert!(rejected.len() > 150, "{}", rejected.len());
+    for attack in &mut rejected {
+        if let Err(error) = connection.query(&attack.sql, LIMITS) {
+            attack.head = format!("refused {}", error.code);
+        }
+    }
+    run_attacks(&connection, &rejected, &secrets);
 }
 
 /// A query with x-ray permission reads the hidden tables. All other data that ordinary queries cannot read stays hidden.

@@ -6,7 +6,10 @@ WITH bills AS (
     FROM customers c
     CROSS JOIN subscriptions s
     WHERE c.created_day > (SELECT max(day) FROM service_day) - 84 AND s.customer_id = c.customer_id
-        AND s.first_billing_done = 1
+        AND s.status IN ('subscribed', 'cancelled')
+        -- An individual pays on the first day, an enterprise on its next billing day.
+        AND (c.customer_type = 'small' OR 'Subscription payment from customer ' || c.customer_id IN
+            (SELECT note FROM ledger WHERE category = 'subscription_payment'))
     GROUP BY 1, 2
 )
 SELECT a.channel_id || ' ' || a.group_id AS channel_and_group, sum(a.leads_generated) AS leads, b.first_bills,

@@ -2,7 +2,7 @@
 -- what: Share of subscribers who stayed for a number of months, of those who could have, by plan.
 -- chart: line months plan_A_percent plan_B_percent plan_C_percent
 WITH today AS (SELECT max(day) AS day FROM service_day),
-months AS (SELECT value AS months FROM json_each('[1, 2, 3, 4, 5, 6, 9, 12]')),
+months(months) AS (VALUES (1), (2), (3), (4), (5), (6), (9), (12)),
 stays AS (
     SELECT s.plan, (t.day - s.start_day) / 30 AS possible, (coalesce(s.end_day, t.day) - s.start_day) / 30 AS stayed,
         count(*) AS customers

@@ -2,8 +2,10 @@
 
 use clap::Args;
 
-use super::{Failure, print};
+use super::{Context, Failure, print};
 use crate::database::{table, tables};
+use crate::record::folder::configuration::DEFAULT_SCENARIO;
+use crate::world::params::Params;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -12,20 +14,24 @@ pub struct Options {
     /// Print as JSON
     #[arg(long)]
     json: bool,
+    /// Scenario whose tables are shown
+    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
+    scenario: String,
 }
 
-pub fn run(options: &Options) -> Result<(), Failure> {
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let interface = scenario_params(&options.scenario, context)?.fidelity.interface;
+    let tables = tables(interface);
     let as_json = |value: Result<String, serde_json::Error>| value.unwrap_or_default() + "\n";
     let text = match (&options.name, options.json) {
-        (None, true) => as_json(serde_json::to_string_pretty(tables())),
+        (None, true) => as_json(serde_json::to_string_pretty(tables)),
         (None, false) => {
-            let width = tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
-            tables().iter().map(|table| format!("{:<width$}  {}\n", table.name, table.description)).collect()
+            let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
+            tables.iter().map(|table| format!("{:<width$}  {}\n", table.name, table.description)).collect()
         }
         (Some(name), json) => {
-            let table = table(name).ok_or_else(|| {
-                let near =
-                    novamind_base::similar_names(name, tables().iter().map(|table| table.name.as_str()));
+            let table = table(interface, name).ok_or_else(|| {
+                let near = novamind_base::similar_names(name, tables.iter().map(|table| table.name.as_str()));
                 let help = if near.is_empty() {
                     "`novamind tables` lists all tables".to_owned()
                 } else {
@@ -37,4 +43,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     };
     print(&text)
+}
+
+/// Returns the parameters of a scenario.
+///
+/// # Errors
+/// The scenario does not exist, or a parameter is invalid.
+pub fn scenario_params(name: &str, context: &Context) -> Result<Params, Failure> {
+    let scenario = context.configuration.load_scenario(name)?;
+    Ok(context.configuration.load_parameters(&scenario, &[], true)?)
 }

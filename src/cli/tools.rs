@@ -3,7 +3,9 @@
 use clap::Args;
 use serde_json::json;
 
-use super::{Failure, print};
+use super::tables::scenario_params;
+use super::{Context, Failure, print};
+use crate::record::folder::configuration::DEFAULT_SCENARIO;
 use crate::tools::describe::{ToolDocument, document_tool};
 use crate::tools::{CATALOGUE, ParameterNumbers, catalogue, describe, find};
 
@@ -14,10 +16,13 @@ pub struct Options {
     /// Print as JSON
     #[arg(long)]
     json: bool,
+    /// Scenario whose parameters and results are documented
+    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
+    scenario: String,
 }
 
-pub fn run(options: &Options) -> Result<(), Failure> {
-    let numbers = ParameterNumbers::bundled();
+pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    let numbers = ParameterNumbers::from_params(&scenario_params(&options.scenario, context)?);
     let text = match (&options.name, options.json) {
         (None, false) => catalogue::list_by_module(),
         (None, true) => {

@@ -155,11 +155,12 @@ fn load_inbox(connection: &Connection) -> Option<Inbox> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use novamind_world::params::Interface;
 
     #[test]
     fn every_loader_has_a_catalogue_table() {
         for (table, _) in LOADERS {
-            assert!(super::super::catalogue::table(table).is_some(), "{table}");
+            assert!(super::super::catalogue::table(Interface::Release1, table).is_some(), "{table}");
         }
     }
 }

@@ -5,6 +5,8 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
+use novamind_world::params::Interface;
+
 /// Definition of a visible or hidden table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -17,6 +19,12 @@ pub struct Table {
     pub written: String,
     /// Names of the key columns.
     pub key: Vec<String>,
+    /// Whether the table has further columns in the released simulator, which no query may read.
+    #[serde(default, skip_serializing)]
+    pub(super) has_hidden_columns: bool,
+    /// Names of the columns in the order of release 2; empty if the columns of both releases are the same.
+    #[serde(default, skip_serializing)]
+    release_2: Vec<String>,
     /// Definitions of the columns, in order.
     pub columns: Vec<Column>,
 }
@@ -47,6 +55,9 @@ static CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     toml::from_str::<Catalogue>(text).expect("the bundled catalogue of tables is tested").table
 });
 
+static RELEASE_2_CATALOGUE: LazyLock<Vec<Table>> =
+    LazyLock::new(|| CATALOGUE.iter().map(Table::with_columns_of_release_2).collect());
+
 static HIDDEN_CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     let text = include_str!("../../assets/hidden_tables.toml");
     toml::from_str::<Catalogue>(text).expect("the catalogue of hidden tables is tested").table
@@ -61,22 +72,31 @@ pub enum Scope {
     Hidden,
 }
 
-impl Scope {
-    /// Returns the tables in this scope. Visible tables precede hidden tables.
-    pub(super) fn tables(self) -> impl Iterator<Item = &'static Table> {
-        let hidden = match self {
+/// The tables of a connection: their release and their scope.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Surface {
+    /// Release whose columns the visible tables have, and whose statements are allowed.
+    pub interface: Interface,
+    /// Tables that statements may name.
+    pub scope: Scope,
+}
+
+impl Surface {
+    /// Returns the tables that statements may name. Visible tables precede hidden tables.
+    pub fn tables(self) -> impl Iterator<Item = &'static Table> {
+        let hidden = match self.scope {
             Scope::Visible => &[][..],
             Scope::Hidden => &HIDDEN_CATALOGUE,
         };
-        CATALOGUE.iter().chain(hidden)
+        tables(self.interface).iter().chain(hidden)
     }
 
     /// Returns the hidden table with the schema and name that the engine reports. If a statement only counts rows, the
     /// engine reports the schema as written in the statement. The schema can then be missing.
-    pub(super) fn hidden_table(self, schema: Option<&str>, name: &str) -> Option<&'static Table> {
+    pub fn hidden_table(self, schema: Option<&str>, name: &str) -> Option<&'static Table> {
         let is_there = match schema {
             Some(schema) => schema.eq_ignore_ascii_case(HIDDEN_SCHEMA),
-            None => table(name).is_none(),
+            None => table(self.interface, name).is_none(),
         };
         let mut tables = self.tables().filter(|_| is_there);
         tables.find(|table| table.hidden_name().is_some_and(|text| text.eq_ignore_ascii_case(name)))
@@ -91,14 +111,17 @@ pub fn hidden_tables() -> &'static [Table] {
     &HIDDEN_CATALOGUE
 }
 
-/// Returns the definitions of all visible tables.
-pub fn tables() -> &'static [Table] {
-    &CATALOGUE
+/// Returns the definitions of all visible tables of a release.
+pub fn tables(interface: Interface) -> &'static [Table] {
+    match interface {
+        Interface::Release1 => &CATALOGUE,
+        Interface::Release2 => &RELEASE_2_CATALOGUE,
+    }
 }
 
-/// Returns the visible table with this name, ignoring case.
-pub fn table(name: &str) -> Option<&'static Table> {
-    CATALOGUE.iter().find(|table| table.name.eq_ignore_ascii_case(name))
+/// Returns the visible table of a release with this name, ignoring case.
+pub fn table(interface: Interface, name: &str) -> Option<&'static Table> {
+    tables(interface).iter().find(|table| table.name.eq_ignore_ascii_case(name))
 }
 
 impl Table {
@@ -113,6 +136,20 @@ impl Table {
             parts.push(format!("PRIMARY KEY ({})", self.key.join(", ")));
         }
         format!("CREATE TABLE {} ({})", self.name, parts.join(", "))
+    }
+
+    fn with_columns_of_release_2(&self) -> Table {
+        let column = |name: &String| self.columns.iter().find(|column| column.name == *name).cloned();
+        let columns = match self.release_2.as_slice() {
+            [] => self.columns.clone(),
+            names => names.iter().filter_map(column).collect(),
+        };
+        Table { columns, ..self.clone() }
+    }
+
+    /// Returns the names of the columns, in order.
+    pub fn column_names(&self) -> Vec<&str> {
+        self.columns.iter().map(|column| column.name.as_str()).collect()
     }
 
     /// Returns the name of a hidden table without the schema, or `None` for a visible table.
@@ -147,6 +184,14 @@ impl Table {
 mod tests {
     use super::*;
 
+    fn tables() -> &'static [Table] {
+        super::tables(Interface::Release1)
+    }
+
+    fn table(name: &str) -> Option<&'static Table> {
+        super::table(Interface::Release1, name)
+    }
+
     #[test]
     fn there_are_19_tables_with_148_columns() {
         assert_eq!(tables().len(), 19);
@@ -169,7 +214,8 @@ mod tests {
                     && table(&hidden_table.name).is_none())
         );
         let named = |scope: Scope, schema, name| {
-            scope.hidden_table(schema, name).map(|hidden_table| hidden_table.name.as_str())
+            let surface = Surface { interface: Interface::Release1, scope };
+            surface.hidden_table(schema, name).map(|hidden_table| hidden_table.name.as_str())
         };
         assert_eq!(named(Scope::Hidden, Some("HIDDEN"), "Groups"), Some("hidden.groups"));
         assert_eq!(named(Scope::Hidden, None, "groups"), Some("hidden.groups"));

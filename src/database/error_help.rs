@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::catalogue::{HIDDEN_SCHEMA, Scope, Table, table};
+use super::catalogue::{HIDDEN_SCHEMA, Scope, Surface, Table, table};
 use super::guard::is_unsafe_function;
 use super::math_functions::register_math_functions;
 use super::tokens::{Token, TokenKind, tokenize};
@@ -10,12 +10,12 @@ use novamind_base::similar_names;
 
 /// Converts an error message of the engine to an explanation with valid alternatives. Suggestions contain only names
 /// of visible tables, functions of the engine and names in the statement.
-pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
+pub(super) fn explain_error(message: &str, sql: &str, surface: Surface) -> String {
     if let Some(column) = message.strip_prefix("no such column: ") {
-        return explain_unknown_column(column, sql, scope);
+        return explain_unknown_column(column, sql, surface);
     }
     if let Some(name) = message.strip_prefix("no such table: ") {
-        return explain_unknown_table(name, scope);
+        return explain_unknown_table(name, surface);
     }
     if let Some(name) = message.strip_prefix("no such function: ") {
         let known = function_names();
@@ -23,7 +23,7 @@ pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
         return format!("there is no function {name}{meant}");
     }
     if let Some(column) = message.strip_prefix("ambiguous column name: ") {
-        let holders: Vec<&str> = scope
+        let holders: Vec<&str> = surface
             .tables()
             .filter(|table| {
                 table.columns.iter().any(|table_column| table_column.name.eq_ignore_ascii_case(column))
@@ -72,13 +72,13 @@ fn function_names() -> Vec<String> {
     names().unwrap_or_default().into_iter().filter(can_be_called).collect()
 }
 
-fn explain_unknown_table(name: &str, scope: Scope) -> String {
-    let mut names: Vec<&str> = scope.tables().map(|table| table.name.as_str()).collect();
+fn explain_unknown_table(name: &str, surface: Surface) -> String {
+    let mut names: Vec<&str> = surface.tables().map(|table| table.name.as_str()).collect();
     names.sort_unstable();
     let (schema, alone) = name.split_once('.').unwrap_or_default();
-    let help = match table(alone) {
+    let help = match table(surface.interface, alone) {
         Some(_) => format!("; write {alone} alone"),
-        None if scope == Scope::Hidden && schema.eq_ignore_ascii_case(HIDDEN_SCHEMA) => {
+        None if surface.scope == Scope::Hidden && schema.eq_ignore_ascii_case(HIDDEN_SCHEMA) => {
             suggestion(name, names.iter().copied())
         }
         None => suggestion(if alone.is_empty() { name } else { alone }, names.iter().copied()),
@@ -88,8 +88,8 @@ fn explain_unknown_table(name: &str, scope: Scope) -> String {
     format!("there is no table {name}{help}{end} tables are {}", names.join(", "))
 }
 
-fn explain_unknown_column(column: &str, sql: &str, scope: Scope) -> String {
-    let mentioned = mentioned_tables(sql, scope);
+fn explain_unknown_column(column: &str, sql: &str, surface: Surface) -> String {
+    let mentioned = mentioned_tables(sql, surface);
     if mentioned.is_empty() {
         return format!(
             "there is no column {column}; describe_tables and the table browser list the columns of every table"
@@ -104,7 +104,7 @@ fn explain_unknown_column(column: &str, sql: &str, scope: Scope) -> String {
         true => String::new(),
         false => suggestion(alone, columns.iter().copied()),
     };
-    let elsewhere = scope.tables().filter(|table| {
+    let elsewhere = surface.tables().filter(|table| {
         table.columns.iter().any(|table_column| table_column.name.eq_ignore_ascii_case(alone))
     });
     let elsewhere: Vec<&str> = elsewhere.map(|table| table.name.as_str()).collect();
@@ -124,17 +124,17 @@ fn explain_unknown_column(column: &str, sql: &str, scope: Scope) -> String {
 }
 
 /// Returns the tables whose names occur in a statement as whole words.
-fn mentioned_tables(sql: &str, scope: Scope) -> Vec<&'static Table> {
+fn mentioned_tables(sql: &str, surface: Surface) -> Vec<&'static Table> {
     let words: Vec<&str> = sql.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
     let stands = |name: &str| words.iter().any(|word| word.eq_ignore_ascii_case(name));
-    scope.tables().filter(|table| table.name.split('.').all(stands)).collect()
+    surface.tables().filter(|table| table.name.split('.').all(stands)).collect()
 }
 
 /// Returns a hint for an empty result if the statement compares a column with a text that the column never contains.
-pub(super) fn empty_result_hint(sql: &str, scope: Scope) -> Option<String> {
-    let mentioned = mentioned_tables(sql, scope);
+pub(super) fn empty_result_hint(sql: &str, surface: Surface) -> Option<String> {
+    let mentioned = mentioned_tables(sql, surface);
     let mut hints = Vec::new();
-    for (column, value) in text_comparisons(sql, scope) {
+    for (column, value) in text_comparisons(sql, surface) {
         let lists = mentioned.iter().flat_map(|table| &table.columns).filter(|table_column| {
             table_column.name.eq_ignore_ascii_case(&column) && !table_column.values.is_empty()
         });
@@ -149,7 +149,7 @@ pub(super) fn empty_result_hint(sql: &str, scope: Scope) -> Option<String> {
 
 /// Returns the column and the text of each comparison between a column and a text, in either order. Like the engine,
 /// treats a name in double quotes as a text if no column has this name.
-fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
+fn text_comparisons(sql: &str, surface: Surface) -> Vec<(String, String)> {
     let tokens = tokenize(sql);
     let mut found = Vec::new();
     for (at, token) in tokens.iter().enumerate() {
@@ -158,7 +158,7 @@ fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
         let Some(left) = tokens[..at].iter().rfind(|before| !before.is_symbol("=")) else { continue };
         let Some(right) = tokens.get(at + 1).filter(|_| compares) else { continue };
         for (column, text) in [(left, right), (right, left)] {
-            if is_text_literal(text, scope) && column.can_be_name() && !is_text_literal(column, scope) {
+            if is_text_literal(text, surface) && column.can_be_name() && !is_text_literal(column, surface) {
                 found.push((column.unquoted().into_owned(), text.unquoted().into_owned()));
             }
         }
@@ -166,9 +166,9 @@ fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
     found
 }
 
-fn is_text_literal(token: &Token<'_>, scope: Scope) -> bool {
+fn is_text_literal(token: &Token<'_>, surface: Surface) -> bool {
     let is_column = |name: &str| {
-        let mut columns = scope.tables().flat_map(|table| &table.columns);
+        let mut columns = surface.tables().flat_map(|table| &table.columns);
         columns.any(|column| column.name.eq_ignore_ascii_case(name))
     };
     match token.kind {
@@ -181,13 +181,17 @@ fn is_text_literal(token: &Token<'_>, scope: Scope) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use novamind_world::params::Interface;
+
+    const VISIBLE: Surface = Surface { interface: Interface::Release1, scope: Scope::Visible };
+    const HIDDEN: Surface = Surface { interface: Interface::Release1, scope: Scope::Hidden };
 
     fn explain_error(message: &str, sql: &str) -> String {
-        super::explain_error(message, sql, Scope::Visible)
+        super::explain_error(message, sql, VISIBLE)
     }
 
     fn empty_result_hint(sql: &str) -> Option<String> {
-        super::empty_result_hint(sql, Scope::Visible)
+        super::empty_result_hint(sql, VISIBLE)
     }
 
     #[test]
@@ -300,14 +304,14 @@ mod tests {
 
     #[test]
     fn only_the_xray_connection_suggests_hidden_tables() {
-        let explain = |message: &str, sql: &str| super::explain_error(message, sql, Scope::Hidden);
+        let explain = |message: &str, sql: &str| super::explain_error(message, sql, HIDDEN);
         let text = explain("no such table: hidden.group", "");
         assert!(text.starts_with("there is no table hidden.group; did you mean hidden.groups"), "{text}");
         assert!(text.contains("hidden.competitors, hidden.customers, hidden.drift"), "{text}");
         let text = explain("no such column: reputaton", "SELECT reputaton FROM hidden.groups");
         assert!(text.contains("did you mean reputation? hidden.groups has day, group_id"), "{text}");
         let sql = "SELECT 1 FROM hidden.threads WHERE kind = 'lead'";
-        let hint = super::empty_result_hint(sql, Scope::Hidden).expect("a hint");
+        let hint = super::empty_result_hint(sql, HIDDEN).expect("a hint");
         assert!(hint.contains("'new_lead', 'plan_change'"), "{hint}");
         assert_eq!(empty_result_hint(sql), None);
         let unknown = |schema: &str| {

@@ -12,7 +12,8 @@ use rusqlite::Connection;
 use rusqlite::hooks::{AuthAction, AuthContext, Authorization};
 use rusqlite::limits::Limit;
 
-use super::catalogue::{self, Scope};
+use super::catalogue::{self, Surface, Table};
+use novamind_world::params::Interface;
 
 /// The reason for the authorizer's last rejection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +24,8 @@ pub(super) enum RejectionReason {
     Schema,
     /// The statement accesses a table that is not visible.
     HiddenTable,
+    /// The statement accesses the hidden columns of a table.
+    HiddenColumn,
     /// The statement changes data.
     Write,
 }
@@ -41,6 +44,7 @@ impl LastRejection {
             0 => RejectionReason::None,
             1 => RejectionReason::Schema,
             2 => RejectionReason::HiddenTable,
+            3 => RejectionReason::HiddenColumn,
             _ => RejectionReason::Write,
         }
     }
@@ -104,7 +108,7 @@ pub(super) fn is_unsafe_function(name: &str) -> bool {
     UNSAFE_FUNCTIONS.contains(&name)
 }
 
-/// Table-valued functions that statements may call.
+/// Table-valued functions that statements may call under release 1.
 const TABLE_FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
 
 /// Returns whether a table belongs to the engine rather than to the run.
@@ -115,7 +119,7 @@ pub(super) fn is_engine_table(name: &str) -> bool {
 
 /// Returns the visible table whose rows an internal table stores.
 pub(super) fn visible_table_of(inside: &str) -> Option<&'static str> {
-    let table = catalogue::tables().iter().find(|table| {
+    let table = catalogue::tables(Interface::Release1).iter().find(|table| {
         let stem = inside.strip_suffix("_rows").unwrap_or(inside);
         table.name.strip_suffix('s').unwrap_or(&table.name) == stem
     });
@@ -158,9 +162,13 @@ impl ColumnReads {
     }
 }
 
+/// Prefix of a column that stands for the hidden columns of a table in the released schema.
+pub(super) const HIDDEN_COLUMN: &str = "hidden_columns_of_";
+
 /// The views behind the visible tables, under unpredictable names.
 #[derive(Clone)]
 pub(super) struct InnerViews {
+    interface: Interface,
     /// Prefix of the view names.
     secret: String,
     names: Vec<String>,
@@ -170,7 +178,8 @@ impl InnerViews {
     /// Returns statements that replace a view with a temporary table of the read columns. Returns `None` if the
     /// visible table is not a view.
     pub fn copy_statements(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
-        let table = catalogue::table(name).filter(|table| self.names.contains(&table.name))?;
+        let table =
+            catalogue::table(self.interface, name).filter(|table| self.names.contains(&table.name))?;
         // The authorizer does not report the columns of a USING clause, which usually joins tables by customer.
         let is_filled = |column: &&str| {
             read.contains(*column) || *column == CUSTOMER_ID || table.key.iter().any(|key| key == column)
@@ -200,7 +209,7 @@ pub(super) struct Guard {
     /// Views behind the visible tables, or `None` if there are no internal tables.
     views: Option<InnerViews>,
     /// Tables that statements may name.
-    scope: Scope,
+    surface: Surface,
     /// Names of all tables, views and modules, in lower case. Any other name belongs to a common table expression.
     existing: BTreeSet<String>,
 }
@@ -211,38 +220,49 @@ impl Guard {
     ///
     /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like
     /// views. Therefore, internal tables are readable only in views with unpredictable names.
-    pub fn with_inner_views(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
+    pub fn with_inner_views(connection: &Connection, surface: Surface) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
         let mut statement =
             connection.prepare("SELECT name, sql FROM main.sqlite_schema WHERE type = 'view'")?;
-        let views: Vec<(String, String)> =
+        let mut views: Vec<(String, String)> =
             statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
+        for table in catalogue::tables(surface.interface) {
+            // The database has the columns of release 1. A table with other columns becomes a view.
+            let is_view = views.iter().any(|(name, _)| *name == table.name);
+            if !is_view && catalogue::table(Interface::Release1, &table.name) != Some(table) {
+                views.push((table.name.clone(), format!("{0} AS SELECT * FROM main.{0}", table.name)));
+            }
+        }
         for (name, sql) in &views {
             let body = sql.split_once(name).map_or(sql.as_str(), |(_, body)| body);
+            let columns =
+                catalogue::table(surface.interface, name).map_or_else(Vec::new, Table::column_names);
+            let columns = columns.join(", ");
             connection.execute_batch(&format!(
-                "CREATE TEMP VIEW {secret}{name}{body}; CREATE TEMP VIEW {name} AS SELECT * FROM {secret}{name}"
+                "CREATE TEMP VIEW {secret}{name}{body}; \
+                 CREATE TEMP VIEW {name} AS SELECT {columns} FROM {secret}{name}"
             ))?;
         }
         let names = views.into_iter().map(|(name, _)| name).collect();
-        let views = Some(InnerViews { secret, names });
+        let views = Some(InnerViews { interface: surface.interface, secret, names });
         Ok(Guard {
             last_rejection: LastRejection::default(),
             reads: ColumnReads::default(),
             views,
-            scope,
+            surface,
             existing,
         })
     }
 
     /// Returns a guard without internal tables.
-    pub fn for_ordinary_tables(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
+    pub fn for_ordinary_tables(connection: &Connection, surface: Surface) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         Ok(Guard {
             last_rejection: LastRejection::default(),
             reads: ColumnReads::default(),
             views: None,
-            scope,
+            surface,
             existing,
         })
     }
@@ -278,7 +298,7 @@ impl Guard {
             AuthAction::Select | AuthAction::Recursive => None,
             AuthAction::Function { function_name } if !UNSAFE_FUNCTIONS.contains(&function_name) => None,
             AuthAction::Read { table_name, column_name } => {
-                match self.scope.hidden_table(context.database_name, table_name) {
+                match self.surface.hidden_table(context.database_name, table_name) {
                     Some(table) => {
                         self.record_read(&table.name, column_name);
                         None
@@ -303,8 +323,12 @@ impl Guard {
         let is_inner_view =
             |name: &str| self.views.as_ref().is_some_and(|views| name.starts_with(&views.secret));
         self.record_read(&name, column);
-        let visible = catalogue::table(&name).is_some()
-            || TABLE_FUNCTIONS.contains(&name.as_str())
+        let interface = self.surface.interface;
+        if interface == Interface::Release2 && column.starts_with(HIDDEN_COLUMN) {
+            return Some(RejectionReason::HiddenColumn);
+        }
+        let visible = catalogue::table(interface, &name).is_some()
+            || (interface == Interface::Release1 && TABLE_FUNCTIONS.contains(&name.as_str()))
             || is_inner_view(&name);
         let from_view = accessor.is_some_and(is_inner_view);
         // If no column is read, the statement only counts rows of a common table expression or of a view that the
@@ -363,6 +387,7 @@ fn random_bits() -> u64 {
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
 
+    use super::super::catalogue::Scope;
     use super::*;
 
     #[test]
@@ -371,9 +396,10 @@ mod tests {
         connection
             .execute_batch("CREATE TABLE Added_Later (a); CREATE TABLE ledger (amount)")
             .expect("tables");
+        let surface = Surface { interface: Interface::Release1, scope: Scope::Visible };
         let guards = [
-            Guard::with_inner_views(&connection, Scope::Visible).expect("a guard"),
-            Guard::for_ordinary_tables(&connection, Scope::Visible).expect("a guard"),
+            Guard::with_inner_views(&connection, surface).expect("a guard"),
+            Guard::for_ordinary_tables(&connection, surface).expect("a guard"),
         ];
         for guard in guards {
             let objections = guard.last_rejection();

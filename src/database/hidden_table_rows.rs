@@ -16,7 +16,8 @@ impl QueryConnection {
     /// Returns the hidden tables that statements name, without duplicates. If a statement does not compile, returns
     /// only the tables of the statements before the error.
     pub fn hidden_tables_in(&self, sql: &str) -> Vec<&'static Table> {
-        let mut statements = self.released.statements(sql);
+        let spelled = self.released.spell(sql);
+        let mut statements = self.released.statements(sql, &spelled);
         let mut named = Vec::new();
         while let Ok(Some(reading)) = statements.next() {
             named.extend(reading.tables);

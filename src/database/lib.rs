@@ -38,12 +38,15 @@ mod text_index;
 mod tokens;
 
 #[cfg(test)]
+mod release_2_tests;
+#[cfg(test)]
 mod tests;
 
 pub use catalogue::{Column, Scope, Table, hidden_tables, table, tables};
 pub use hidden_schema::HiddenValue;
 pub use location::DatabaseLocation;
 pub use math_functions::register_math_functions;
+pub use novamind_world::params::Interface;
 pub use projector::{
     ProjectionError, ProjectionPosition, Projector, file_digest, has_current_layout, is_consistent,
     query_connection, read_owner, read_position,

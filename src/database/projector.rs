@@ -11,12 +11,12 @@ use rusqlite::{Connection, OptionalExtension};
 
 use super::block_loading::{BlockSource, load_store};
 use super::blocks::SharedStore;
-use super::catalogue::Scope;
+use super::catalogue::{Scope, Surface};
 use super::location::DatabaseLocation;
 use super::query::QueryConnection;
 use super::rows::{LAYOUT_VERSION, ProjectionEntry, RowWriter, create_tables};
 use novamind_world::events::Facts;
-use novamind_world::params::Params;
+use novamind_world::params::{Interface, Params};
 
 /// Maximum number of queued entries, to limit memory usage. The simulation waits if the queue is full.
 const QUEUE_CAPACITY: usize = 16;
@@ -69,6 +69,7 @@ pub struct Projector {
     jobs: Option<SyncSender<WriterJob>>,
     thread: Option<JoinHandle<()>>,
     pub(super) location: DatabaseLocation,
+    pub(super) interface: Interface,
     pub(super) store: SharedStore,
     gate: Arc<RwLock<()>>,
     spare: FactsPool,
@@ -112,6 +113,7 @@ impl Projector {
         let failed = SharedFailure::default();
         let map_error: fn(rusqlite::Error) -> ProjectionError =
             if location.path().is_some() { to_error } else { to_memory_error };
+        let interface = params.fidelity.interface;
         let (writer_spare, writer_failed) = (spare.clone(), failed.clone());
         let (writer_gate, writer_store) = (gate.clone(), store.clone());
         let thread = std::thread::Builder::new()
@@ -133,8 +135,8 @@ impl Projector {
                 .run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
-        let projector =
-            Projector { jobs: Some(jobs), thread: Some(thread), location, store, gate, spare, failed };
+        let (jobs, thread) = (Some(jobs), Some(thread));
+        let projector = Projector { jobs, thread, location, interface, store, gate, spare, failed };
         Ok((projector, position))
     }
 
@@ -183,7 +185,8 @@ impl Projector {
     /// The database cannot be opened for reading.
     pub fn connection(&self, scope: Scope) -> Result<QueryConnection, ProjectionError> {
         let source = BlockSource::Writer(self.store.clone(), self.gate.clone());
-        QueryConnection::open(&self.location, source, scope).map_err(to_error)
+        let surface = Surface { interface: self.interface, scope };
+        QueryConnection::open(&self.location, source, surface).map_err(to_error)
     }
 
     /// Limits the growth of the database to `more` pages, to simulate a full disk.
@@ -365,12 +368,14 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// Opens a query connection to a database without a writer. Also returns the position of the database.
+/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also returns
+/// the position of the database.
 ///
 /// # Errors
 /// The database does not exist, or is not the database of a run.
 pub fn query_connection(
     location: &DatabaseLocation,
+    interface: Interface,
     scope: Scope,
 ) -> Result<(QueryConnection, ProjectionPosition), ProjectionError> {
     let missing = || ProjectionError("there is no database yet".to_owned());
@@ -383,7 +388,8 @@ pub fn query_connection(
         return Err(ProjectionError("another version of the program created world.db".to_owned()));
     }
     let source = BlockSource::File(RefCell::default());
-    let connection = QueryConnection::open(location, source, scope).map_err(to_error)?;
+    let connection =
+        QueryConnection::open(location, source, Surface { interface, scope }).map_err(to_error)?;
     Ok((connection, position))
 }
 

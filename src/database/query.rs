@@ -11,12 +11,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use rusqlite::hooks::{AuthContext, Authorization};
+use rusqlite::types::Value;
 use rusqlite::{Connection, ffi};
 
 use super::block_loading::BlockSource;
 use super::block_table;
 use super::blocks::{BlockStore, QueryView};
-use super::catalogue::Scope;
+use super::catalogue::{Scope, Surface};
 use super::error_help::{empty_result_hint, explain_error};
 use super::guard::{
     Guard, InnerViews, LastRejection, RejectionReason, TrustGuard, is_engine_table, is_hidden_table,
@@ -70,7 +71,7 @@ pub struct QueryConnection {
     pub(super) released: ReleasedSchema,
     connection: Connection,
     /// Tables that statements may name.
-    scope: Scope,
+    surface: Surface,
     last_rejection: LastRejection,
     views: Option<InnerViews>,
     /// Whether the authorizer is disabled because the program executes its own statements.
@@ -86,19 +87,19 @@ impl QueryConnection {
     pub(super) fn open(
         location: &DatabaseLocation,
         source: BlockSource,
-        scope: Scope,
+        surface: Surface,
     ) -> rusqlite::Result<QueryConnection> {
-        let released = ReleasedSchema::open(scope)?;
+        let released = ReleasedSchema::open(surface)?;
         let mut connection = location.open_reader()?;
         let seen = Arc::new(QueryView::default());
         block_table::register(&connection, &seen)?;
         packed_tables::register(&connection, &seen)?;
         register_math_functions(&connection)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
-        if scope == Scope::Hidden {
+        if surface.scope == Scope::Hidden {
             hidden_schema::create_hidden_tables(&connection)?;
         }
-        let guard = Guard::with_inner_views(&connection, scope)?;
+        let guard = Guard::with_inner_views(&connection, surface)?;
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
         // Connect the virtual tables now, because the authorizer would reject a connection at first use.
@@ -120,7 +121,7 @@ impl QueryConnection {
         Ok(QueryConnection {
             released,
             connection,
-            scope,
+            surface,
             last_rejection: objections,
             views,
             trusted,
@@ -183,7 +184,8 @@ impl QueryConnection {
         let end = Instant::now() + time;
         let at = |statement: usize| move |error: QueryError| ScriptError { statement, error };
         self.begin_read(self.interrupt.issue_ticket(), sql, limits).map_err(at(1))?;
-        let mut statements = self.released.statements(sql);
+        let spelled = self.released.spell(sql);
+        let mut statements = self.released.statements(sql, &spelled);
         let mut done = Ok(());
         for number in 1.. {
             let query_limits = QueryLimits {
@@ -211,7 +213,7 @@ impl QueryConnection {
     /// Starts a read transaction. The rows and the packed days of the transaction belong to the same commit.
     fn begin_read(&self, ticket: QueryTicket, sql: &str, limits: QueryLimits) -> Result<(), QueryError> {
         self.last_rejection.clear();
-        self.released.last_rejection().clear();
+        self.released.clear_rejection();
         self.interrupt.begin(ticket, limits.time, limits.steps);
         if self.interrupt.is_stop_requested() {
             return Err(query_error(SQL_CANCELLED, CANCELLED_MESSAGE));
@@ -276,7 +278,8 @@ impl QueryConnection {
     }
 
     fn run_single_statement(&self, sql: &str, limits: QueryLimits) -> Result<QueryResult, QueryFault> {
-        let mut statements = self.released.statements(sql);
+        let spelled = self.released.spell(sql);
+        let mut statements = self.released.statements(sql, &spelled);
         let reading = statements.next()?.ok_or(QueryFault::Empty)?;
         match statements.next() {
             Ok(None) => self.run_statement(reading, sql, limits),
@@ -290,6 +293,11 @@ impl QueryConnection {
         sql: &str,
         limits: QueryLimits,
     ) -> Result<QueryResult, QueryFault> {
+        if let Some(program) = reading.program {
+            let cell = |value: &Value| Cell::from_sqlite(value.into());
+            let rows = program.iter().map(|step| step.iter().map(cell).collect()).collect();
+            return Ok(QueryResult { columns: reading.columns, rows, ..QueryResult::default() });
+        }
         self.load_blocks(&reading)?;
         let read = reading.copied.iter();
         let copies: Vec<String> = read
@@ -343,7 +351,7 @@ impl QueryConnection {
         }
         let warning = truncated
             .then(|| format!("only the first {} rows are shown; more exist: aggregate in SQL", limits.rows));
-        let hint = if rows.is_empty() { empty_result_hint(sql, self.scope) } else { None };
+        let hint = if rows.is_empty() { empty_result_hint(sql, self.surface) } else { None };
         if is_plan {
             query_plan::mask_plan(&mut rows, sql);
         }
@@ -351,7 +359,7 @@ impl QueryConnection {
     }
 
     pub(super) fn fault_to_error(&self, sql: &str, fault: QueryFault, limits: QueryLimits) -> QueryError {
-        let objection = match self.released.last_rejection().get() {
+        let objection = match self.released.last_rejection() {
             RejectionReason::None => self.last_rejection.get(),
             objection => objection,
         };
@@ -383,6 +391,10 @@ impl QueryConnection {
                 query_error("sql_schema", SCHEMA_MESSAGE)
             }
             QueryFault::Sqlite(_) if objection == RejectionReason::HiddenTable => hidden_table_error(None),
+            QueryFault::Sqlite(_) if objection == RejectionReason::HiddenColumn => query_error(
+                "sql_hidden_table",
+                "main.TABLE has hidden columns; write the table without main, or name the columns to read",
+            ),
             QueryFault::Sqlite(error) => self.sqlite_to_error(sql, &error, limits),
         }
     }
@@ -421,7 +433,7 @@ impl QueryConnection {
                 return query_error("sql_schema", SCHEMA_MESSAGE);
             }
         }
-        QueryError { code: "sql_error", message: explain_error(&text, sql, self.scope), position }
+        QueryError { code: "sql_error", message: explain_error(&text, sql, self.surface), position }
     }
 }
 

@@ -4,6 +4,7 @@ use super::catalogue::{table, tables};
 use super::guard::visible_table_of;
 use super::query_result::{Cell, text_at};
 use super::tokens::tokenize;
+use novamind_world::params::Interface;
 
 /// Index of the plan column that contains the number of the parent step. Column 0 contains the number of the step.
 const PARENT_COLUMN: usize = 1;
@@ -57,14 +58,19 @@ fn is_word_character(letter: char) -> bool {
 fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
     let language = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
     let column = || {
-        let mut columns = tables().iter().flat_map(|table| &table.columns);
+        let mut columns = tables(Interface::Release1).iter().flat_map(|table| &table.columns);
         columns.any(|column| column.name.eq_ignore_ascii_case(word))
     };
     let asked = || {
         let mut contents = tokenize(sql).into_iter().map(|token| token.unquoted());
         contents.any(|content| content.split(|letter| !is_word_character(letter)).any(|text| text == word))
     };
-    if language || LOWERCASE_WORDS.contains(&word) || table(word).is_some() || column() || asked() {
+    if language
+        || LOWERCASE_WORDS.contains(&word)
+        || table(Interface::Release1, word).is_some()
+        || column()
+        || asked()
+    {
         return word;
     }
     visible_table_of(word).unwrap_or(MASK)

@@ -3,7 +3,12 @@
 //! Every statement is first compiled against these tables. Error messages and column names are taken from this
 //! compilation, so that they never contain internal names. Spellings that only ordinary tables support (`rowid`,
 //! `main.ledger`) are replaced if the replacement compiles to the same program.
+//!
+//! Under release 2, a statement must also compile against tables with hidden columns and views without them, as in the
+//! release: `SELECT * FROM customers` and `SELECT * FROM temp.customers` read the view, `SELECT * FROM main.customers`
+//! reads the table and is rejected.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use rusqlite::fallible_iterator::FallibleIterator;
@@ -11,12 +16,16 @@ use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::types::Value;
 use rusqlite::{Batch, Connection, Statement};
 
-use super::catalogue::{Scope, Table, table, tables};
-use super::guard::{CUSTOMER_ID, ColumnReads, ColumnsByTable, Guard, LastRejection, set_limits};
+use super::catalogue::{Scope, Surface, Table, table, tables};
+use super::guard::{
+    CUSTOMER_ID, ColumnReads, ColumnsByTable, Guard, HIDDEN_COLUMN, LastRejection, RejectionReason,
+    set_limits,
+};
 use super::hidden_schema;
 use super::math_functions::register_math_functions;
 use super::query::QueryFault;
 use super::tokens::{Token, tokenize};
+use novamind_world::params::Interface;
 
 const MAX_SPELLINGS: usize = 200;
 
@@ -28,8 +37,11 @@ const ISSUES_TABLE: &str = "issues";
 /// A connection to empty tables with the schema of the released simulator.
 pub(super) struct ReleasedSchema {
     connection: Connection,
+    interface: Interface,
     last_rejection: LastRejection,
     reads: ColumnReads,
+    /// Connection to tables with hidden columns, only under release 2.
+    with_hidden_columns: Option<Box<ReleasedSchema>>,
 }
 
 /// A statement that compiles against the released schema.
@@ -47,43 +59,91 @@ pub(super) struct CheckedStatement {
     pub copied: ColumnsByTable,
     /// Names of the tables that the statement reads.
     pub tables: Vec<String>,
+    /// Rows of an EXPLAIN, which only release 2 allows: the program for these empty tables.
+    pub program: Option<Program>,
 }
 
 /// The compiled program of a statement. Equal programs read the same columns, even if the statements spell names differently.
-type Program = Vec<Vec<Value>>;
+pub(super) type Program = Vec<Vec<Value>>;
 
 impl ReleasedSchema {
-    /// Creates the tables in memory, including the hidden tables if `scope` allows them.
-    pub fn open(scope: Scope) -> rusqlite::Result<ReleasedSchema> {
+    /// Creates the tables in memory, including the hidden tables if the scope allows them.
+    pub fn open(surface: Surface) -> rusqlite::Result<ReleasedSchema> {
+        let tables = tables(surface.interface).iter();
+        match surface.interface {
+            Interface::Release1 => {
+                ReleasedSchema::with_tables(surface, tables.map(Table::create_statement).collect())
+            }
+            Interface::Release2 => {
+                let without_rowid = |table: &Table| table.create_statement() + " WITHOUT ROWID";
+                let declarations = tables.clone().map(without_rowid).collect();
+                let checker = ReleasedSchema::with_tables(surface, tables.map(table_and_view).collect())?;
+                let schema = ReleasedSchema::with_tables(surface, declarations)?;
+                Ok(ReleasedSchema { with_hidden_columns: Some(Box::new(checker)), ..schema })
+            }
+        }
+    }
+
+    fn with_tables(surface: Surface, declarations: Vec<String>) -> rusqlite::Result<ReleasedSchema> {
         let mut connection = Connection::open_in_memory()?;
-        if scope == Scope::Hidden {
+        if surface.scope == Scope::Hidden {
             hidden_schema::create_hidden_tables(&connection)?;
         }
-        let declarations: Vec<String> = tables().iter().map(Table::create_statement).collect();
         connection.execute_batch(&declarations.join(";\n"))?;
         register_math_functions(&connection)?;
         connection.pragma_update(None, "query_only", true)?;
         set_limits(&connection)?;
-        let guard = Guard::for_ordinary_tables(&connection, scope)?;
+        let guard = Guard::for_ordinary_tables(&connection, surface)?;
         let (objections, reads) = (guard.last_rejection(), guard.column_reads());
         connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
             guard.authorize(&context)
         }))?;
-        Ok(ReleasedSchema { connection, last_rejection: objections, reads })
+        Ok(ReleasedSchema {
+            connection,
+            interface: surface.interface,
+            last_rejection: objections,
+            reads,
+            with_hidden_columns: None,
+        })
     }
 
-    /// Returns the shared record of the last rejection reason.
-    pub fn last_rejection(&self) -> &LastRejection {
-        &self.last_rejection
+    /// Returns the reason of the last rejection.
+    pub fn last_rejection(&self) -> RejectionReason {
+        match (self.last_rejection.get(), &self.with_hidden_columns) {
+            (RejectionReason::None, Some(checker)) => checker.last_rejection(),
+            (reason, _) => reason,
+        }
     }
 
-    /// Returns an iterator that compiles the statements of a text one by one.
-    pub fn statements<'a>(&'a self, sql: &'a str) -> Statements<'a> {
-        Statements { released: self, batch: Batch::new(&self.connection, sql) }
+    /// Clears the reason of the last rejection.
+    pub fn clear_rejection(&self) {
+        self.last_rejection.clear();
+        if let Some(checker) = &self.with_hidden_columns {
+            checker.clear_rejection();
+        }
+    }
+
+    /// Returns the spelling of a text for these tables. Under release 2, `temp.ledger` becomes `main.ledger`, because
+    /// the views of the release are tables here. The spelling does not change offsets.
+    pub fn spell<'a>(&self, sql: &'a str) -> Cow<'a, str> {
+        match self.interface {
+            Interface::Release1 => sql.into(),
+            Interface::Release2 => temp_as_main(sql).into(),
+        }
+    }
+
+    /// Returns an iterator that compiles the statements of a text one by one. `spelled` is the result of `spell`.
+    pub fn statements<'a>(&'a self, sql: &'a str, spelled: &'a str) -> Statements<'a> {
+        let checker = self.with_hidden_columns.as_ref();
+        Statements {
+            released: self,
+            checked: checker.map(|checker| Batch::new(&checker.connection, sql)),
+            batch: Batch::new(&self.connection, spelled),
+        }
     }
 
     fn check_statement(&self, statement: &Statement<'_>) -> Result<CheckedStatement, QueryFault> {
-        if statement.is_explain() == 1 {
+        if statement.is_explain() == 1 && self.interface == Interface::Release1 {
             return Err(QueryFault::MachineCode);
         }
         if !statement.readonly() {
@@ -105,8 +165,12 @@ impl ReleasedSchema {
                 copied.clear();
             }
         }
+        let program = match statement.is_explain() {
+            1 => Some(self.explain_rows(&sql).ok_or(QueryFault::MachineCode)?),
+            _ => None,
+        };
         let is_plan = statement.is_explain() == 2;
-        Ok(CheckedStatement { sql: self.rewrite_for_views(sql), columns, is_plan, copied, tables })
+        Ok(CheckedStatement { sql: self.rewrite_for_views(sql), columns, is_plan, copied, tables, program })
     }
 
     /// Returns whether the statement has a correlated subquery.
@@ -162,18 +226,53 @@ impl ReleasedSchema {
 /// Iterator over the statements of a text.
 pub(super) struct Statements<'a> {
     released: &'a ReleasedSchema,
+    checked: Option<Batch<'a, 'a>>,
     batch: Batch<'a, 'a>,
 }
 
 impl Statements<'_> {
     /// Returns the next statement, or `None` after the last one.
     pub fn next(&mut self) -> Result<Option<CheckedStatement>, QueryFault> {
+        if let Some(checked) = &mut self.checked {
+            checked.next()?;
+        }
         self.released.reads.take();
         match self.batch.next()? {
             Some(statement) => self.released.check_statement(&statement).map(Some),
             None => Ok(None),
         }
     }
+}
+
+/// Returns the declarations of a table of release 2 with a column that stands for its hidden columns, and of the view
+/// without this column.
+fn table_and_view(table: &Table) -> String {
+    let (name, columns) = (&table.name, table.column_names().join(", "));
+    let declaration = match table.has_hidden_columns {
+        true => table.create_statement().replacen('(', &format!("({HIDDEN_COLUMN}{name}, "), 1),
+        false => table.create_statement(),
+    };
+    format!("{declaration} WITHOUT ROWID; CREATE TEMP VIEW {name} AS SELECT {columns} FROM main.{name}")
+}
+
+/// Replaces the schema `temp` of visible tables with `main`.
+fn temp_as_main(sql: &str) -> String {
+    let mut spelled = sql.to_owned();
+    for names in tokenize(sql).windows(3) {
+        let [schema, dot, name] = names else { continue };
+        let is_table = name.can_be_name() && table(Interface::Release2, &name.unquoted()).is_some();
+        let temp = schema.text.to_ascii_lowercase().find("temp");
+        if let Some(at) = temp.filter(|_| {
+            schema.can_be_name()
+                && schema.unquoted().eq_ignore_ascii_case("temp")
+                && dot.is_symbol(".")
+                && is_table
+        }) {
+            let start = schema.offset + at;
+            spelled.replace_range(start..start + "temp".len(), "main");
+        }
+    }
+    spelled
 }
 
 /// A name in a statement that only ordinary tables support.
@@ -213,7 +312,7 @@ impl ReplaceableName {
 
     /// Returns possible replacements of the name, most likely first.
     fn replacements(&self, qualifiers: &[&str]) -> Vec<String> {
-        let keys = || tables().iter().filter_map(Table::row_number_column);
+        let keys = || tables(Interface::Release1).iter().filter_map(Table::row_number_column);
         match self.kind {
             ReplaceableKind::Main => vec![String::new()],
             ReplaceableKind::RowNumber { qualified: true } => keys().map(str::to_owned).collect(),
@@ -230,7 +329,7 @@ impl ReplaceableName {
 fn possible_qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for (at, token) in tokens.iter().enumerate() {
-        if !token.can_be_name() || table(&token.unquoted()).is_none() {
+        if !token.can_be_name() || table(Interface::Release1, &token.unquoted()).is_none() {
             continue;
         }
         let after: Vec<&Token<'a>> =

@@ -8,12 +8,14 @@ use rusqlite::{Connection, Transaction, params};
 
 use super::block_loading::load_store;
 use super::blocks::{AdsRun, BlockStore};
+use super::catalogue::{Table, table, tables};
 use super::issues::{IssueRun, days_open};
 use super::location::DatabaseLocation;
 use super::notices::{Inbox, NOTICE_TYPES, NoticeSlot};
 use super::packing::PackedRows;
 use super::projector::{ProjectionError, Projector};
 use novamind_world::events::UsageRows;
+use novamind_world::params::Interface;
 
 /// Statements that create ordinary tables to replace the virtual tables. Repeated losses become a view over days and losses.
 const TABLE_STATEMENTS: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
@@ -54,23 +56,36 @@ impl Projector {
     pub fn export_sqlite(&self, file: &Path) -> Result<(), ProjectionError> {
         self.flush()?;
         let store = self.store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
-        let copied = self.location.open_reader().and_then(|source| write_sqlite_file(&source, &store, file));
+        let copied = self
+            .location
+            .open_reader()
+            .and_then(|source| write_sqlite_file(&source, &store, self.interface, file));
         copied.map_err(|error| ProjectionError(format!("{}: {error}", file.display())))
     }
 }
 
-/// Writes a copy of the database at a location to a new file that any SQLite tool can open.
+/// Writes a copy of the database at a location to a new file that any SQLite tool can open. `interface` is the release
+/// that its run follows.
 ///
 /// # Errors
 /// The database cannot be read, or the file cannot be created.
-pub fn export_sqlite(location: &DatabaseLocation, file: &Path) -> Result<(), ProjectionError> {
+pub fn export_sqlite(
+    location: &DatabaseLocation,
+    interface: Interface,
+    file: &Path,
+) -> Result<(), ProjectionError> {
     let file_error = |problem: String| ProjectionError(format!("{}: {problem}", file.display()));
     let source = location.open_reader().map_err(|error| file_error(error.to_string()))?;
     let store = load_store(&source).ok_or_else(|| file_error("the database cannot be read".to_owned()))?;
-    write_sqlite_file(&source, &store, file).map_err(|error| file_error(error.to_string()))
+    write_sqlite_file(&source, &store, interface, file).map_err(|error| file_error(error.to_string()))
 }
 
-fn write_sqlite_file(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Result<()> {
+fn write_sqlite_file(
+    source: &Connection,
+    store: &BlockStore,
+    interface: Interface,
+    file: &Path,
+) -> rusqlite::Result<()> {
     let mut copy = Connection::open(file)?;
     Backup::new(source, &mut copy)?.run_to_completion(PAGES_PER_STEP, Duration::ZERO, None)?;
     // The copy needs no journal, because an incomplete copy is deleted.
@@ -84,6 +99,11 @@ fn write_sqlite_file(source: &Connection, store: &BlockStore, file: &Path) -> ru
     copy_ledger(&transaction, store)?;
     copy_issues(&transaction, store)?;
     declare_price_type(&transaction)?;
+    for changed in tables(interface) {
+        if table(Interface::Release1, &changed.name) != Some(changed) {
+            replace_columns(&transaction, changed)?;
+        }
+    }
     transaction.execute_batch(INDEX_STATEMENTS)?;
     transaction.commit()?;
     copy.execute_batch("VACUUM")?;
@@ -97,6 +117,19 @@ fn declare_price_type(transaction: &Transaction<'_>) -> rusqlite::Result<()> {
     let view: String = transaction.query_row(of_view, [], |row| row.get(0))?;
     let typed = view.replace("    effective_price,", "    CAST(effective_price AS REAL) AS effective_price,");
     transaction.execute_batch(&format!("DROP VIEW subscriptions;\n{typed}"))
+}
+
+/// Replaces a table or view with a view that has the columns of another release.
+fn replace_columns(transaction: &Transaction<'_>, table: &Table) -> rusqlite::Result<()> {
+    let (name, columns) = (&table.name, table.column_names().join(", "));
+    let of_table = "SELECT type, sql FROM sqlite_schema WHERE name = ?1";
+    let (kind, sql): (String, String) =
+        transaction.query_row(of_table, [name], |row| Ok((row.get(0)?, row.get(1)?)))?;
+    let (renamed, rows) = match kind.as_str() {
+        "view" => (format!("DROP VIEW {name}"), sql.split_once(" AS").map_or("", |(_, rows)| rows)),
+        _ => (format!("ALTER TABLE {name} RENAME TO {name}_rows"), &*format!("SELECT * FROM {name}_rows")),
+    };
+    transaction.execute_batch(&format!("{renamed};\nCREATE VIEW {name} AS SELECT {columns} FROM ({rows}\n)"))
 }
 
 fn copy_usage(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Result<()> {

@@ -14,7 +14,7 @@ use novamind_world::events::{
     EndCause, Facts, IssueOpened, SubscriptionEnded, SubscriptionOpened, SubscriptionStatus,
 };
 use novamind_world::identifiers::{Group, Plan};
-use novamind_world::params::Params;
+use novamind_world::params::{Interface, Params};
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 use novamind_world::test_kit::apply_policy_p;
@@ -24,6 +24,7 @@ const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(
 fn entry(facts: Facts) -> ProjectionEntry {
     ProjectionEntry {
         notices: facts.notices.iter().map(|notice| novamind_voice::notice_text(notice, None)).collect(),
+        posts: facts.posts.iter().map(|post| format!("text of post {}", post.post)).collect(),
         turns: facts.turns.iter().map(|_| String::new()).collect(),
         readings: facts.readings.iter().map(novamind_voice::reading_text).collect(),
         addresses: facts
@@ -42,16 +43,20 @@ fn position(seq: u64) -> ProjectionPosition {
 }
 
 /// A company that is run by policy P, and the projector that writes its database with one commit per week.
-struct Company {
+pub(super) struct Company {
     world: World,
     params: Arc<Params>,
     streams: Streams,
-    projector: Projector,
+    pub(super) projector: Projector,
 }
 
 impl Company {
     fn open(location: DatabaseLocation) -> Company {
-        let params = Arc::new(Params::bundled());
+        Company::open_with(location, Params::bundled())
+    }
+
+    pub(super) fn open_with(location: DatabaseLocation, params: Params) -> Company {
+        let params = Arc::new(params);
         let mut facts = Facts::default();
         let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         let (projector, found) =
@@ -63,7 +68,7 @@ impl Company {
         Company { world, params, streams: Streams::new(42), projector }
     }
 
-    fn simulate_weeks(&mut self, weeks: u32) -> QueryConnection {
+    pub(super) fn simulate_weeks(&mut self, weeks: u32) -> QueryConnection {
         for _ in 0..weeks {
             for _ in 0..7 {
                 let mut facts = Facts::default();
@@ -77,7 +82,7 @@ impl Company {
     }
 }
 
-fn query_rows(connection: &QueryConnection, sql: &str) -> QueryResult {
+pub(super) fn query_rows(connection: &QueryConnection, sql: &str) -> QueryResult {
     connection.query(sql, LIMITS).unwrap_or_else(|error| panic!("{sql}: {} {}", error.code, error.message))
 }
 
@@ -89,7 +94,7 @@ fn query_number(connection: &QueryConnection, sql: &str) -> f64 {
     }
 }
 
-fn query_error(connection: &QueryConnection, sql: &str) -> QueryError {
+pub(super) fn query_error(connection: &QueryConnection, sql: &str) -> QueryError {
     match connection.query(sql, LIMITS) {
         Ok(rows) => panic!("{sql} was answered: {rows:?}"),
         Err(error) => error,
@@ -372,7 +377,7 @@ fn query_plan_names_no_internal_table() {
         ["SEARCH service_day USING INTEGER PRIMARY KEY (rowid=?)"]
     );
     assert_eq!(plan("SELECT day FROM daily_usage u WHERE u.day = 3"), ["SCAN u"]);
-    for table in super::tables() {
+    for table in super::tables(Interface::Release1) {
         let text = plan(&format!("SELECT DISTINCT * FROM {} ORDER BY 2 DESC", table.name)).join("\n");
         for inside in ["_rows", "words", "axis", "inner_", "clock", "_by_", "blocks", "autoindex"] {
             assert!(!text.contains(inside), "{text}");
@@ -384,7 +389,7 @@ fn query_plan_names_no_internal_table() {
 fn rowid_and_schema_names_are_accepted() {
     let mut company = Company::open(DatabaseLocation::new_in_memory());
     let connection = company.simulate_weeks(2);
-    for table in super::tables() {
+    for table in super::tables(Interface::Release1) {
         let name = &table.name;
         for number in ["rowid", "oid", "_rowid_", "\"rowid\"", "[OID]", "`_RowId_`"] {
             let both =
@@ -442,7 +447,7 @@ fn ordinary_queries_succeed() {
     ] {
         query_rows(&connection, sql);
     }
-    for table in super::tables() {
+    for table in super::tables(Interface::Release1) {
         let all = query_rows(&connection, &format!("SELECT * FROM {}", table.name));
         let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         assert_eq!(all.columns, columns, "{}", table.name);
@@ -619,7 +624,7 @@ fn database_with_another_layout_is_rebuilt() {
         .expect("an older layout");
     drop(file);
     assert!(!super::has_current_layout(&location));
-    assert!(super::query_connection(&location, Scope::Visible).is_err());
+    assert!(super::query_connection(&location, Interface::Release1, Scope::Visible).is_err());
     let (projector, found) =
         Projector::start(location.clone(), 1, Arc::new(Params::bundled()), |_| true).expect("it opens");
     assert_eq!(found, None);
@@ -638,7 +643,8 @@ fn file_blocks_load_on_first_use_and_detect_damage() {
     let before = [usage, ledger].map(|sql| query_rows(&connection, sql));
     drop((connection, company));
     let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
-    let (reader, _) = super::query_connection(&location, Scope::Visible).expect("a connection");
+    let (reader, _) =
+        super::query_connection(&location, Interface::Release1, Scope::Visible).expect("a connection");
     assert_eq!([usage, ledger].map(|sql| query_rows(&reader, sql)), before);
     let damaged = file.execute("UPDATE usage_blocks SET packed = x'ff' WHERE day = 30", []);
     assert_eq!(damaged, Ok(1));

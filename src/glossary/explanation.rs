@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Subject, Term, subject_by_name, term};
-use novamind_database::{Column, Table};
+use novamind_database::{Column, Interface, Table};
 use novamind_tools::{Argument, ParameterNumbers, ToolSpec};
 
 /// A labelled section of an explanation.
@@ -37,8 +37,8 @@ impl Explanation {
             Subject::Term(term) => term_parts(term),
             Subject::Tool(spec) => tool_parts(spec),
             Subject::Argument(spec, argument) => argument_parts(spec, argument),
-            Subject::Table(table) => table_parts(table),
-            Subject::Column(table, column) => column_parts(table, column),
+            Subject::Table(table) => table_parts(table_of_release(table, numbers)),
+            Subject::Column(table, column) => column_parts(table_of_release(table, numbers), column),
         };
         let filled = |section: Section| Section { text: numbers.substitute(&section.text), ..section };
         let sections = sections.into_iter().filter(|section| !section.text.is_empty()).map(filled).collect();
@@ -75,8 +75,11 @@ fn term_parts(glossary_term: &'static Term) -> ExplanationParts {
     ];
     let terms = glossary_term.see.iter().filter_map(|id| term(id)).map(Subject::Term);
     let tools = glossary_term.tools.iter().filter_map(|name| subject_by_name(name));
-    let tables =
-        glossary_term.tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
+    let tables = glossary_term
+        .tables
+        .iter()
+        .filter_map(|name| novamind_database::table(Interface::Release1, name))
+        .map(Subject::Table);
     (glossary_term.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &glossary_term.places)
 }
 
@@ -94,8 +97,11 @@ fn tool_parts(spec: &'static ToolSpec) -> ExplanationParts {
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let arguments = spec.arguments.iter().map(|argument| Subject::Argument(spec, argument));
-    let tables =
-        spec.written_tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
+    let tables = spec
+        .written_tables
+        .iter()
+        .filter_map(|name| novamind_database::table(Interface::Release1, name))
+        .map(Subject::Table);
     let related = terms.map(Subject::Term).chain(arguments).chain(tables).collect();
     (format!("tool · {}", spec.module.id()), sections, related, &[])
 }
@@ -121,6 +127,10 @@ fn argument_parts(spec: &'static ToolSpec, argument: &'static Argument) -> Expla
     (format!("argument of {}", spec.name()), sections, related, &[])
 }
 
+fn table_of_release(table: &'static Table, numbers: &ParameterNumbers) -> &'static Table {
+    novamind_database::table(numbers.interface(), &table.name).unwrap_or(table)
+}
+
 fn table_parts(table: &'static Table) -> ExplanationParts {
     let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
     let sections = vec![
@@ -139,6 +149,7 @@ fn column_parts(table: &'static Table, column: &'static Column) -> ExplanationPa
         section("", to_sentence(&column.description)),
         section("type", column.kind.clone()),
         section("values", column.values.join(", ")),
+        section("release", if table.columns.contains(column) { "" } else { "not published by this release" }),
         section("table", format!("{}: {}", table.name, table.description)),
         section("written", table.written.clone()),
     ];
@@ -199,7 +210,7 @@ mod tests {
     #[test]
     fn every_subject_has_an_explanation() {
         let specs = || novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
-        let tables = || novamind_database::tables().iter();
+        let tables = || novamind_database::tables(Interface::Release1).iter();
         let subjects = super::super::terms()
             .iter()
             .map(Subject::Term)

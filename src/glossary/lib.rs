@@ -75,6 +75,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+    use novamind_database::Interface;
 
     #[test]
     fn term_ids_are_unique_and_kebab_case() {
@@ -97,9 +98,9 @@ mod tests {
         for Term { id, see, tools, tables, places, .. } in terms() {
             see.iter().for_each(|other| assert!(term(other).is_some() && other != id, "{id} sees {other}"));
             tools.iter().for_each(|tool| assert!(novamind_tools::find(tool).is_some(), "{id} names {tool}"));
-            tables
-                .iter()
-                .for_each(|table| assert!(novamind_database::table(table).is_some(), "{id} names {table}"));
+            tables.iter().for_each(|table| {
+                assert!(novamind_database::table(Interface::Release1, table).is_some(), "{id} names {table}")
+            });
             assert!(!places.is_empty() || !tools.is_empty() || !tables.is_empty(), "{id} has no place");
             assert!(!see.is_empty(), "{id} has no related term");
         }
@@ -124,7 +125,7 @@ mod tests {
         let sealed = include_str!("../../tests/data/sealed.csv");
         let text = include_str!("../../assets/glossary.toml");
         let visible = |name: &str| {
-            novamind_database::tables()
+            novamind_database::tables(Interface::Release1)
                 .iter()
                 .any(|table| table.name == name || table.columns.iter().any(|column| column.name == name))
         };

@@ -2,7 +2,7 @@
 
 use super::{Term, term, terms};
 use novamind_base::similar_names;
-use novamind_database::{Column, Table};
+use novamind_database::{Column, Interface, Table};
 use novamind_tools::{Argument, ToolSpec};
 
 /// A subject that the glossary can explain.
@@ -61,11 +61,11 @@ pub fn subject_by_name(name: &str) -> Option<Subject> {
     if let Some(tool) = novamind_tools::find(name) {
         return Some(Subject::Tool(tool.spec()));
     }
-    if let Some(table) = novamind_database::table(name) {
+    if let Some(table) = novamind_database::table(Interface::Release1, name) {
         return Some(Subject::Table(table));
     }
     let (whole, part) = name.rsplit_once('.')?;
-    if let Some(table) = novamind_database::table(whole) {
+    if let Some(table) = novamind_database::table(Interface::Release1, whole) {
         let column = table.columns.iter().find(|column| column.name.eq_ignore_ascii_case(part))?;
         return Some(Subject::Column(table, column));
     }
@@ -133,7 +133,7 @@ fn similar_terms(typed: &str) -> Vec<&'static str> {
     };
     if found.is_empty() {
         let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec().name());
-        let tables = novamind_database::tables().iter().map(|table| table.name.as_str());
+        let tables = novamind_database::tables(Interface::Release1).iter().map(|table| table.name.as_str());
         found = similar_names(&typed.replace(' ', "-"), names());
         found.extend(similar_names(&typed.replace(' ', "_"), tools.chain(tables)));
         found.truncate(5);
@@ -182,7 +182,7 @@ mod tests {
                 assert_eq!(subject_by_name(&name).map(|found| found.name()), Some(name));
             }
         }
-        for table in novamind_database::tables() {
+        for table in novamind_database::tables(Interface::Release1) {
             for column in &table.columns {
                 let name = Subject::Column(table, column).name();
                 assert_eq!(subject_by_name(&name).map(|found| found.kind()), Some("column"), "{name}");

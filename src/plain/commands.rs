@@ -347,7 +347,9 @@ impl Interpreter {
                 Some(name) => self.run_named_query(name, arguments),
                 None => Ok(self.list_queries()),
             }),
-            "tables" => optional_name(arguments).and_then(|name| overview::tables_command(name, arguments)),
+            "tables" => optional_name(arguments).and_then(|name| {
+                overview::tables_command(name, arguments, self.session.numbers().interface())
+            }),
             "report" => optional_name(arguments).and_then(|what| self.report(what, arguments)),
             "history" => optional_count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => self.branch(arguments),

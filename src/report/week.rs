@@ -9,6 +9,7 @@ use super::formatting::{
     category_name, describe_short_week, format_money, format_number, format_percentage_points, format_whole,
 };
 use novamind_base::formatting::{compact_number, percent};
+use novamind_database::Interface;
 use novamind_record::figures::{CategoryTotals, WeekFigures};
 use novamind_session::{
     Category, Decisions, JournalEntry, ScoredForecast, Session, TIME_LIMIT_RATIONALE, submitted_forecasts,
@@ -206,13 +207,14 @@ pub struct WeekReportInput<'a> {
 impl WeekReport {
     /// Returns the report on the last week of a session, or `None` before the first week.
     pub fn from_session(session: &Session) -> Option<WeekReport> {
+        let has_authors = session.params().fidelity.interface == Interface::Release1;
         let mut posts: [Vec<u32>; 3] = Default::default();
         for post in session.company().posts() {
-            // News items have no customer group.
+            // News items have no customer group. Release 2 does not publish authors, so its posts count together.
             let kind = match (post.own_post, &post.written_by) {
                 (Some(_), _) => 1,
-                (None, Some(_)) => 0,
-                (None, None) => 2,
+                (None, None) if has_authors => 2,
+                (None, _) => 0,
             };
             posts[kind].push(post.day);
         }

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::client::module_name;
 use super::schema::specs;
 use novamind_base::formatting::dollars;
-use novamind_database::tables;
+use novamind_database::{Table, tables};
 use novamind_record::error::RunError;
 use novamind_tools::describe::{ToolDocument, document_tool, format_manual};
 use novamind_tools::{ParameterNumbers, ToolModule};
@@ -46,7 +46,7 @@ pub fn agent_page(of: &PageContext<'_>) -> String {
         ("{tools_document}", "tools.md".to_owned()),
         ("{tables_document}", "tables.md".to_owned()),
         ("{tools}", tool_list(of.numbers)),
-        ("{tables}", table_list()),
+        ("{tables}", table_list(of.numbers)),
         ("{errors}", ERRORS.trim_end().to_owned()),
     ];
     parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
@@ -69,8 +69,8 @@ pub fn write_documents(folder: &Path, of: &PageContext<'_>) -> Result<(), RunErr
         (PAGE_FILE, agent_page(of)),
         ("tools.md", tool_manual(of.numbers)),
         ("tools.json", format!("{:#}\n", json!(documents))),
-        ("tables.md", table_manual()),
-        ("tables.json", format!("{:#}\n", json!(tables()))),
+        ("tables.md", table_manual(of.numbers)),
+        ("tables.json", format!("{:#}\n", json!(tables(of.numbers.interface())))),
     ];
     files.iter().try_for_each(|(name, text)| {
         let path = folder.join(name);
@@ -90,9 +90,9 @@ fn tool_list(numbers: &ParameterNumbers) -> String {
     text
 }
 
-fn table_list() -> String {
-    tables().iter().map(|table| format!("- `{}`: {}\n", table.name, table.description)).collect::<String>()
-        + "\n"
+fn table_list(numbers: &ParameterNumbers) -> String {
+    let line = |table: &Table| format!("- `{}`: {}\n", table.name, table.description);
+    tables(numbers.interface()).iter().map(line).collect::<String>() + "\n"
 }
 
 fn tool_manual(numbers: &ParameterNumbers) -> String {
@@ -104,10 +104,10 @@ fn tool_manual(numbers: &ParameterNumbers) -> String {
     "# Tools\n\n".to_owned() + specs().map(one).collect::<String>().trim_end() + "\n"
 }
 
-fn table_manual() -> String {
+fn table_manual(numbers: &ParameterNumbers) -> String {
     let cell = |text: &str| text.replace('|', "\\|");
     let mut text = "# Tables\n\n".to_owned();
-    for table in tables() {
+    for table in tables(numbers.interface()) {
         text += &format!("## {}\n\n{}. Written {}.\n\n", table.name, table.description, table.written);
         text += "| Column | Type | Holds |\n|---|---|---|\n";
         for column in &table.columns {
@@ -130,6 +130,8 @@ fn table_manual() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use novamind_database::Interface;
+    use novamind_record::folder::configuration::Configuration;
 
     #[test]
     fn agent_page_lists_every_tool_and_current_parameters() {
@@ -140,7 +142,7 @@ mod tests {
         }
         let goal = goal_and_rules(&PageContext { days: 77, cash: 250_000.0, numbers: &numbers });
         assert!(text.starts_with(&goal) && goal.contains("## Rules") && !goal.contains("## How"), "{goal}");
-        for table in tables() {
+        for table in tables(Interface::Release1) {
             assert!(text.contains(&format!("`{}`", table.name)), "{}", table.name);
         }
         assert!(text.contains("for 77 days") && text.contains("$250,000"), "{text}");
@@ -155,7 +157,24 @@ mod tests {
     fn documents_contain_every_tool_and_column() {
         let manual = tool_manual(&ParameterNumbers::bundled());
         assert_eq!(manual.matches("\n## ").count(), specs().count());
-        let columns: usize = tables().iter().map(|table| table.columns.len()).sum();
-        assert_eq!(table_manual().lines().filter(|line| line.starts_with("| `")).count(), columns);
+        let columns: usize = tables(Interface::Release1).iter().map(|table| table.columns.len()).sum();
+        assert_eq!(
+            table_manual(&ParameterNumbers::bundled()).lines().filter(|line| line.starts_with("| `")).count(),
+            columns
+        );
+    }
+
+    #[test]
+    fn documents_follow_the_release() {
+        let configuration = Configuration::bundled();
+        let scenario = configuration.load_scenario("release-2").expect("a scenario");
+        let params = configuration.load_parameters(&scenario, &[], true).expect("parameters");
+        let numbers = ParameterNumbers::from_params(&params);
+        let manual = table_manual(&numbers);
+        assert!(!manual.contains("first_billing_done") && manual.contains("reply_to_agent_post_id"));
+        assert!(table_manual(&ParameterNumbers::bundled()).contains("first_billing_done"));
+        let release_2 = tool_manual(&numbers);
+        assert!(!release_2.contains("persona_name") && release_2.contains("replying_to_your_post"));
+        assert!(tool_manual(&ParameterNumbers::bundled()).contains("persona_name"));
     }
 }

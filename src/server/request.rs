@@ -230,7 +230,7 @@ impl ApiResponse {
     pub fn into_tool_response(mut self) -> ApiResponse {
         let is_of_tool = match self.status {
             ResponseStatus::BadRequest | ResponseStatus::Forbidden | ResponseStatus::TimedOut => true,
-            ResponseStatus::Failed => self.body["code"] == "sql_error",
+            ResponseStatus::Failed => self.body["code"].as_str().is_some_and(|code| code.starts_with("sql_")),
             _ => false,
         };
         if is_of_tool {

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::request::{ApiRequest, ApiResponse, ResponseStatus};
+use novamind_database::Interface;
 use novamind_record::trajectory::record::{Outcome, QuerySource, Via};
 use novamind_session::{IdempotentResponse, Session, WeekRequest, WeekResult, rows_to_json};
 use novamind_tools::{NotebookSection, Rejection, ToolId};
@@ -120,15 +121,22 @@ fn handle_query(session: &mut Session, sql: &Value) -> ApiResponse {
     };
     match session.query_as(None, sql, QuerySource::Program) {
         Ok(rows) => ApiResponse::success(rows_to_json(&rows)),
-        Err(refusal) => ApiResponse::rejected(query_error_status(refusal.code), refusal),
+        Err(refusal) => {
+            let interface = session.params().fidelity.interface;
+            ApiResponse::rejected(query_error_status(refusal.code, interface), refusal)
+        }
     }
 }
 
 /// Returns the status that the released simulator's server uses for this error of a statement.
-fn query_error_status(code: &str) -> ResponseStatus {
+fn query_error_status(code: &str, interface: Interface) -> ResponseStatus {
     match code {
         "sql_empty" => ResponseStatus::BadRequest,
-        "sql_schema" | "sql_hidden_table" | "sql_hidden_column" | "sql_write" => ResponseStatus::Forbidden,
+        "sql_schema" | "sql_hidden_table" | "sql_hidden_column" | "sql_write"
+            if interface == Interface::Release1 =>
+        {
+            ResponseStatus::Forbidden
+        }
         "sql_timeout" | "sql_cancelled" => ResponseStatus::TimedOut,
         _ => ResponseStatus::Failed,
     }

@@ -14,13 +14,14 @@ use novamind_database::{
 use novamind_record::error::RunError;
 use novamind_tools::Rejection;
 use novamind_world::events::Facts;
+use novamind_world::params::Interface;
 
 /// The database of a run. A run without a database discards entries and rejects queries.
 #[derive(Default)]
 pub struct RunDatabase {
     projector: Option<Projector>,
     /// Complete database file of an ended run, which is only read.
-    finished_file: Option<DatabaseLocation>,
+    finished_file: Option<(DatabaseLocation, Interface)>,
     /// Query connection of the session; opened for the first query.
     connection: Option<QueryConnection>,
     /// Number of times the database was replaced since the run was opened.
@@ -32,9 +33,9 @@ impl RunDatabase {
         RunDatabase { projector, ..RunDatabase::default() }
     }
 
-    /// Opens the database file of an ended run.
-    pub(crate) fn from_file(location: DatabaseLocation) -> RunDatabase {
-        RunDatabase { finished_file: Some(location), ..RunDatabase::default() }
+    /// Opens the database file of an ended run that follows the interface of a release.
+    pub(crate) fn from_file(location: DatabaseLocation, interface: Interface) -> RunDatabase {
+        RunDatabase { finished_file: Some((location, interface)), ..RunDatabase::default() }
     }
 
     /// Returns a handle that writes entries to the database.
@@ -89,7 +90,9 @@ impl RunDatabase {
     pub(crate) fn open_scoped_connection(&self, scope: Scope) -> Result<QueryConnection, Rejection> {
         let connection = match (&self.projector, &self.finished_file) {
             (Some(projector), _) => projector.connection(scope),
-            (None, Some(location)) => query_connection(location, scope).map(|(connection, _)| connection),
+            (None, Some((location, interface))) => {
+                query_connection(location, *interface, scope).map(|(connection, _)| connection)
+            }
             (None, None) => return Err(Rejection::new("sql_error", "this run has no database")),
         };
         connection.map_err(|error| Rejection::new("sql_error", error.to_string()))
@@ -131,7 +134,7 @@ impl RunDatabase {
     pub(crate) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
         match (&self.projector, &self.finished_file) {
             (Some(projector), _) => Ok(projector.export_sqlite(file)?),
-            (None, Some(location)) => Ok(export_sqlite(location, file)?),
+            (None, Some((location, interface))) => Ok(export_sqlite(location, *interface, file)?),
             (None, None) => Err(RunError::InvalidRequest("this run has no database".to_owned())),
         }
     }

@@ -24,7 +24,7 @@ pub fn format_manual(spec: &ToolSpec, numbers: &ParameterNumbers) -> String {
     if !spec.rejection_codes.is_empty() {
         let _ = writeln!(text, "Rejections: {}.", spec.rejection_codes.join(", "));
     }
-    for output in spec.result_fields {
+    for output in spec.returned_fields(numbers.interface()) {
         let _ = writeln!(
             text,
             "Returns {} ({}): {}.",
@@ -114,7 +114,7 @@ pub fn document_tool(spec: &'static ToolSpec, numbers: &ParameterNumbers) -> Too
         cost: numbers.substitute(spec.cost),
         writes: spec.written_tables,
         refusals: spec.rejection_codes,
-        returns: spec.result_fields.iter().map(output).collect(),
+        returns: spec.returned_fields(numbers.interface()).iter().map(output).collect(),
         example: serde_json::from_str(spec.example).unwrap_or(Value::Null),
     }
 }

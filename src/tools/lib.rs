@@ -40,7 +40,7 @@ mod time;
 #[cfg(test)]
 mod tests;
 
-pub use analytics::{GetSocialPosts, PostLimit, SocialPost, with_release_2_text};
+pub use analytics::{GetSocialPosts, PostAuthor, PostLimit, SocialPost, with_release_2_text};
 pub use arguments::Arguments;
 pub use catalogue::{Answer, AnyTool, CATALOGUE, find};
 pub use enterprise::{highest_customer, remap_customers};

@@ -12,11 +12,14 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use novamind_base::formatting::{capitalize, grouped_number};
-use novamind_world::params::Params;
+use novamind_world::params::{Interface, Params};
 
-/// All numeric parameters, by key.
+/// All numeric parameters, by key, and the release whose interface is documented.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct ParameterNumbers(BTreeMap<String, f64>);
+pub struct ParameterNumbers {
+    numbers: BTreeMap<String, f64>,
+    interface: Interface,
+}
 
 impl ParameterNumbers {
     /// Returns the numbers in the bundled parameters.
@@ -26,7 +29,8 @@ impl ParameterNumbers {
 
     /// Collects the numbers in `params`.
     pub fn from_params(params: &Params) -> ParameterNumbers {
-        let mut numbers = ParameterNumbers::default();
+        let interface = params.fidelity.interface;
+        let mut numbers = ParameterNumbers { interface, ..ParameterNumbers::default() };
         numbers.collect_numbers("", &serde_json::to_value(params).unwrap_or(Value::Null));
         numbers
     }
@@ -44,15 +48,20 @@ impl ParameterNumbers {
             }
             _ => {
                 if let Some(number) = part.as_f64() {
-                    self.0.insert(path.to_owned(), number);
+                    self.numbers.insert(path.to_owned(), number);
                 }
             }
         }
     }
 
+    /// Returns the release whose tables and results are documented.
+    pub fn interface(&self) -> Interface {
+        self.interface
+    }
+
     /// Returns the value of a parameter, or `None` if there is no numeric parameter with this key.
     pub fn value(&self, key: &str) -> Option<f64> {
-        self.0.get(key).copied()
+        self.numbers.get(key).copied()
     }
 
     /// Replaces the placeholders in a text with parameter values. Placeholders with unknown names do not change.
@@ -79,7 +88,7 @@ impl ParameterNumbers {
 
     fn format_placeholder(&self, name: &str) -> Option<String> {
         let (key, form) = name.split_once(':').unwrap_or((name, ""));
-        let value = *self.0.get(key)?;
+        let value = *self.numbers.get(key)?;
         Some(match form {
             "%" => format!("{} %", format_decimal(value * 100.0)),
             "100" => format_decimal(value * 100.0),

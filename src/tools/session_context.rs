@@ -4,14 +4,15 @@
 
 use super::notebook::Notebook;
 use novamind_world::events::Reading;
+use novamind_world::params::Interface;
 
 /// Interface through which tools read data of the session.
 pub trait SessionContext: Sync {
     /// Returns a description of a PMI reading in words.
     fn describe_economy(&self, reading: &Reading) -> String;
 
-    /// Returns the tables that can be queried, with their columns.
-    fn tables(&self) -> Vec<TableDocument>;
+    /// Returns the tables that can be queried under a release, with their columns.
+    fn tables(&self, interface: Interface) -> Vec<TableDocument>;
 
     /// Returns the calculations and scripts of the run.
     fn notebook(&self) -> &Notebook;
@@ -61,7 +62,7 @@ impl SessionContext for EmptyContext {
         String::new()
     }
 
-    fn tables(&self) -> Vec<TableDocument> {
+    fn tables(&self, _: Interface) -> Vec<TableDocument> {
         Vec::new()
     }
 

@@ -732,6 +732,26 @@ fn get_social_posts_returns_newest_first() {
     assert_eq!(read(json!({"limit": 1}))["posts"].as_array().map(Vec::len), Some(1));
     assert_eq!(read(json!({"limit": 0})), json!({"posts": []}));
     assert_eq!(read(json!({"limit": -1}))["total"], json!(3));
+    let mut params = company.params.clone();
+    params.fidelity.interface = novamind_world::params::Interface::Release2;
+    let view = ToolContext::new(&company.world, &params).with_posts(&posts);
+    let arguments = Arguments::parse(tool.spec(), &json!({}), || super::ParameterNumbers::bundled().into());
+    let planned = tool.plan(&view, &arguments.expect("right arguments")).expect("it only reads");
+    let answer = planned.reply.into_answer_without_script(&ResolvedCommand::None).expect("an answer");
+    assert_eq!(
+        answer.to_json(),
+        json!({
+            "posts": [
+                {
+                    "post_id": 3, "day": 7, "content": "post 3", "reply_to_agent_post_id": 1,
+                    "replying_to_your_post": "We are live.",
+                },
+                {"post_id": 2, "day": 7, "content": "post 2", "reply_to_agent_post_id": null},
+                {"post_id": 1, "day": 7, "content": "post 1", "reply_to_agent_post_id": null},
+            ],
+            "total": 3,
+        })
+    );
 }
 
 #[test]

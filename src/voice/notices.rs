@@ -71,20 +71,34 @@ pub fn notice_text(notice: &Notice, party: Option<NoticeCustomer>) -> String {
                 "Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})"
             )
         }
-        // Callers that have the text of the post call `reaction_text` instead.
+        // Callers that have the text of the post call `reaction_text` or `views_text` instead.
         Notice::OwnPostSeen(reaction) => {
             format!("Your post was seen {} {}", reaction.views, times_noun(reaction.views))
         }
     }
 }
 
-/// Returns the text of the notice about a post of the player: views, start of the post, tone and strongest reactions.
-pub fn reaction_text(content: &str, reaction: &Reaction, posts: &CeoPosts) -> String {
+/// Returns the start of a post, with an ellipsis if the post is longer.
+fn preview(content: &str, posts: &CeoPosts) -> String {
     let shown = posts.notification_preview_chars as usize;
     let mut preview: String = content.chars().take(shown).collect();
     if content.chars().count() > shown {
         preview.push_str("...");
     }
+    preview
+}
+
+/// Returns the text of the notice about a post of the player under release 2: views and start of the post.
+pub fn views_text(content: &str, views: u64, posts: &CeoPosts) -> String {
+    let (views, preview) = (grouped_number(views as f64, 0), preview(content, posts));
+    format!(
+        "Your post received {views} views: \"{preview}\". The comments of customers show the public reaction."
+    )
+}
+
+/// Returns the text of the notice about a post of the player: views, start of the post, tone and strongest reactions.
+pub fn reaction_text(content: &str, reaction: &Reaction, posts: &CeoPosts) -> String {
+    let preview = preview(content, posts);
     let tone = match reaction.mean {
         mean if mean > posts.notification_sentiment_threshold => "positive",
         mean if mean < -posts.notification_sentiment_threshold => "negative",
@@ -180,5 +194,18 @@ mod tests {
         let long = reaction_text(&"ü".repeat(81), &reaction, &posts);
         assert!(long.starts_with("Your post was seen 1 time: "), "{long}");
         assert!(long.contains(&format!("\"{}...\"", "ü".repeat(80))) && long.contains("negative"), "{long}");
+    }
+
+    #[test]
+    fn views_text_contains_only_views_and_preview() {
+        let posts = novamind_world::params::Params::bundled().ceo_posts;
+        assert_eq!(
+            views_text("Quotas doubled.", 1840, &posts),
+            "Your post received 1,840 views: \"Quotas doubled.\". The comments of customers show the public reaction."
+        );
+        let long = views_text(&"ü".repeat(81), 1_234_567, &posts);
+        let start = format!("Your post received 1,234,567 views: \"{}...\". ", "ü".repeat(80));
+        assert!(long.starts_with(&start), "{long}");
+        assert!(views_text(&"ü".repeat(80), 1, &posts).contains(&format!("\"{}\"", "ü".repeat(80))));
     }
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use novamind_database::Interface;
 use novamind_session::Session;
 use novamind_session::identifiers::Group;
-use novamind_tools::{GetSocialPosts, PostLimit, SocialPost};
+use novamind_tools::{GetSocialPosts, PostAuthor, PostLimit, SocialPost};
 
 /// The kind of a post's author.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,6 +14,8 @@ pub enum PostKind {
     Customers,
     /// Press that writes about competitors and the economy.
     Press,
+    /// Customers and press under release 2, which does not publish authors.
+    Public,
     /// Authors of comments on the player's posts.
     Comments,
     /// The player's company.
@@ -20,14 +23,20 @@ pub enum PostKind {
 }
 
 impl PostKind {
-    /// All kinds of authors, in display order.
-    pub const ALL: [PostKind; 4] = [PostKind::Customers, PostKind::Press, PostKind::Comments, PostKind::Own];
+    /// Returns all kinds of authors that a release publishes, in display order.
+    pub fn all(interface: Interface) -> &'static [PostKind] {
+        match interface {
+            Interface::Release1 => &[PostKind::Customers, PostKind::Press, PostKind::Comments, PostKind::Own],
+            Interface::Release2 => &[PostKind::Public, PostKind::Comments, PostKind::Own],
+        }
+    }
 
     /// Returns the name of the kind on screens.
     pub fn name(self) -> &'static str {
         match self {
             PostKind::Customers => "customers",
             PostKind::Press => "press",
+            PostKind::Public => "public",
             PostKind::Comments => "comments",
             PostKind::Own => "our posts",
         }
@@ -114,16 +123,25 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
     }
 }
 
-fn to_post(social_post: &SocialPost) -> Post {
-    let group = social_post.group_id.map_or("–", Group::id);
+fn kind_and_name(author: &PostAuthor, is_comment: bool) -> (PostKind, String) {
+    let group = author.group_id.map_or("–", Group::id);
     // Press posts have the first group as author group and no persona. Posts of customers in discovered groups have no
     // persona either.
-    let is_press = social_post.group_id.is_some() && social_post.group_id == Group::at(0);
-    let (kind, author) = match (social_post.reply_to_agent_post_id, social_post.persona_name.as_deref()) {
-        (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),
-        (None, Some(name)) => (PostKind::Customers, format!("{name} · {group}")),
-        (None, None) if is_press => (PostKind::Press, "press".to_owned()),
-        (None, None) => (PostKind::Customers, group.to_owned()),
+    let is_press = author.group_id.is_some() && author.group_id == Group::at(0);
+    match (is_comment, author.persona_name.as_deref()) {
+        (true, name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),
+        (false, Some(name)) => (PostKind::Customers, format!("{name} · {group}")),
+        (false, None) if is_press => (PostKind::Press, "press".to_owned()),
+        (false, None) => (PostKind::Customers, group.to_owned()),
+    }
+}
+
+fn to_post(social_post: &SocialPost) -> Post {
+    let is_comment = social_post.reply_to_agent_post_id.is_some();
+    let (kind, author) = match &social_post.author {
+        Some(author) => kind_and_name(author, is_comment),
+        None if is_comment => (PostKind::Comments, "comment".to_owned()),
+        None => (PostKind::Public, "post".to_owned()),
     };
     Post {
         kind,
@@ -149,11 +167,13 @@ mod tests {
                 day: 9,
                 content: "x".to_owned(),
                 reply_to_agent_post_id: None,
-                source_group_id: None,
-                group_id: Group::parse(group),
-                customer_type: "small",
-                custom_name: None,
-                persona_name: name.map(Into::into),
+                author: Some(PostAuthor {
+                    source_group_id: None,
+                    group_id: Group::parse(group),
+                    customer_type: "small",
+                    custom_name: None,
+                    persona_name: name.map(Into::into),
+                }),
                 replying_to_your_post: None,
             })
         };
@@ -162,7 +182,7 @@ mod tests {
         assert_eq!(who(make_post("S1", None)), (PostKind::Press, "press".to_owned()));
         assert_eq!(who(make_post("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
-    use crate::test_kit::played_session;
+    use crate::test_kit::{played_session, played_session_of};
     use novamind_record::trajectory::record::Via;
 
     #[test]
@@ -186,5 +206,16 @@ mod tests {
         assert!(
             shared.clone().count() == first.len() && shared.clone().all(|(now, then)| Arc::ptr_eq(now, then))
         );
+    }
+
+    #[test]
+    fn posts_of_release_2_have_no_authors() {
+        let session = played_session_of("release-2", 3);
+        let posts = read_posts(&session, None);
+        assert!(!posts.is_empty());
+        for post in posts.iter() {
+            assert_eq!((post.kind, post.heading()), (PostKind::Public, format!("post · #{}", post.number)));
+        }
+        assert!(read_posts(&played_session(3), None).iter().all(|post| post.kind != PostKind::Public));
     }
 }

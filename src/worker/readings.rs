@@ -51,12 +51,12 @@ readings! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_kit::played_session;
+    use crate::test_kit::played_session_of;
 
     #[test]
     fn readings_run_before_and_after_the_first_week() {
-        for weeks in [0, 2] {
-            let mut session = played_session(weeks);
+        for (scenario, weeks) in [("default", 0), ("default", 2), ("release-2", 0), ("release-2", 2)] {
+            let mut session = played_session_of(scenario, weeks);
             for reading in Reading::ALL {
                 let rows =
                     session.query(reading.sql()).unwrap_or_else(|problem| panic!("{reading:?}: {problem}"));

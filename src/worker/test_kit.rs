@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
@@ -14,7 +14,13 @@ pub fn new_session() -> Session {
 
 /// Returns the session of a run in memory that was played for some weeks with typical settings.
 pub fn played_session(weeks: usize) -> Session {
-    let new = NewRun { seed: Some(7), days: Some(200), storage: Storage::Memory, ..NewRun::default() };
+    played_session_of(DEFAULT_SCENARIO, weeks)
+}
+
+/// Returns the session of a run as [`played_session`], with a scenario.
+pub fn played_session_of(scenario: &str, weeks: usize) -> Session {
+    let (seed, days, scenario) = (Some(7), Some(200), scenario.to_owned());
+    let new = NewRun { seed, days, scenario, storage: Storage::Memory, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     if weeks > 0 {
         apply_initial_settings(&mut session);

@@ -8,7 +8,7 @@ use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
 use novamind::database::query::QueryLimits;
-use novamind::database::{Cell, QueryConnection, QueryResult, register_math_functions, tables};
+use novamind::database::{Cell, Interface, QueryConnection, QueryResult, register_math_functions, tables};
 use novamind::lab::benchmark::{BenchContext, create_company_for_queries};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
@@ -115,7 +115,7 @@ fn plain_tables(connection: &QueryConnection) -> Connection {
     let mut plain = Connection::open_in_memory().expect("memory");
     register_math_functions(&plain).expect("functions");
     let transaction = plain.transaction().expect("a transaction");
-    for table in tables() {
+    for table in tables(Interface::Release1) {
         transaction.execute_batch(&table.create_statement()).expect("a table");
         let all = connection.query(&format!("SELECT rowid, * FROM {}", table.name), UNLIMITED_ROWS);
         let all = all.unwrap_or_else(|error| panic!("{}: {}", table.name, error.message));
@@ -234,7 +234,7 @@ fn print_statement_times_with_190_000_subscribers() {
     let size = |table: &str| {
         connection.query(&format!("SELECT count(*) FROM {table}"), patient).map(|rows| rows.rows)
     };
-    for table in tables() {
+    for table in tables(Interface::Release1) {
         println!("{:<28} {:?}", table.name, size(&table.name));
     }
     for (took, sql) in times.iter().take(25) {

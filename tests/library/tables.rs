@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use novamind::database::Cell;
+use novamind::database::Interface;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
@@ -68,7 +69,7 @@ fn visible_tables_and_columns_match_the_list() {
     }
     assert_eq!(listed.len(), 19);
     assert_eq!(listed.iter().map(|(_, columns)| columns.len()).sum::<usize>(), 148);
-    let documented: Vec<(String, Vec<(String, String)>)> = novamind::database::tables()
+    let documented: Vec<(String, Vec<(String, String)>)> = novamind::database::tables(Interface::Release1)
         .iter()
         .map(|table| {
             let columns = table.columns.iter().map(|column| (column.name.clone(), column.kind.clone()));
@@ -86,7 +87,7 @@ fn visible_tables_and_columns_match_the_list() {
 #[test]
 fn tables_contain_only_the_expected_rows_on_day_0() {
     let mut session = create_run(&[]);
-    for table in novamind::database::tables() {
+    for table in novamind::database::tables(Interface::Release1) {
         let expected = match table.name.as_str() {
             "customers" | "ledger" | "config_history" => 1.0,
             "group_info_levels" => 26.0,

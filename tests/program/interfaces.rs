@@ -165,6 +165,26 @@ fn abandoned_script_is_stopped() {
 
 #[cfg(unix)]
 #[test]
+fn server_of_release_2_publishes_its_tables_and_tools() {
+    let home = Home::new();
+    let server = Server::start(&home, &["--new", "--seed", "1", "--scenario", "release-2"]);
+    let asked = |sql: &str| server.post("/query", &json!({ "sql": sql }));
+    let (status, rows) = asked("SELECT * FROM subscriptions");
+    assert_eq!((status, rows["columns"].as_array().map(Vec::len)), (200, Some(15)), "{rows}");
+    for refused in
+        ["DELETE FROM ledger", "SELECT * FROM events", "SELECT first_billing_done FROM subscriptions"]
+    {
+        assert_eq!(asked(refused).0, 500, "{refused}");
+    }
+    assert_eq!(asked("").0, 400);
+    let tables = server.get("/tables").to_string();
+    assert!(tables.contains("thread_id") && !tables.contains("first_billing_done"), "{tables}");
+    assert!(!server.get("/tools").to_string().contains("persona_name"));
+    assert_eq!(server.stop(), 0);
+}
+
+#[cfg(unix)]
+#[test]
 fn http_client_reaches_the_same_state() {
     let home = Home::new();
     let server = Server::start(&home, &NEW_RUN_OPTIONS);

@@ -9,18 +9,20 @@ use crate::session::{Access, Session};
 use crate::tools::ParameterNumbers;
 
 /// Prints the agent's instructions, or writes them to a folder together with the reference documents. Without a named
-/// run, the instructions describe a run with the bundled parameters.
-pub fn print_or_write(named: Option<&str>, out: Option<&Path>, context: &Context) -> Result<(), Failure> {
+/// run, the instructions describe a run with the bundled parameters of a scenario.
+pub fn print_or_write(
+    named: Option<&str>,
+    scenario: &str,
+    out: Option<&Path>,
+    context: &Context,
+) -> Result<(), Failure> {
     match named {
         Some(_) => write_run_documents(&AgentRun::find(named, context)?, out),
         None => {
-            let numbers = ParameterNumbers::bundled();
-            let value = |key: &str| numbers.value(key).unwrap_or_default();
-            let of = PageContext {
-                days: value("run.total_days") as u32,
-                cash: value("initial.initial_cash"),
-                numbers: &numbers,
-            };
+            let scenario = context.configuration.load_scenario(scenario)?;
+            let params = context.configuration.load_parameters(&scenario, &[], true)?;
+            let (days, cash) = scenario.days_and_cash_with(&params);
+            let of = PageContext { days, cash, numbers: &ParameterNumbers::from_params(&params) };
             write_page(&of, out)
         }
     }

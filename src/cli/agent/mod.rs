@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use super::new_run::NewRunOptions;
 use super::{Context, Failure, print};
+use crate::record::folder::configuration::DEFAULT_SCENARIO;
 use crate::server::{RemoteServer, ServerResponse};
 use arguments::{parse_next_week, parse_tool_arguments, read_text};
 use server::{AgentRun, Authentication};
@@ -73,6 +74,9 @@ enum AgentCommand {
         /// Folder for AGENT.md, tools.md, tools.json, tables.md and tables.json
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Without a run: scenario whose parameters, tools and tables are documented
+        #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
+        scenario: String,
     },
     /// Stop the server of the run; all confirmed actions are saved, and the next command starts a new server
     Stop,
@@ -133,7 +137,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let (agent_run, remote) = connect(named, context)?;
             python::run(words, &agent_run, &remote)
         }
-        AgentCommand::Docs { out } => documents::print_or_write(named, out.as_deref(), context),
+        AgentCommand::Docs { out, scenario } => {
+            documents::print_or_write(named, scenario, out.as_deref(), context)
+        }
         AgentCommand::Stop => {
             let run = AgentRun::find(named, context)?;
             let stopped = run.stop_server()?;

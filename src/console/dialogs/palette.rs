@@ -279,7 +279,7 @@ fn entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrar
         keys: String::new(),
         effect: Effect::RunSql(query.sql.clone()),
     }));
-    list.extend(novamind_database::tables().iter().map(|table| PaletteEntry {
+    list.extend(novamind_database::tables(company.numbers.interface()).iter().map(|table| PaletteEntry {
         kind: "table",
         code: "",
         title: table.name.clone(),

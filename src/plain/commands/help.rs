@@ -133,14 +133,15 @@ pub(super) fn help(
     if novamind_tools::find(name).is_some() || find_tool(name).is_some() {
         return overview::tools_command(Some(name), arguments, numbers);
     }
-    if novamind_database::table(name).is_some() {
-        return overview::tables_command(Some(name), arguments);
+    if novamind_database::table(numbers.interface(), name).is_some() {
+        return overview::tables_command(Some(name), arguments, numbers.interface());
     }
     if let Ok(found) = novamind_glossary::find_subject(name) {
         return Ok(explanations::explain_subject("help", found, numbers));
     }
     let names = commands(led).map(|(name, _)| name).chain(callable_names());
-    let names = names.chain(novamind_database::tables().iter().map(|table| table.name.as_str()));
+    let names =
+        names.chain(novamind_database::tables(numbers.interface()).iter().map(|table| table.name.as_str()));
     let where_to_look = "type help to list the commands, or glossary to list the terms";
     Err(argument_error(
         arguments,
@@ -204,7 +205,7 @@ mod tests {
             (help(Some("zzzzzzz"), &[], &numbers, false), "type help to list the commands"),
             (overview::tools_command(Some("foo"), &[], &numbers), "type tools to list all tools"),
             (
-                overview::tables_command(Some("leger"), &[]),
+                overview::tables_command(Some("leger"), &[], numbers.interface()),
                 "did you mean ledger? type tables to list all tables",
             ),
         ] {

@@ -11,6 +11,7 @@ use super::help::not_found_message;
 use super::{Interpreter, argument_error, find_tool};
 use novamind_base::formatting::{dollars, grouped_number, pluralize, signed_dollars};
 use novamind_base::similar_names;
+use novamind_database::Interface;
 use novamind_record::trajectory::record::Reversal;
 use novamind_report::action_items::{ActionItem, ActionTarget, action_items};
 use novamind_report::cost_review::{identical_plan_lines, money_lines};
@@ -238,20 +239,18 @@ pub(super) fn tools_command(
 pub(super) fn tables_command(
     name: Option<&str>,
     arguments: &[Argument],
+    interface: Interface,
 ) -> Result<CommandResponse, ParseError> {
+    let tables = novamind_database::tables(interface);
     let Some(name) = name else {
-        let width = novamind_database::tables().iter().map(|table| table.name.len()).max().unwrap_or(0);
+        let width = tables.iter().map(|table| table.name.len()).max().unwrap_or(0);
         let line =
             |table: &novamind_database::Table| format!("{:<width$}  {}\n", table.name, table.description);
-        let text: String = novamind_database::tables().iter().map(line).collect();
-        return Ok(CommandResponse::success(
-            "tables",
-            text,
-            json!({ "tables": novamind_database::tables() }),
-        ));
+        let text: String = tables.iter().map(line).collect();
+        return Ok(CommandResponse::success("tables", text, json!({ "tables": tables })));
     };
-    let table = novamind_database::table(name).ok_or_else(|| {
-        let names = novamind_database::tables().iter().map(|table| table.name.as_str());
+    let table = novamind_database::table(interface, name).ok_or_else(|| {
+        let names = tables.iter().map(|table| table.name.as_str());
         argument_error(
             arguments,
             &not_found_message(

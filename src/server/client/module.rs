@@ -65,9 +65,10 @@ fn method_source(spec: &ToolSpec, numbers: &ParameterNumbers) -> String {
             text += &wrap_docstring(&numbers.substitute(&words), 12, 16);
         }
     }
-    if !spec.result_fields.is_empty() {
+    let returned = spec.returned_fields(numbers.interface());
+    if !returned.is_empty() {
         text += "\n        Returns:\n";
-        for output in spec.result_fields {
+        for output in returned {
             let words = format!("{}: {} ({})", output.name, output.description, output.kind);
             text += &wrap_docstring(&numbers.substitute(&words), 12, 16);
         }

@@ -71,7 +71,7 @@ pub fn router(
         .route("/next-week", post(next_week))
         .route("/query", post(query))
         .route("/tools", get(tools))
-        .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
+        .route("/tables", get(table_documents))
         .route("/openapi.json", get(openapi_document))
         .route("/shutdown", post(shut_down))
         .fallback(not_found)
@@ -123,6 +123,10 @@ async fn tools(State(door): State<RouteState>) -> Response {
     let all: Vec<ToolDocument> =
         CATALOGUE.iter().map(|tool| document_tool(tool.spec(), &door.numbers)).collect();
     json_response(StatusCode::OK, &json!(all))
+}
+
+async fn table_documents(State(door): State<RouteState>) -> Response {
+    json_response(StatusCode::OK, &json!(tables(door.numbers.interface())))
 }
 
 async fn openapi_document(State(door): State<RouteState>) -> Response {

@@ -48,7 +48,8 @@ pub async fn read(
             texts.join("\n")
         }
         TABLES => {
-            let texts: Vec<String> = tables().iter().map(|table| table.describe()).collect();
+            let texts: Vec<String> =
+                tables(numbers.interface()).iter().map(|table| table.describe()).collect();
             texts.join("\n")
         }
         _ => {

@@ -5,6 +5,7 @@ use super::simulation::Simulation;
 use novamind_database::ProjectionEntry;
 use novamind_voice::notices::NoticeCustomer;
 use novamind_world::events::{EndCause, Notice, SubscriptionStatus};
+use novamind_world::params::Interface;
 
 impl Simulation {
     pub(crate) fn database_entry(&self) -> ProjectionEntry {
@@ -24,7 +25,11 @@ impl Simulation {
         };
         let own_post = self.world.market.social.own.get(reaction.post as usize - 1);
         let content = own_post.map_or("", |post| post.content.as_str());
-        novamind_voice::notices::reaction_text(content, reaction, &self.params.ceo_posts)
+        let posts = &self.params.ceo_posts;
+        match self.params.fidelity.interface {
+            Interface::Release1 => novamind_voice::notices::reaction_text(content, reaction, posts),
+            Interface::Release2 => novamind_voice::notices::views_text(content, reaction.views, posts),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use novamind_tools::{ColumnDocument, Notebook, SessionContext, TableDocument};
 use novamind_world::events::Reading;
+use novamind_world::params::Interface;
 
 #[derive(Debug, Default)]
 pub(crate) struct RunContext {
@@ -16,13 +17,13 @@ impl SessionContext for RunContext {
         novamind_voice::reading_text(reading)
     }
 
-    fn tables(&self) -> Vec<TableDocument> {
+    fn tables(&self, interface: Interface) -> Vec<TableDocument> {
         let document = |table: &'static novamind_database::Table| TableDocument {
             name: &table.name,
             description: &table.description,
             columns: table.columns.iter().map(column_document).collect(),
         };
-        novamind_database::tables().iter().map(document).collect()
+        novamind_database::tables(interface).iter().map(document).collect()
     }
 
     fn notebook(&self) -> &Notebook {

@@ -122,7 +122,7 @@ impl Session {
             (cache.store_snapshot)(&session, folder);
         }
         if let Some(location) = finished {
-            session.database = RunDatabase::from_file(location);
+            session.database = RunDatabase::from_file(location, session.params().fidelity.interface);
         }
         if let Some(lock) = lock {
             session.log.set_recorder(Recorder::resume(&path, &trajectory, lock)?);

@@ -1,5 +1,6 @@
 use crate::create::NewRun;
 use crate::play::Session;
+use novamind_database::text_at;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::query_library::*;
 use novamind_record::trajectory::record::Via;
@@ -27,7 +28,45 @@ fn play_weeks(session: &mut Session, weeks: usize) {
 
 #[test]
 fn bundled_queries_run_in_every_phase() {
-    let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
+    let mut session = run_queries_in_every_phase(NewRun::default());
+    // The bundled queries derive first bills from the columns that both releases publish.
+    let first_bills = |session: &mut Session, of: &str| {
+        let sql =
+            format!("SELECT customer_id FROM subscriptions JOIN customers c USING (customer_id) WHERE {of}");
+        session.query(&(sql + " ORDER BY 1")).expect("customers").rows
+    };
+    let billed = first_bills(&mut session, "first_billing_done = 1");
+    let derived = "status IN ('subscribed', 'cancelled') AND (c.customer_type = 'small' OR \
+                   'Subscription payment from customer ' || c.customer_id IN \
+                   (SELECT note FROM ledger WHERE category = 'subscription_payment'))";
+    assert!(!billed.is_empty());
+    assert_eq!(first_bills(&mut session, derived), billed);
+    let (notice, _) = post_notice(&mut session);
+    assert!(notice.starts_with("Your post was seen ") && notice.contains("Reaction "), "{notice}");
+}
+
+/// Returns the notification about the only post, and the views of the post.
+fn post_notice(session: &mut Session) -> (String, String) {
+    let sql = "SELECT n.message, printf('%,d', a.views) FROM notifications n JOIN agent_social_media_posts a \
+               WHERE n.message LIKE '%We are here.%'";
+    let rows = session.query(sql).expect("a notification").rows;
+    assert_eq!(rows.len(), 1);
+    (text_at(&rows[0], 0).to_owned(), text_at(&rows[0], 1).to_owned())
+}
+
+#[test]
+fn bundled_queries_run_in_every_phase_under_release_2() {
+    let new = NewRun { scenario: "release-2".to_owned(), ..NewRun::default() };
+    let mut session = run_queries_in_every_phase(new);
+    let (notice, views) = post_notice(&mut session);
+    let expected = format!(
+        "Your post received {views} views: \"We are here.\". The comments of customers show the public reaction."
+    );
+    assert_eq!(notice, expected);
+}
+
+fn run_queries_in_every_phase(new: NewRun) -> Session {
+    let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..new };
     let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     run_all_queries(&mut session);
     let ads = json!({"S1": 750, "E1": 4000, "E2": 4000, "E3": 4000});
@@ -54,4 +93,5 @@ fn bundled_queries_run_in_every_phase() {
     session.call("send_enterprise_deal", &deals, Via::Script).expect("an offer");
     play_weeks(&mut session, 1);
     run_all_queries(&mut session);
+    session
 }

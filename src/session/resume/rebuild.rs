@@ -76,8 +76,11 @@ pub fn open_database_file(
     if !is_database_unchanged(folder, key) {
         return Err(Rejection::new("sql_error", "world.db was changed after the run was closed"));
     }
-    query_connection(&DatabaseLocation::File(folder.join("world.db")), Scope::Visible)
-        .map_err(|error| Rejection::new("sql_error", error.to_string()))
+    let error = |error: &dyn std::fmt::Display| Rejection::new("sql_error", error.to_string());
+    let params = ManifestCheck::read(folder).and_then(|check| check.manifest.load_params());
+    let interface = params.map_err(|problem| error(&problem))?.fidelity.interface;
+    query_connection(&DatabaseLocation::File(folder.join("world.db")), interface, Scope::Visible)
+        .map_err(|problem| error(&problem))
 }
 
 impl Session {

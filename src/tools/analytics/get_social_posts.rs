@@ -8,12 +8,29 @@ use super::super::{
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 use novamind_world::identifiers::Group;
+use novamind_world::params::Interface;
 
 /// The tool `get_social_posts`.
 pub struct GetSocialPosts;
 
 const ANY_INTEGER: ArgumentKind =
     ArgumentKind::Integer(NumberRange::between(f64::NEG_INFINITY, f64::INFINITY));
+
+const TOTAL_FIELD: ResultField = ResultField {
+    name: "total",
+    kind: "integer",
+    description: "number of returned posts; absent if there are none",
+};
+
+/// Fields of the result under release 2, which does not return the authors of posts.
+pub(crate) static RELEASE_2_FIELDS: [ResultField; 2] = [
+    ResultField {
+        name: "posts",
+        kind: "list of {post_id, day, reply_to_agent_post_id, content, replying_to_your_post}",
+        description: "public posts; the last field is present only on comments on your posts",
+    },
+    TOTAL_FIELD,
+];
 
 static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetSocialPosts,
@@ -53,11 +70,7 @@ static SPEC: ToolSpec = ToolSpec {
             description: "group of the author; the press writes as S1; the last field is present only on comments on \
                   your posts",
         },
-        ResultField {
-            name: "total",
-            kind: "integer",
-            description: "number of returned posts; absent if there are none",
-        },
+        TOTAL_FIELD,
     ],
     example: r#"{"limit": 1}"#,
 };
@@ -94,6 +107,17 @@ pub struct SocialPost {
     pub content: String,
     /// Number of the company's post, if this post is a comment.
     pub reply_to_agent_post_id: Option<u32>,
+    /// Author of the post; absent under release 2.
+    #[serde(flatten)]
+    pub author: Option<PostAuthor>,
+    /// Text of the company's post, if this post is a comment.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replying_to_your_post: Option<String>,
+}
+
+/// Author of a post of the social feed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PostAuthor {
     /// Group whose mood a comment on the company's post expresses.
     pub source_group_id: Option<Group>,
     /// Group of the author; the press appears as the first group.
@@ -104,9 +128,6 @@ pub struct SocialPost {
     pub custom_name: Option<String>,
     /// Name of the author's profile.
     pub persona_name: Option<Cow<'static, str>>,
-    /// Text of the company's post, if this post is a comment.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub replying_to_your_post: Option<String>,
 }
 
 impl Tool for GetSocialPosts {
@@ -146,9 +167,6 @@ impl Tool for GetSocialPosts {
 }
 
 fn to_social_post(post: &PublicPost, view: &ToolContext<'_>) -> SocialPost {
-    // The press appears as an individual of the first group.
-    let group = post.written_by.or_else(|| Group::at(0));
-    let company = group.is_some_and(Group::is_enterprise);
     let own_posts = &view.world().market.social.own;
     let answered = post.own_post.and_then(|number| own_posts.get(number as usize - 1));
     SocialPost {
@@ -156,11 +174,23 @@ fn to_social_post(post: &PublicPost, view: &ToolContext<'_>) -> SocialPost {
         day: post.day,
         content: post.content.clone(),
         reply_to_agent_post_id: post.own_post,
+        author: match view.params().fidelity.interface {
+            Interface::Release1 => Some(author(post)),
+            Interface::Release2 => None,
+        },
+        replying_to_your_post: answered.map(|answered_post| answered_post.content.clone()),
+    }
+}
+
+fn author(post: &PublicPost) -> PostAuthor {
+    // The press appears as an individual of the first group.
+    let group = post.written_by.or_else(|| Group::at(0));
+    let company = group.is_some_and(Group::is_enterprise);
+    PostAuthor {
         source_group_id: post.source_group,
         group_id: group,
         customer_type: if company { "large" } else { "small" },
         custom_name: None,
         persona_name: post.profile.clone(),
-        replying_to_your_post: answered.map(|answered_post| answered_post.content.clone()),
     }
 }

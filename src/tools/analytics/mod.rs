@@ -4,6 +4,7 @@ mod get_social_posts;
 mod set_targeted_dev_spend;
 mod set_targeted_ops_spend;
 
-pub use get_social_posts::{GetSocialPosts, PostLimit, SocialPost};
+pub(crate) use get_social_posts::RELEASE_2_FIELDS;
+pub use get_social_posts::{GetSocialPosts, PostAuthor, PostLimit, SocialPost};
 pub use set_targeted_dev_spend::SetTargetedDevSpend;
 pub use set_targeted_ops_spend::{SetTargetedOpsSpend, with_release_2_text};

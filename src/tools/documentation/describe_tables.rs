@@ -77,7 +77,7 @@ impl Tool for DescribeTables {
         view: &ToolContext<'_>,
         name_selection: NameSelection,
     ) -> Result<PlannedCall<TableDescriptions>, Rejection> {
-        let tables = view.session().tables();
+        let tables = view.session().tables(view.params().fidelity.interface);
         let known: Vec<&str> = tables.iter().map(|table| table.name).collect();
         let names = name_selection.resolve_names(&known, "table_names", "table_not_found")?;
         let entry = |table: &TableDocument| {

@@ -53,7 +53,7 @@ impl Tool for ListAllTables {
     }
 
     fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<TableList>, Rejection> {
-        let tables = view.session().tables();
+        let tables = view.session().tables(view.params().fidelity.interface);
         let tables: IndexMap<_, _> = tables.iter().map(|table| (table.name, table.description)).collect();
         Ok(PlannedCall::read_only(TableList { count: tables.len(), tables }))
     }

@@ -9,7 +9,7 @@ use super::super::{
 use novamind_world::command::ResolvedCommand;
 use novamind_world::events::Facts;
 use novamind_world::events::Reading;
-use novamind_world::params::Params;
+use novamind_world::params::{Interface, Params};
 use novamind_world::state::World;
 
 #[derive(Default)]
@@ -26,7 +26,7 @@ impl SessionContext for TestHost {
         String::new()
     }
 
-    fn tables(&self) -> Vec<TableDocument> {
+    fn tables(&self, _: Interface) -> Vec<TableDocument> {
         vec![
             TableDocument {
                 name: "ledger",

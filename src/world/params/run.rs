@@ -226,9 +226,10 @@ pub enum EnterpriseQualityCap {
 
 /// Generation of the released interface: columns of tables, results of tools, texts of notifications and HTTP routes
 /// (`docs/known-differences.md#the-two-releases`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interface {
     /// The release of 28 July 2026, revision d2b7b32.
+    #[default]
     #[serde(rename = "release_1")]
     Release1,
     /// The later revision 538ad2b7.

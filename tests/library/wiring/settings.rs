@@ -1,5 +1,6 @@
 //! Settings: undo, redo, the change review and the tables agree with the calls.
 
+use novamind::database::Interface;
 use novamind::record::trajectory::record::Via;
 use novamind::session::{Session, Storage};
 use novamind::tools::{CATALOGUE, ToolKind};
@@ -190,7 +191,7 @@ fn fractional_quotas_are_kept() {
 fn table_descriptions_have_types_and_possible_values() {
     let mut session = create(Storage::Memory, &[]);
     let described = call_tool(&mut session, "describe_tables", json!({}));
-    for table in novamind::database::tables() {
+    for table in novamind::database::tables(Interface::Release1) {
         let columns = &described["tables"][&table.name]["columns"];
         for column in &table.columns {
             let line =

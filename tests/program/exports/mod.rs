@@ -173,7 +173,7 @@ fn archive_database_opens_in_plain_sqlite() {
     let ask = |sql: &str| -> f64 {
         database.query_row(sql, [], |row| row.get(0)).unwrap_or_else(|e| panic!("{sql}: {e}"))
     };
-    for table in novamind::database::tables() {
+    for table in novamind::database::tables(novamind::database::Interface::Release1) {
         let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         ask(&format!("SELECT 1.0 * count(*) FROM (SELECT {} FROM {})", columns.join(", "), table.name));
     }

@@ -100,10 +100,18 @@ pub fn cost_row(pair: &LeadCost) -> Vec<TableCell> {
 /// Returns a query for the leads, spending and first bills of a channel and group by week.
 pub fn cost_query(channel: Channel, group: Group) -> String {
     let channel = channel.id();
+    // An individual pays on the first day, an enterprise on its next billing day.
+    let billed = match group.is_enterprise() {
+        true => {
+            "'Subscription payment from customer ' || c.customer_id IN\n            \
+             (SELECT note FROM ledger WHERE category = 'subscription_payment')"
+        }
+        false => "s.status IN ('subscribed', 'cancelled')",
+    };
     format!(
         "WITH bills AS (\n    SELECT (c.created_day + 6) / 7 AS week, count(*) AS first_bills\n    FROM customers c\n    \
          CROSS JOIN subscriptions s\n    WHERE c.group_id = '{group}' AND c.acquisition_source = '{channel}'\n        \
-         AND s.customer_id = c.customer_id AND s.first_billing_done = 1\n    GROUP BY 1\n)\nSELECT (day + 6) / 7 AS week, \
+         AND s.customer_id = c.customer_id\n        AND {billed}\n    GROUP BY 1\n)\nSELECT (day + 6) / 7 AS week, \
          sum(leads_generated) AS leads, sum(spend) AS spend,\n    round(sum(spend) / nullif(sum(leads_generated), 0), 2) AS \
          dollars_per_lead, b.first_bills,\n    round(sum(spend) / b.first_bills, 2) AS dollars_per_first_bill\n\
          FROM ad_channel_leads\nLEFT JOIN bills b ON b.week = (day + 6) / 7\nWHERE channel_id = '{channel}' AND group_id = \

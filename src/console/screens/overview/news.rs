@@ -143,8 +143,8 @@ pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
     for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
         let weeks = day.saturating_sub(post.day) / 7;
         match (post.kind, weeks) {
-            (Author::Customers | Author::Comments, 0) => number += 1,
-            (Author::Customers | Author::Comments, 1..=4) => before += 1,
+            (Author::Customers | Author::Public | Author::Comments, 0) => number += 1,
+            (Author::Customers | Author::Public | Author::Comments, 1..=4) => before += 1,
             (Author::Press, 0) => press += 1,
             _ => {}
         }

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use novamind_database::{QueryResult, number_at, text_at};
+use novamind_database::{Interface, QueryResult, number_at, text_at};
 pub use novamind_worker::posts::{Post, PostKind};
 
 /// Parses the player's posts from a query result.
@@ -51,11 +51,12 @@ impl PostFilter {
                 || post.heading().to_lowercase().contains(&wanted))
     }
 
-    /// Selects the next kind of author. After the last kind, selects all kinds.
-    pub fn next_kind(&mut self) {
+    /// Selects the next kind of author that a release publishes. After the last kind, selects all kinds.
+    pub fn next_kind(&mut self, interface: Interface) {
+        let mut kinds = PostKind::all(interface).iter().copied();
         self.kind = match self.kind {
-            None => PostKind::ALL.first().copied(),
-            Some(kind) => PostKind::ALL.iter().copied().find(|post_kind| *post_kind > kind),
+            None => kinds.next(),
+            Some(kind) => kinds.find(|post_kind| *post_kind > kind),
         };
     }
 
@@ -84,7 +85,7 @@ fn is_in_thread(post: &Post, (number, answered): (u32, Option<u32>)) -> bool {
     match post.kind {
         PostKind::Own => post.number == number,
         PostKind::Comments => post.answered_post == Some(number),
-        PostKind::Customers | PostKind::Press => Some(post.number) == answered,
+        PostKind::Customers | PostKind::Press | PostKind::Public => Some(post.number) == answered,
     }
 }
 
@@ -163,11 +164,11 @@ mod tests {
         assert!(!filter.matches(&customer_post));
         filter.earlier_week(4);
         filter.text = "wORDS".to_owned();
-        filter.next_kind();
+        filter.next_kind(Interface::Release1);
         assert!(filter.matches(&customer_post));
         assert_eq!(filter.label(), "customers · week 3 · \"wORDS\"");
         for _ in 0..4 {
-            filter.next_kind();
+            filter.next_kind(Interface::Release1);
         }
         filter.later_week(3);
         assert_eq!((filter.kind, filter.week), (None, None));

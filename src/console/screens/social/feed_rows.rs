@@ -93,7 +93,7 @@ fn rows_of_post(posts: &[&Post], place: usize, width: usize) -> Vec<FeedRow> {
     let role = match post.kind {
         PostKind::Own => Role::Strong,
         PostKind::Press => Role::Title,
-        PostKind::Customers | PostKind::Comments => Role::Dim,
+        PostKind::Customers | PostKind::Public | PostKind::Comments => Role::Dim,
     };
     rows.push(FeedRow { text: format!("{mark}{}", post.heading()), role, post_index: Some(place) });
     let lines = wrap(&post.text, width.saturating_sub(indent.len()));

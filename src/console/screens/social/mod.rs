@@ -21,7 +21,7 @@ use crate::action::Action;
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use novamind_base::formatting::grouped_number;
-use novamind_database::QueryResult;
+use novamind_database::{Interface, QueryResult};
 use novamind_report::post_leads::lead_lines_around;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, truncate_to_width};
@@ -225,11 +225,11 @@ impl Social {
         (self.draft, self.reply_to) = (TextEditor::with_text(text), answers);
     }
 
-    fn change_filter(&mut self, action: Action) {
+    fn change_filter(&mut self, action: Action, interface: Interface) {
         let last = self.last_week();
         self.focus = SocialPane::Feed;
         match action {
-            Action::NextKind => self.filter.next_kind(),
+            Action::NextKind => self.filter.next_kind(interface),
             Action::EarlierWeek => self.filter.earlier_week(last),
             _ => self.filter.later_week(last),
         }
@@ -338,7 +338,9 @@ impl PaneScreen for Social {
             Action::SendPost => return Some(self.check_post(context)),
             Action::ClearReply => self.reply_to = None,
             Action::LeaveEditor => self.editing = false,
-            Action::NextKind | Action::EarlierWeek | Action::LaterWeek => self.change_filter(action),
+            Action::NextKind | Action::EarlierWeek | Action::LaterWeek => {
+                self.change_filter(action, context.company.numbers.interface());
+            }
             _ => return None,
         }
         Some(Vec::new())
@@ -379,15 +381,20 @@ impl PaneScreen for Social {
 impl Social {
     fn draw_weekly_counts(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let last = self.last_week();
-        let people = feed::posts_by_week(&self.others, last, |kind| kind == PostKind::Customers);
+        let is_of_people = |kind| matches!(kind, PostKind::Customers | PostKind::Public);
+        let people = feed::posts_by_week(&self.others, last, is_of_people);
         let press = feed::posts_by_week(&self.others, last, |kind| kind == PostKind::Press);
         let now = |points: &[(f64, f64)]| points.last().map_or(0.0, |point| point.1);
-        let note = format!("customers {} · press {}", now(&people), now(&press));
+        let authors_are_known = !self.others.iter().any(|post| post.kind == PostKind::Public);
+        let note = match authors_are_known {
+            true => format!("customers {} · press {}", now(&people), now(&press)),
+            false => format!("posts {}", now(&people)),
+        };
         let inside = canvas.draw_pane_frame(area, "Posts by week", &note, false);
-        let lines = [
-            Curve::from_points(people, Role::Series(0)),
-            Curve { is_scatter: true, ..Curve::from_points(press, Role::Series(1)) },
-        ];
+        let mut lines = vec![Curve::from_points(people, Role::Series(0))];
+        if authors_are_known {
+            lines.push(Curve { is_scatter: true, ..Curve::from_points(press, Role::Series(1)) });
+        }
         let x = XAxis { format: &|week| format!("week {week:.0}"), required_values: &[] };
         draw_chart(canvas, inside, &lines, &x, &YAxis { unit: AxisUnit::Number, required_values: &[0.0] });
     }

@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 
 use crate::action::Action;
 use crate::screens::panes::PanePlacement;
-use novamind_database::{Column, Table, hidden_tables, tables};
+use novamind_database::{Column, Interface, Table, hidden_tables, tables};
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -17,13 +17,16 @@ use novamind_tui::widgets::table::first_visible_row;
 const XRAY_LABEL: &str = "x-ray";
 
 /// Returns the table with an index. The indexes of x-ray tables follow the indexes of public tables.
-fn table_at(at: usize) -> &'static Table {
-    tables().get(at).unwrap_or_else(|| &hidden_tables()[at - tables().len()])
+fn table_at(interface: Interface, at: usize) -> &'static Table {
+    let visible = tables(interface);
+    visible.get(at).unwrap_or_else(|| &hidden_tables()[at - visible.len()])
 }
 
 /// The tree of tables and columns, with its selection and filter.
 #[derive(Debug, Default)]
 pub struct TableBrowser {
+    /// Release whose tables are shown.
+    pub interface: Interface,
     /// Whether x-ray tables are shown below the public tables.
     pub shows_hidden: bool,
     open: BTreeSet<usize>,
@@ -35,13 +38,14 @@ pub struct TableBrowser {
 /// A row of the tree: a table or one of its columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BrowserRow {
+    interface: Interface,
     table: usize,
     column: Option<usize>,
 }
 
 impl BrowserRow {
     pub fn table(self) -> &'static Table {
-        table_at(self.table)
+        table_at(self.interface, self.table)
     }
 
     pub fn column(self) -> Option<&'static Column> {
@@ -59,14 +63,15 @@ impl TableBrowser {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
         let mut entries = Vec::new();
-        let count = tables().len() + if self.shows_hidden { hidden_tables().len() } else { 0 };
-        for (at, table) in (0..count).map(|at| (at, table_at(at))) {
+        let interface = self.interface;
+        let count = tables(interface).len() + if self.shows_hidden { hidden_tables().len() } else { 0 };
+        for (at, table) in (0..count).map(|at| (at, table_at(interface, at))) {
             let found = |column: usize| !wanted.is_empty() && holds(&table.columns[column].name);
             let columns = (0..table.columns.len()).filter(|number| self.open.contains(&at) || found(*number));
             let columns: Vec<usize> = columns.collect();
             if holds(&table.name) || !columns.is_empty() {
-                entries.push(BrowserRow { table: at, column: None });
-                entries.extend(columns.into_iter().map(|column| BrowserRow { table: at, column: Some(column) }));
+                entries.push(BrowserRow { interface, table: at, column: None });
+                entries.extend(columns.into_iter().map(|column| BrowserRow { interface, table: at, column: Some(column) }));
             }
         }
         entries
@@ -121,7 +126,7 @@ impl TableBrowser {
             self.open.insert(entry.table);
         } else {
             self.open.remove(&entry.table);
-            let head = BrowserRow { table: entry.table, column: None };
+            let head = BrowserRow { column: None, ..entry };
             self.selected = self.visible_rows().iter().position(|browser_row| *browser_row == head).unwrap_or(0);
         }
     }
@@ -196,7 +201,7 @@ impl TableBrowser {
                 let mark = if self.open.contains(&entry.table) { "▾" } else { "▸" };
                 canvas.draw_text(row, &format!("{mark} {}", entry.name()), over.unwrap_or(Role::Strong));
                 let taken = entry.name().len() as u16 + 2;
-                if entry.table >= tables().len() && row.width > taken + XRAY_LABEL.len() as u16 {
+                if entry.table >= tables(self.interface).len() && row.width > taken + XRAY_LABEL.len() as u16 {
                     canvas.draw_aligned(row, XRAY_LABEL, over.unwrap_or(Role::Warning), Align::Right);
                 }
             }
@@ -239,7 +244,7 @@ mod tests {
         let mut browser = TableBrowser::default();
         assert_eq!(browser.visible_rows().len(), 19);
         browser.handle_action(Action::Right, 5);
-        assert_eq!(browser.visible_rows().len(), 19 + tables()[0].columns.len());
+        assert_eq!(browser.visible_rows().len(), 19 + tables(Interface::Release1)[0].columns.len());
         browser.handle_action(Action::Down, 5);
         assert_eq!(browser.selected().map(BrowserRow::name), Some("customer_id"));
         browser.handle_action(Action::Left, 5);

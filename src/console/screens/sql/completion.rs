@@ -1,7 +1,7 @@
 //! Completion of SQL: columns of the tables in the statement, tables, keywords, functions.
 
 use novamind_database::catalogue::{Column, Table};
-use novamind_database::{table, tables};
+use novamind_database::{Interface, table, tables};
 use novamind_tui::sql::{FUNCTIONS, KEYWORDS, TokenKind, Token, is_identifier_char, statement_at, tokenize};
 
 /// A suggestion for the word at the cursor.
@@ -30,9 +30,9 @@ struct NamedTable {
     table: &'static Table,
 }
 
-/// Returns the suggestions at a byte offset. Returns `None` if the word is shorter than `least`, unless the word
+/// Returns the suggestions at a byte offset, with the tables of a release. Returns `None` if the word is shorter than `least`, unless the word
 /// follows a period.
-pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
+pub fn complete(sql: &str, place: usize, least: usize, interface: Interface) -> Option<Completion> {
     let (range, ..) = statement_at(sql, place);
     let start = range.start.min(place);
     let statement = &sql[start..range.end.max(place)];
@@ -54,14 +54,14 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
         .last()
         .map_or(place, |(at, _)| at);
     let word = &before[word_start..];
-    let sources = sources(statement, &pieces);
+    let sources = sources(statement, &pieces, interface);
     let found = match before[..word_start].strip_suffix('.') {
         Some(rest) => {
             let name = rest.rsplit(|letter| !is_identifier_char(letter)).next().unwrap_or_default();
-            source_candidates(name, &sources)?
+            source_candidates(name, &sources, interface)?
         }
         None if word.chars().count() < least.max(1) => return None,
-        None => all_candidates(statement, &pieces, word_start, &sources),
+        None => all_candidates(statement, &pieces, word_start, &sources, interface),
     };
     let candidates = filter_candidates(found, word);
     let finished = candidates.first().is_some_and(|first| first.word.trim_end_matches('(') == word);
@@ -81,27 +81,33 @@ fn table_candidate(table: &Table) -> Candidate {
 }
 
 /// Returns the columns of the table that has a name or alias in the statement, or a name in the database.
-fn source_candidates(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
+fn source_candidates(name: &str, sources: &[NamedTable], interface: Interface) -> Option<Vec<Candidate>> {
     let named_source = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
-    let meant = named_source.or_else(|| table(name))?;
+    let meant = named_source.or_else(|| table(interface, name))?;
     Some(meant.columns.iter().map(|column| column_candidate(meant, column)).collect())
 }
 
 /// Returns the suggestions for a word that does not follow a period.
-fn all_candidates(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
+fn all_candidates(
+    sql: &str,
+    pieces: &[Token],
+    word_start: usize,
+    sources: &[NamedTable],
+    interface: Interface,
+) -> Vec<Candidate> {
     let is_before_word = |token: &&Token| token.kind != TokenKind::Comment && token.range.end <= word_start;
     let last = pieces.iter().rev().find(is_before_word).map(|token| sql[token.range.clone()].to_uppercase());
     let wants_table = last.is_some_and(|word| word == "FROM" || word == "JOIN");
     let names = cte_names(sql, pieces)
         .into_iter()
         .map(|word| Candidate { word, description: "in this statement".to_owned() });
-    let all_tables = tables().iter().map(table_candidate);
+    let all_tables = tables(interface).iter().map(table_candidate);
     if wants_table {
         return names.chain(all_tables).collect();
     }
     let columns_of = |table: &'static Table| table.columns.iter().map(move |column| column_candidate(table, column));
     let near = sources.iter().flat_map(|source| columns_of(source.table));
-    let far = tables().iter().filter(|_| sources.is_empty()).flat_map(columns_of);
+    let far = tables(interface).iter().filter(|_| sources.is_empty()).flat_map(columns_of);
     let small = uses_lowercase_keywords(sql, pieces);
     let keyword = |word: &&str| Candidate {
         word: if small { word.to_lowercase() } else { (*word).to_owned() },
@@ -141,12 +147,12 @@ fn filter_candidates(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
 }
 
 /// Returns the tables in a statement, with their aliases.
-fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
+fn sources(sql: &str, pieces: &[Token], interface: Interface) -> Vec<NamedTable> {
     let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.range.clone()]);
     let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == TokenKind::Identifier);
     let mut found = Vec::new();
     for at in (0..pieces.len()).filter(|at| is_name(*at)) {
-        let Some(table) = table(text(at).trim_matches(['"', '`', '[', ']'])) else { continue };
+        let Some(table) = table(interface, text(at).trim_matches(['"', '`', '[', ']'])) else { continue };
         let alias = match text(at + 1).eq_ignore_ascii_case("as") {
             true => at + 2,
             false => at + 1,
@@ -177,7 +183,7 @@ mod tests {
     fn suggested_words(marked: &str) -> Vec<String> {
         let place = marked.find('|').expect("a mark");
         let sql = marked.replace('|', "");
-        let found = complete(&sql, place, 2);
+        let found = complete(&sql, place, 2, Interface::Release1);
         found.map_or_else(Vec::new, |all| all.candidates.into_iter().map(|one| one.word).collect())
     }
 
@@ -191,7 +197,7 @@ mod tests {
     #[test]
     fn an_alias_limits_the_columns_to_its_table() {
         let all = suggested_words("SELECT s.| FROM subscriptions s JOIN customers AS c");
-        assert_eq!(all.len(), table("subscriptions").expect("a table").columns.len());
+        assert_eq!(all.len(), table(Interface::Release1, "subscriptions").expect("a table").columns.len());
         assert_eq!(suggested_words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
         assert_eq!(suggested_words("SELECT customers.em|"), ["email"]);
         assert!(suggested_words("SELECT x.| FROM customers c").is_empty());
@@ -225,6 +231,6 @@ mod tests {
         {
             assert!(suggested_words(marked).is_empty(), "{marked}");
         }
-        assert!(complete("s", 1, 1).is_some());
+        assert!(complete("s", 1, 1, Interface::Release1).is_some());
     }
 }

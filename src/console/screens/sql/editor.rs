@@ -6,6 +6,7 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::completion::{Completion, complete};
+use novamind_database::Interface;
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::sql::{is_identifier_char, statement_at, tokenize};
 use novamind_tui::theme::Role;
@@ -26,6 +27,8 @@ pub struct Statement {
 }
 
 pub struct QueryEditor {
+    /// Release whose tables are suggested.
+    pub interface: Interface,
     text: TextEditor,
     completion: Option<Completion>,
     error_offset: Option<usize>,
@@ -33,7 +36,12 @@ pub struct QueryEditor {
 
 impl Default for QueryEditor {
     fn default() -> Self {
-        QueryEditor { text: TextEditor::default().without_wrapping(), completion: None, error_offset: None }
+        QueryEditor {
+            interface: Interface::default(),
+            text: TextEditor::default().without_wrapping(),
+            completion: None,
+            error_offset: None,
+        }
     }
 }
 
@@ -125,7 +133,11 @@ impl QueryEditor {
         if !moved_only && (before != self.text.cursor() || count != self.text.lines().len()) {
             self.error_offset = None;
         }
-        self.completion = if types { complete(&self.text(), self.cursor_offset(), MIN_TYPED_CHARS) } else { None };
+        self.completion = if types { self.complete(MIN_TYPED_CHARS) } else { None };
+    }
+
+    fn complete(&self, least: usize) -> Option<Completion> {
+        complete(&self.text(), self.cursor_offset(), least, self.interface)
     }
 
     pub fn paste(&mut self, text: &str) {
@@ -136,7 +148,7 @@ impl QueryEditor {
     /// Inserts the selected suggestion. If no suggestions are open, shows suggestions. If there are no suggestions,
     /// inserts spaces at the cursor up to the next multiple of four columns.
     pub fn accept_or_offer_completion(&mut self) {
-        match self.completion.take().or_else(|| complete(&self.text(), self.cursor_offset(), 1)) {
+        match self.completion.take().or_else(|| self.complete(1)) {
             Some(completion) => {
                 let chosen = &completion.candidates[completion.selected];
                 self.text.delete_before_cursor(completion.typed_chars);

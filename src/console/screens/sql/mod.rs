@@ -188,6 +188,8 @@ impl ScreenState for Sql {
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
         self.can_inspect = context.company.can_inspect;
         self.browser.shows_hidden = self.can_inspect;
+        self.browser.interface = context.company.numbers.interface();
+        self.editor.interface = self.browser.interface;
     }
 
     fn own_escape_depth(&self) -> usize {

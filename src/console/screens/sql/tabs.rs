@@ -6,7 +6,7 @@ use unicode_width::UnicodeWidthStr;
 
 use super::picker::single_line;
 use super::results::ResultView;
-use novamind_database::{QueryResult, table};
+use novamind_database::{Interface, QueryResult, table};
 use novamind_record::folder::query_library::{QueryHeader, strip_header};
 use novamind_tools::Rejection;
 use novamind_tui::canvas::{Canvas, Click};
@@ -194,7 +194,7 @@ fn tab_title(sql: &str) -> String {
     if let Some(title) = QueryHeader::parse(sql).title {
         return short(title);
     }
-    let named = tokenize(sql).into_iter().find_map(|token| table(&sql[token.range]));
+    let named = tokenize(sql).into_iter().find_map(|token| table(Interface::Release1, &sql[token.range]));
     short(named.map_or_else(|| single_line(strip_header(sql)), |table| table.name.clone()))
 }
 

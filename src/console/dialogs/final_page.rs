@@ -196,7 +196,10 @@ impl FinalPage {
             parts.push(ranking_lines(canvas, &standing, width, best, roomy));
         }
         parts.push(match &self.story {
-            Some(report) => measure_lines(canvas, &report.measures, width, roomy, published),
+            Some(report) => {
+                let shares = published_targeted_shares(company.observation.generation).filter(|_| published);
+                measure_lines(canvas, &report.measures, width, roomy, shares)
+            }
             None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],
         });
         if roomy
@@ -337,16 +340,15 @@ fn measure_lines<'a>(
     measures: &BehaviorMeasures,
     width: u16,
     roomy: bool,
-    published: bool,
+    published_shares: Option<(f64, f64)>,
 ) -> Vec<TextLine<'a>> {
     let room = (width as usize).saturating_sub(NAME_WIDTH);
     let long = if roomy { 2 * room } else { room };
-    let (least, most) = published_targeted_shares();
-    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| match published {
-        true => {
+    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| match published_shares {
+        Some((least, most)) => {
             format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
         }
-        false => percent(share, 0),
+        None => percent(share, 0),
     });
     let planning = format!("{:.1} planning words", measures.planning.planning_each);
     let words = measures.planning.words_each;

@@ -238,11 +238,14 @@ impl Ranking {
     /// Describes the rank of the run, or the reasons why it is not ranked.
     pub fn describe(&self) -> String {
         match self.rank {
-            Some(rank) => format!("rank {rank} of {} among the published results", self.entries.len()),
+            Some(rank) => {
+                let generation = self.generation.name();
+                format!("rank {rank} of {} among the published results of {generation}", self.entries.len())
+            }
             None if !self.obstacles.is_empty() => {
                 format!("not ranked: {}", describe_obstacles(&self.obstacles))
             }
-            None => "the published results".to_owned(),
+            None => format!("the published results of {}", self.generation.name()),
         }
     }
 }
@@ -336,7 +339,7 @@ mod tests {
         assert_eq!(seen.scenario, "default");
         let good = rank_score(Some(14_208_331.0), &seen);
         assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
-        assert_eq!(good.describe(), "rank 2 of 18 among the published results");
+        assert_eq!(good.describe(), "rank 2 of 18 among the published results of release 1");
         let names: Vec<&str> = good.top_and_neighbors(1, 1).iter().map(|place| place.name.as_str()).collect();
         assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
         let ruined = rank_score(Some(0.0), &seen);

@@ -301,7 +301,7 @@ fn ranking_lines<'a>(
     roomy: bool,
 ) -> Vec<TextLine<'a>> {
     let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
-    let room = (width as usize).saturating_sub(39).min(50);
+    let room = (width as usize).saturating_sub(49).min(50);
     let mut lines: Vec<TextLine<'a>> = wrap(&standing.describe(), width as usize)
         .into_iter()
         .map(|line| TextLine::from(canvas.span(line, Role::Header)))
@@ -312,7 +312,8 @@ fn ranking_lines<'a>(
         let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![
             canvas.span(if is_this_run { "▌ " } else { "  " }, role),
-            canvas.span(format!("{:<21}{:>12}  ", place.name, grouped_number(place.cash, 0)), role),
+            canvas.span(format!("{:<21}{:>12}", place.name, grouped_number(place.cash, 0)), role),
+            canvas.span(format!("{:>10}  ", format_days(place.horizon_days)), Role::Dim),
             canvas.span(bar, if is_this_run { Role::Good } else { Role::Series(0) }),
         ]));
     }
@@ -333,6 +334,11 @@ fn ranking_lines<'a>(
         }
     }
     lines
+}
+
+/// Formats the last day of a ranked result: `504 days`, or nothing if it is not published.
+fn format_days(days: Option<u32>) -> String {
+    days.map_or(String::new(), |days| format!("{days} days"))
 }
 
 fn measure_lines<'a>(

@@ -19,7 +19,9 @@ use novamind_report::ranking::{
     PublishedAgent, PublishedGeneration, PublishedTable, compare_results, count_published_below,
     published_results,
 };
-use novamind_report::ranking_eligibility::{PUBLISHED_SEED, RankingObstacle, explain_unranked_runs};
+use novamind_report::ranking_eligibility::{
+    PUBLISHED_DAYS, PUBLISHED_SEED, PUBLISHED_WHOLE_WEEKS, RankingObstacle, explain_unranked_runs,
+};
 use novamind_session::Session;
 use novamind_world::params::Interface;
 
@@ -284,7 +286,7 @@ fn best_run<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
 
 fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
     let best = best_run(runs)?;
-    let lives: Vec<f64> = runs.iter().map(|run| f64::from(run.survival_days)).collect();
+    let lives: Vec<f64> = runs.iter().map(|run| published_survival(run)).collect();
     let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
     Some(ResultsRow {
         name,
@@ -301,6 +303,13 @@ fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> O
         calls_per_week: Some(SampleStatistics::from_values(&calls).mean),
         beaten_count: count_published_below(best.score, best.generation).map(|(below, _)| below),
     })
+}
+
+/// Returns the survival of a run in days. As in the published tables, a run that survived its whole weeks counts as a
+/// run that survived to [`PUBLISHED_DAYS`].
+fn published_survival(run: &FinishedRun) -> f64 {
+    let is_whole = !run.is_bankrupt && run.days == PUBLISHED_WHOLE_WEEKS;
+    f64::from(if is_whole { PUBLISHED_DAYS } else { run.survival_days })
 }
 
 /// Returns the population standard deviation, as in the published tables.
@@ -472,5 +481,11 @@ mod tests {
         assert_eq!(of(PublishedGeneration::NotStated), not_stated);
         assert_eq!(table.rows[first.len()].name, "P01", "the rows of a generation are together");
         assert!(table.notes.iter().any(|note| note.starts_with("No results of release 2")));
+        // Published runs that survived to day 497 have a survival of 500 days.
+        let weeks =
+            FinishedRun { days: 497, is_bankrupt: false, ..finished_run("w1", Some("P02"), 1e6, 497) };
+        let table = ResultsTable::new(&[weeks], &[], &idle, ResultsGrouping::Participant);
+        let row = find_row(&table, "P02");
+        assert_eq!((row.max_survival_days, row.horizon_days.as_slice()), (Some(500.0), &[497][..]));
     }
 }

@@ -107,7 +107,7 @@ impl StartMenu {
 fn source_text() -> String {
     let bound = compact_number(published_results().estimated_upper_bound);
     format!(
-        "{}, best cash of three runs each. Estimated upper bound: ${bound}. {}.",
+        "{}, best cash of three runs each.\nEstimated upper bound: ${bound}. {}.",
         describe_published_conditions(),
         published_results().explain_unranked_agents()
     )

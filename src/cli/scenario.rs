@@ -43,9 +43,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 .map_err(|error| Failure::failed(format!("cannot write the parameters: {error}")))?;
             let (days, cash) = scenario.days_and_cash_with(&params);
             print(&format!(
-                "# {}: {}\n# {days} days, {} at the start; digest {}\n\n{table}",
+                "# {}: {}\n# {} days, {} at the start; digest {}\n\n{table}",
                 scenario.title,
                 scenario.description,
+                params.run.horizon(days).last_day,
                 crate::formatting::dollars(cash),
                 params.digest()
             ))

@@ -5,11 +5,11 @@ mod charts;
 use super::formatting::{describe_cash_change, describe_origin, format_money, format_whole, pluralize};
 use super::measures::{BehaviorMeasures, MIN_CHANNEL_LEADS, PLANNING_WORDS};
 use super::page::{Bar, Block, NamedValue, Page, Table};
-use super::ranking::{ResultOrigin, published_targeted_shares};
+use super::ranking::{ResultOrigin, published_results, published_targeted_shares};
 use super::run_report::{Bankruptcy, RunReport};
 use novamind_base::formatting::{capitalize, grouped_number, percent, signed_dollars};
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_session::RecordedModelSettings;
+use novamind_session::{HorizonRule, RecordedModelSettings};
 
 pub fn report_page(report: &RunReport) -> Page {
     let seen = &report.observation;
@@ -28,14 +28,19 @@ pub fn report_page(report: &RunReport) -> Page {
     blocks.extend(highlight_blocks(report));
     blocks.extend(customer_blocks(report));
     blocks.extend(forecast_blocks(report));
-    blocks.extend(behavior_blocks(&report.measures, report.shows_published_results()));
+    let shares = published_targeted_shares(seen.generation).filter(|_| report.shows_published_results());
+    blocks.extend(behavior_blocks(&report.measures, shares));
     blocks.extend(decision_blocks(report));
     let mut tags = vec![
         format!("run {}", seen.run),
         format!("{} days", format_whole(f64::from(seen.last_day))),
         format!("scenario {}", seen.scenario),
+        seen.generation.name().to_owned(),
         format!("{} mode", seen.mode),
     ];
+    if seen.horizon_rule != HorizonRule::Exact {
+        tags.push(format!("horizon rule {}", seen.horizon_rule.name()));
+    }
     tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
     tags.extend(seen.voice.iter().map(RecordedModelSettings::describe));
     tags.extend(report.origin.iter().map(describe_origin));
@@ -129,7 +134,7 @@ fn ranking_blocks(report: &RunReport) -> Vec<Block> {
     let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
     let bar = |place: &super::ranking::RankedResult| Bar {
         name: place.name.clone(),
-        value_text: format_money(place.cash),
+        value_text: describe_place(place),
         share: (place.cash / most).clamp(0.0, 1.0),
         is_highlighted: place.owner == ResultOrigin::ThisRun,
     };
@@ -142,14 +147,21 @@ fn ranking_blocks(report: &RunReport) -> Vec<Block> {
                  runs of each agent."
             .to_owned(),
     };
-    let mut blocks = vec![
-        Block::Heading("Comparison with published results"),
-        Block::Text(text),
-        Block::Bars(standing.entries.iter().map(bar).collect()),
-    ];
-    blocks.extend(standing.caveat.clone().map(Block::Note));
-    blocks.push(Block::Note(format!("Source: {}.", standing.source)));
+    let mut blocks = vec![Block::Heading("Comparison with published results"), Block::Text(text)];
+    if let Some(source) = &standing.source {
+        blocks.push(Block::Bars(standing.entries.iter().map(bar).collect()));
+        blocks.extend(standing.caveat.clone().map(Block::Note));
+        let (generation, all) = (standing.generation.name(), published_results());
+        blocks.push(Block::Note(format!("All results are of {generation}. Source: {source}.")));
+        blocks.push(Block::Note(format!("{}.", all.explain_unranked_agents())));
+    }
     blocks
+}
+
+/// Describes cash and last day of a ranked result: `$12,630,078 · 504 days`.
+fn describe_place(place: &super::ranking::RankedResult) -> String {
+    let days = place.horizon_days.map_or(String::new(), |days| format!(" · {days} days"));
+    format!("{}{days}", format_money(place.cash))
 }
 
 fn highlight_blocks(report: &RunReport) -> Vec<Block> {
@@ -259,10 +271,9 @@ fn format_leads_per_thousand(leads: f64) -> String {
     grouped_number(leads, if leads < 1.0 { 3 } else { 1 })
 }
 
-fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
+fn behavior_blocks(measures: &BehaviorMeasures, published_shares: Option<(f64, f64)>) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Behavior of the player")];
     let none = || "–".to_owned();
-    let (least, most) = published_targeted_shares();
     let planning = &measures.planning;
     blocks.push(Block::Facts(vec![
         NamedValue::new(
@@ -279,10 +290,9 @@ fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
         NamedValue::new(
             "Targeted development",
             measures.targeted_development.map_or_else(none, |share| percent(share, 0)),
-            match published {
-                true => format!("published agents {} to {}", percent(least, 0), percent(most, 0)),
-                false => String::new(),
-            },
+            published_shares.map_or(String::new(), |(least, most)| {
+                format!("published agents {} to {}", percent(least, 0), percent(most, 0))
+            }),
         ),
         NamedValue::new(
             "Calls per week",

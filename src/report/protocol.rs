@@ -54,7 +54,7 @@ fn scenario_section(study: &Study, configuration: &Configuration) -> Result<Stri
         let (own_days, own_cash) = configuration.days_and_cash(&scenario, false)?;
         Ok(format!(
             "scenario {name}, {} days, {} on day 0, parameters {}",
-            grouped_number(f64::from(days.unwrap_or(own_days)), 0),
+            grouped_number(f64::from(params.run.horizon(days.unwrap_or(own_days)).last_day), 0),
             dollars(cash.unwrap_or(own_cash)),
             params.digest()
         ))

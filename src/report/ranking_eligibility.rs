@@ -7,17 +7,21 @@ use super::ranking::published_results;
 use novamind_record::folder::configuration::DEFAULT_SCENARIO;
 use novamind_record::folder::runs::RunSummary;
 use novamind_record::mode::Mode;
-use novamind_session::Observation;
+use novamind_session::{Generation, HorizonRule, Observation};
 
-/// Last day of the published runs.
+/// Day of which the cash is published.
 pub const PUBLISHED_DAYS: u32 = 500;
+
+/// Last day of most published runs, whose agents' programs play whole weeks. Their last cash counts as the cash of
+/// [`PUBLISHED_DAYS`].
+pub const PUBLISHED_WHOLE_WEEKS: u32 = 497;
 
 /// Seed of the published runs.
 pub const PUBLISHED_SEED: u64 = 42;
 
-/// Scenarios with the rules of the published results: the default scenario for any seed, and the scenario of the
-/// published seed.
-const COMPARABLE_SCENARIOS: [&str; 2] = [DEFAULT_SCENARIO, "reference-seed42"];
+/// Scenarios with the rules of a generation: the default scenario for any seed, the scenario of the published seed, and
+/// the scenario of release 2.
+const COMPARABLE_SCENARIOS: [&str; 3] = [DEFAULT_SCENARIO, "reference-seed42", "release-2"];
 
 /// Properties that decide whether a run can be ranked among the published results.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +30,10 @@ pub struct RankingCriteria<'a> {
     pub days: u32,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
+    /// Rule that derived the last day.
+    pub horizon_rule: HorizonRule,
+    /// Generation of the released simulator whose rules the run has.
+    pub generation: Generation,
     /// Name of the scenario.
     pub scenario: &'a str,
     /// Whether the parameters differ, or differed on some days, from the bundled scenario of the same name.
@@ -45,6 +53,8 @@ impl<'a> RankingCriteria<'a> {
     pub fn from_observation(seen: &'a Observation) -> RankingCriteria<'a> {
         RankingCriteria {
             days: seen.last_day,
+            horizon_rule: seen.horizon_rule,
+            generation: seen.generation,
             start_cash: seen.starting_cash,
             scenario: &seen.scenario,
             has_changed_parameters: seen.has_own_parameters,
@@ -59,6 +69,8 @@ impl<'a> RankingCriteria<'a> {
     pub fn from_summary(run: &'a RunSummary) -> RankingCriteria<'a> {
         RankingCriteria {
             days: run.days,
+            horizon_rule: run.horizon_rule,
+            generation: run.generation,
             start_cash: run.starting_cash,
             scenario: &run.scenario,
             has_changed_parameters: run.has_own_parameters,
@@ -73,6 +85,8 @@ impl<'a> RankingCriteria<'a> {
     pub fn from_logbook(book: &'a Logbook) -> RankingCriteria<'a> {
         RankingCriteria {
             days: book.days,
+            horizon_rule: book.horizon_rule,
+            generation: book.generation,
             start_cash: book.start_cash,
             scenario: &book.scenario,
             has_changed_parameters: book.has_own_parameters,
@@ -83,6 +97,16 @@ impl<'a> RankingCriteria<'a> {
         }
     }
 
+    /// Returns whether the last day and the calendar of competitor events equal those of published runs.
+    fn has_published_length(&self) -> bool {
+        match self.days {
+            PUBLISHED_DAYS => true,
+            // A rounded-up run of 497 days can be scaled by a smaller length.
+            PUBLISHED_WHOLE_WEEKS => self.horizon_rule != HorizonRule::WholeWeeksAbove,
+            _ => false,
+        }
+    }
+
     /// Returns the reasons why the run cannot be ranked, or an empty list if it can be ranked. A different seed is not
     /// an obstacle.
     pub fn obstacles(&self) -> Vec<RankingObstacle> {
@@ -90,7 +114,10 @@ impl<'a> RankingCriteria<'a> {
         if self.is_lesson {
             obstacles.push(RankingObstacle::Lesson);
         }
-        if self.days != PUBLISHED_DAYS {
+        if published_results().table_of(self.generation).is_none() {
+            obstacles.push(RankingObstacle::Generation(self.generation));
+        }
+        if !self.has_published_length() {
             obstacles.push(RankingObstacle::Length(self.days));
         }
         if self.start_cash != published_results().start_cash {
@@ -120,6 +147,8 @@ impl<'a> RankingCriteria<'a> {
 pub enum RankingObstacle {
     /// The run belongs to a lesson.
     Lesson,
+    /// Generation of the run, of which no results are published.
+    Generation(Generation),
     /// Number of days of the run, which differs from the length of the published runs.
     Length(u32),
     /// Starting cash of the run in dollars, which differs from the starting cash of the published runs.
@@ -141,6 +170,9 @@ impl RankingObstacle {
     pub fn describe(&self) -> String {
         match self {
             RankingObstacle::Lesson => "part of a lesson".to_owned(),
+            RankingObstacle::Generation(generation) => {
+                format!("no published results of {}", generation.name())
+            }
             RankingObstacle::Length(days) => {
                 format!("{} days instead of {PUBLISHED_DAYS}", format_whole(f64::from(*days)))
             }
@@ -162,6 +194,7 @@ impl RankingObstacle {
     fn plural_description(&self) -> &'static str {
         match self {
             RankingObstacle::Lesson => "part of a lesson",
+            RankingObstacle::Generation(_) => "no published results of their generation",
             RankingObstacle::Length(_) => "different length",
             RankingObstacle::StartCash(_) => "different starting cash",
             RankingObstacle::Scenario(_) => "different scenario",
@@ -220,6 +253,8 @@ mod tests {
 
     const COMPARABLE_RUN: RankingCriteria<'static> = RankingCriteria {
         days: 500,
+        horizon_rule: HorizonRule::Exact,
+        generation: Generation::Release1,
         start_cash: 1_000_000.0,
         scenario: "default",
         has_changed_parameters: false,
@@ -237,6 +272,20 @@ mod tests {
             (RankingCriteria { scenario: "paper", ..COMPARABLE_RUN }, "scenario paper"),
             (RankingCriteria { scenario: "competitor-off", ..COMPARABLE_RUN }, "scenario competitor-off"),
             (RankingCriteria { days: 28, ..COMPARABLE_RUN }, "28 days instead of 500"),
+            (RankingCriteria { days: 497, ..COMPARABLE_RUN }, ""),
+            (RankingCriteria { days: 497, horizon_rule: HorizonRule::WholeWeeksBelow, ..COMPARABLE_RUN }, ""),
+            (
+                RankingCriteria { days: 497, horizon_rule: HorizonRule::WholeWeeksAbove, ..COMPARABLE_RUN },
+                "497 days instead of 500",
+            ),
+            (
+                RankingCriteria { days: 504, horizon_rule: HorizonRule::WholeWeeksAbove, ..COMPARABLE_RUN },
+                "504 days instead of 500",
+            ),
+            (
+                RankingCriteria { scenario: "release-2", generation: Generation::Release2, ..COMPARABLE_RUN },
+                "no published results of release 2",
+            ),
             (RankingCriteria { start_cash: 2e6, ..COMPARABLE_RUN }, "$2M at the start instead of $1M"),
             (RankingCriteria { has_changed_parameters: true, ..COMPARABLE_RUN }, "changed parameters"),
             (RankingCriteria { judged_by_model: true, ..COMPARABLE_RUN }, "posts judged by a language model"),
@@ -256,7 +305,13 @@ mod tests {
         for scenario in COMPARABLE_SCENARIOS {
             let new = NewRun { scenario: scenario.to_owned(), ..NewRun::default() };
             let seen = Session::create(new, &Configuration::bundled()).expect("a run").company().observe();
-            assert_eq!(RankingCriteria::from_observation(&seen).obstacles(), [], "{scenario}");
+            let obstacles = RankingCriteria::from_observation(&seen).obstacles();
+            let expected = match seen.generation {
+                Generation::Release1 => vec![],
+                // Only published results are missing.
+                Generation::Release2 => vec![RankingObstacle::Generation(Generation::Release2)],
+            };
+            assert_eq!(obstacles, expected, "{scenario}");
         }
     }
 

@@ -60,7 +60,10 @@ fn parse_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, Str
         player: header["eval"]["model"].as_str().map(|name| name.trim_start_matches("novamind/").to_owned()),
         seed: world("seed").as_u64(),
         scenario: world("scenario").as_str().map(str::to_owned),
-        days: world("days").as_u64().and_then(|days| u32::try_from(days).ok()),
+        days: world("total_days")
+            .as_u64()
+            .or(world("days").as_u64())
+            .and_then(|days| u32::try_from(days).ok()),
         cash: world("starting_cash").as_f64(),
         state_hash: world("state_hash").as_str().filter(|hash| !hash.is_empty()).map(str::to_owned),
         calls: calls.into_iter().next().map(|(_, calls)| calls).unwrap_or_default(),

@@ -150,7 +150,7 @@ pub fn game_status(session: &Session) -> ApiResponse {
         "cash": seen.cash,
         "subscribers": seen.active_subscriptions(),
         "timed_out": false,
-        "total_days": seen.last_day,
+        "total_days": session.manifest().total_days(),
         "ended": session.ended(),
     }))
 }

@@ -137,7 +137,10 @@ fn from_steps(whole: &Map<String, Value>) -> ForeignTranscript {
         player: whole.get("agent").and_then(|agent| agent["name"].as_str()).map(str::to_owned),
         seed: world["seed"].as_u64(),
         scenario: world["scenario"].as_str().map(str::to_owned),
-        days: world["days"].as_u64().and_then(|days| u32::try_from(days).ok()),
+        days: world["total_days"]
+            .as_u64()
+            .or(world["days"].as_u64())
+            .and_then(|days| u32::try_from(days).ok()),
         cash: world["starting_cash"].as_f64(),
         state_hash: world["state_hash"].as_str().filter(|hash| !hash.is_empty()).map(str::to_owned),
         calls: calls.collect(),

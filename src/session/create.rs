@@ -29,7 +29,7 @@ use novamind_record::stamp::{HandoutOptions, StudyStamp};
 use novamind_voice::model::settings::ModelSettings;
 use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
-use novamind_world::params::Params;
+use novamind_world::params::{Horizon, Params};
 
 /// The options of a new run. A missing option gets its value from the scenario, or from the program's defaults if the
 /// scenario has no value.
@@ -37,7 +37,7 @@ use novamind_world::params::Params;
 pub struct NewRun {
     /// Seed of all random draws; 42 by default.
     pub seed: Option<u64>,
-    /// Last day, at least 7; 500 by default.
+    /// Length in days, at least 7; 500 by default. `run.horizon_rule` derives the last day.
     pub days: Option<u32>,
     /// Cash on day 0, dollars above 0; 1,000,000 by default.
     pub cash: Option<f64>,
@@ -243,6 +243,7 @@ fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manife
     let (days, cash) = scenario.days_and_cash_with(&params);
     let days = new.days.unwrap_or(days);
     check_days(days).map_err(RunError::InvalidRequest)?;
+    let Horizon { last_day, total_days } = params.run.horizon(days);
     let cash = new.cash.unwrap_or(cash);
     check_cash(cash).map_err(RunError::InvalidRequest)?;
     let seed = new.seed.unwrap_or(params.run.seed);
@@ -271,7 +272,8 @@ fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manife
         id: handed_out.0.unwrap_or_else(new_run_id),
         created: now(),
         seed,
-        days,
+        days: last_day,
+        total_days: Some(total_days).filter(|days| *days != last_day),
         cash,
         earlier_runs: count_runs_with_same_seed(&earlier, seed, &scenario.name),
         scenario: scenario.name,
@@ -300,6 +302,7 @@ fn model_voice_error(problem: String) -> RunError {
 mod tests {
     use super::*;
     use novamind_record::folder::runs::{all_run_folders, delete_run, list_runs, participant_folder};
+    use novamind_record::trajectory::record::Via;
 
     #[test]
     fn participants_have_separate_folders_and_labels() {
@@ -327,6 +330,56 @@ mod tests {
         }
         for label in ["", ".", "..", "a/b", "a\\b", "P 01", "\u{fc}", &"x".repeat(41)] {
             assert!(participant_folder(&base, label).is_err(), "{label}");
+        }
+    }
+
+    /// Plays a run without decisions to its end. Returns the session and the state hash after each week.
+    fn play_to_the_end(runs: &Path, days: u32, rule: &str) -> (Session, Vec<(u32, String)>) {
+        let new = NewRun {
+            seed: Some(7),
+            days: Some(days),
+            overrides: vec![("run.horizon_rule".to_owned(), rule.to_owned())],
+            mode: Mode::Debug,
+            storage: Storage::Runs(runs.to_owned()),
+            projection: false,
+            ..NewRun::default()
+        };
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+        let mut states = Vec::new();
+        while session.ended().is_none() {
+            let forecasts = session.company().naive_forecasts();
+            session.advance("wait", &forecasts, Via::Form, &mut |_| {}).expect("a week");
+            states.push((session.day(), session.state_hash().0));
+        }
+        (session, states)
+    }
+
+    #[test]
+    fn horizon_rule_sets_the_last_day_and_the_scale_of_competitors() {
+        let runs = tempfile::tempdir().expect("a folder");
+        let play = |days: u32, rule: &str| play_to_the_end(runs.path(), days, rule);
+        let (exact, exact_states) = play(100, "exact");
+        let (above, above_states) = play(100, "whole_weeks_above");
+        let (below, below_states) = play(100, "whole_weeks_below");
+        let days = |session: &Session| {
+            let manifest = session.manifest();
+            (session.day(), manifest.days, manifest.total_days())
+        };
+        assert_eq!(days(&exact), (100, 100, 100));
+        assert_eq!(days(&above), (105, 105, 100));
+        assert_eq!(days(&below), (98, 98, 98));
+        // Whole weeks above have the market of the exact length; whole weeks below have that of the shorter length.
+        assert_eq!(above_states[..14], exact_states[..14]);
+        assert_eq!(below_states, play(98, "exact").1);
+        assert_ne!(below_states.last(), exact_states.get(13));
+        for (session, states) in [(above, above_states), (below, below_states)] {
+            let (folder, manifest) =
+                (session.folder().expect("a folder").to_owned(), session.manifest().clone());
+            drop(session);
+            let again = Session::open(&folder, crate::Access::Read, false).expect("it opens");
+            assert_eq!((again.day(), again.state_hash().0), states.last().cloned().expect("a state"));
+            assert_eq!(again.manifest(), &manifest);
+            assert!(!manifest.has_changed_parameters(), "the rule only determines the length");
         }
     }
 }

@@ -65,6 +65,7 @@ pub use novamind_world::fault::Fault;
 pub use novamind_world::identifiers;
 pub use novamind_world::market::competitors::CompetitorEvent;
 pub use novamind_world::market::surges::Surge;
+pub use novamind_world::params::{HorizonRule, Interface as Generation};
 pub use novamind_world::reputation::{ReputationCause, Spillover, SpilloverEffect};
 pub use novamind_world::settings::{CoreSettings, Settings};
 pub use permission::{INSPECTION_REJECTED, can_inspect};

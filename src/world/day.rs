@@ -68,7 +68,7 @@ pub fn step_day_observed(
     facts.start_day(day);
 
     // Compute values that stay constant during the day.
-    surges::draw_week_surges(day, total_days, &mut world.market.surges, params, streams);
+    surges::draw_week_surges(day, world.last_day(params), &mut world.market.surges, params, streams);
     let morning = compute_morning(world, params);
     watch.on_morning(world, &morning, params);
     let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;

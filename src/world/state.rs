@@ -17,7 +17,7 @@ use super::settings::SettingsChange;
 pub struct World {
     /// Last simulated day, or 0 before the first day.
     pub day: u32,
-    /// Last day of the run, which also determines the growth of competitor events.
+    /// Length of the run that scales competitor events ([`Horizon::total_days`](super::params::Horizon)).
     pub total_days: u32,
     /// Current settings of the player.
     pub settings: Settings,
@@ -72,9 +72,14 @@ impl World {
         world
     }
 
+    /// Returns the last day of the run.
+    pub fn last_day(&self, params: &Params) -> u32 {
+        params.run.horizon(self.total_days).last_day
+    }
+
     /// Returns whether the run is over, because the last day has been simulated or the company is bankrupt.
     pub fn is_over(&self, params: &Params) -> bool {
-        self.day >= self.total_days || self.finance.is_bankrupt(params)
+        self.day >= self.last_day(params) || self.finance.is_bankrupt(params)
     }
 
     /// Returns the hash of each part of the state, in declaration order.

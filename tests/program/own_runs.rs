@@ -39,8 +39,14 @@ fn results_table_lists_comparable_runs_and_explains_omissions() {
     }
     assert_eq!(idle["beats"], "13");
     assert_eq!(row_named(&table, "GPT-5.6 Sol")["std_survival_days"], "145.7");
-    assert_eq!(table.len(), 1 + 1 + 16 + 1);
-    let cash: Vec<f64> = table.iter().map(|row| row["best_cash"].parse().expect("a number")).collect();
+    let (ranked, others): (Vec<_>, Vec<_>) = table.iter().partition(|row| row["generation"] == "release 1");
+    assert_eq!((ranked.len(), others.len()), (1 + 1 + 16 + 1, 3));
+    assert!(others.iter().all(|row| row["generation"] == "not stated" && row["beats"].is_empty()));
+    assert_eq!(
+        (&*policy_row["horizon_days"], &*row_named(&table, "Claude Fable 5")["horizon_days"]),
+        ("500", "504")
+    );
+    let cash: Vec<f64> = ranked.iter().map(|row| row["best_cash"].parse().expect("a number")).collect();
     assert!(cash.is_sorted_by(|one, other| one >= other), "{cash:?}");
 
     let text = home.run(&["lab", "table", "--by", "policy"]).stdout;
@@ -53,6 +59,34 @@ fn results_table_lists_comparable_runs_and_explains_omissions() {
     let output = home.run(&["lab", "table", "--svg", &drawing.to_string_lossy()]);
     assert_eq!(output.exit_code, 0, "{}", output.stderr);
     assert!(fs::read_to_string(drawing).expect("a drawing").starts_with("<svg"));
+}
+
+#[test]
+fn runs_of_release_2_have_a_separate_ranking() {
+    let home = Home::new();
+    let options = ["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"];
+    for scenario in [&[][..], &["--scenario", "release-2"]] {
+        let program_output = home.run(&[&options[..], scenario].concat());
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+    }
+    let list = home.run(&["runs", "list"]).stdout;
+    assert!(list.contains("release-2 (release 2)"), "{list}");
+    let table = csv_rows(&home.run(&["lab", "table", "--csv"]));
+    let of = |generation: &str| {
+        let rows = table.iter().filter(|row| row["generation"] == generation && row["name"] == "P0");
+        rows.map(|row| row["beats"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!((of("release 1"), of("release 2")), (vec!["13".to_owned()], vec![String::new()]));
+    let folders = fs::read_dir(home.runs()).expect("a folder").flatten().map(|entry| entry.path());
+    let runs: Vec<String> = folders.filter(|path| path.is_dir()).map(|path| run_id(&path)).collect();
+    let text = home.run(&["lab", "compare", &runs[0], &runs[1], "--width", "400"]).stdout;
+    assert!(text.contains("they are shown side by side and are not ranked."), "{text}");
+    let row = |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap_or_default().to_owned();
+    assert!(row("generation").contains("release 2") && row("scenario").contains("release-2"), "{text}");
+    assert!(text.contains("Kimi K3"), "{text}");
+    let second = runs.iter().find(|run| home.run(&["report", run]).stdout.contains("scenario release-2"));
+    let report = home.run(&["report", second.expect("the run of release 2")]).stdout;
+    assert!(report.contains("no published results of release 2") && !report.contains("Fable"), "{report}");
 }
 
 const PLAY: &str = "set_prices A=12 B=25 C=55

@@ -44,7 +44,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         let width = options.width.map(usize::from).or_else(terminal_columns).unwrap_or(PAGE_WIDTH);
         return print(&escape_control_characters(&comparison_to_text(&all, width)));
     }
-    let agents = json!({ "source": published_results().source, "agents": published_results().agent });
+    let published = published_results();
+    let agents = json!({
+        "source": published.paper().source,
+        "agents": published.paper().agent,
+        "not_ranked": published.unranked_agents().collect::<Vec<_>>(),
+    });
     let runs: Vec<_> = compared.iter().map(|logbook| json!({ "logbook": logbook })).collect();
     let object = json!({ "comparison": all, "runs": runs, "published": agents });
     print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"))

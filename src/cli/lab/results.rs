@@ -16,6 +16,7 @@ use crate::record::trajectory::Trajectory;
 use crate::record::trajectory::record::RunEndReason;
 use crate::report::ranking_eligibility::{RankingCriteria, RankingObstacle};
 use crate::session::Session;
+use crate::world::params::Interface;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -48,7 +49,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let mut comparable = Vec::new();
     for (folder, summary) in &finished {
         let obstacles = RankingCriteria::from_summary(summary).obstacles();
-        if obstacles.is_empty() { comparable.push((folder, summary)) } else { left_out.push(obstacles) }
+        if is_listed(&obstacles) { comparable.push((folder, summary)) } else { left_out.push(obstacles) }
     }
     let progress = progress_bar(comparable.len() as u64 + 1, "runs");
     let (mut results, mut closed, mut unreadable) = (Vec::new(), 0, Vec::new());
@@ -61,7 +62,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                     // The summary covers only the last weeks. A person may have played the weeks before the policy.
                     let run_summary = RunSummary { policy: result.policy.clone(), ..summary.clone() };
                     let obstacles = RankingCriteria::from_summary(&run_summary).obstacles();
-                    if obstacles.is_empty() { results.push(result) } else { left_out.push(obstacles) }
+                    if is_listed(&obstacles) { results.push(result) } else { left_out.push(obstacles) }
                 }
                 Err(problem) => unreadable.push(problem.to_string()),
             },
@@ -70,7 +71,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         progress.inc(1);
     }
     let shipped = Configuration::bundled();
-    let idle = play_idle_company(&Policy::find(IDLE_POLICY, &shipped)?, &shipped)?;
+    let policy = Policy::find(IDLE_POLICY, &shipped)?;
+    let mut idle = vec![play_idle_company(&policy, Interface::Release1, &shipped)?];
+    if results.iter().any(|run| run.generation == Interface::Release2) {
+        idle.push(play_idle_company(&policy, Interface::Release2, &shipped)?);
+    }
     progress.finish_and_clear();
     let by = match options.by {
         GroupBy::Participant => ResultsGrouping::Participant,
@@ -84,6 +89,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         .notes
         .extend(unreadable.iter().map(|why| format!("Run left out because it cannot be read: {why}.")));
     options.output.show(&exhibit)
+}
+
+/// Returns whether a run is listed: it is comparable, at least with runs of its generation.
+fn is_listed(obstacles: &[RankingObstacle]) -> bool {
+    obstacles.iter().all(|obstacle| matches!(obstacle, RankingObstacle::Generation(_)))
 }
 
 /// Returns the finished runs of the folders.

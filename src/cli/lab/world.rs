@@ -34,6 +34,7 @@ impl WorldOptions {
     pub fn days_and_params(&self, context: &Context) -> Result<(u32, Params), Failure> {
         let scenario = context.configuration.load_scenario(&self.scenario)?;
         let params = context.configuration.load_parameters(&scenario, &self.set, true)?;
-        Ok((scenario.days_and_cash_with(&params).0, params))
+        let (days, _) = scenario.days_and_cash_with(&params);
+        Ok((params.run.horizon(days).last_day, params))
     }
 }

@@ -22,6 +22,7 @@ use crate::record::folder::runs::{
 use crate::record::trajectory::{Record, Trajectory};
 use crate::report::describe_origin;
 use crate::session::{abandon_run, recover};
+use crate::world::params::{HorizonRule, Interface};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -248,6 +249,14 @@ fn run_line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
         run.days,
         dollars(run.cash),
         run.seed,
-        run.scenario
+        describe_scenario(run)
     )
+}
+
+/// Describes the scenario of a run, with the generation and the horizon rule if they are not those of scenario `default`.
+fn describe_scenario(run: &RunSummary) -> String {
+    let generation = (run.generation != Interface::Release1).then(|| run.generation.name());
+    let rule = (run.horizon_rule != HorizonRule::Exact).then(|| run.horizon_rule.name());
+    let added: Vec<&str> = generation.into_iter().chain(rule).collect();
+    if added.is_empty() { run.scenario.clone() } else { format!("{} ({})", run.scenario, added.join(", ")) }
 }

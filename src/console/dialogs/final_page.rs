@@ -196,7 +196,10 @@ impl FinalPage {
             parts.push(ranking_lines(canvas, &standing, width, best, roomy));
         }
         parts.push(match &self.story {
-            Some(report) => measure_lines(canvas, &report.measures, width, roomy, published),
+            Some(report) => {
+                let shares = published_targeted_shares(company.observation.generation).filter(|_| published);
+                measure_lines(canvas, &report.measures, width, roomy, shares)
+            }
             None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],
         });
         if roomy
@@ -298,7 +301,7 @@ fn ranking_lines<'a>(
     roomy: bool,
 ) -> Vec<TextLine<'a>> {
     let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
-    let room = (width as usize).saturating_sub(39).min(50);
+    let room = (width as usize).saturating_sub(49).min(50);
     let mut lines: Vec<TextLine<'a>> = wrap(&standing.describe(), width as usize)
         .into_iter()
         .map(|line| TextLine::from(canvas.span(line, Role::Header)))
@@ -309,7 +312,8 @@ fn ranking_lines<'a>(
         let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![
             canvas.span(if is_this_run { "▌ " } else { "  " }, role),
-            canvas.span(format!("{:<21}{:>12}  ", place.name, grouped_number(place.cash, 0)), role),
+            canvas.span(format!("{:<21}{:>12}", place.name, grouped_number(place.cash, 0)), role),
+            canvas.span(format!("{:>10}  ", format_days(place.horizon_days)), Role::Dim),
             canvas.span(bar, if is_this_run { Role::Good } else { Role::Series(0) }),
         ]));
     }
@@ -332,21 +336,25 @@ fn ranking_lines<'a>(
     lines
 }
 
+/// Formats the last day of a ranked result: `504 days`, or nothing if it is not published.
+fn format_days(days: Option<u32>) -> String {
+    days.map_or(String::new(), |days| format!("{days} days"))
+}
+
 fn measure_lines<'a>(
     canvas: &Canvas<'_>,
     measures: &BehaviorMeasures,
     width: u16,
     roomy: bool,
-    published: bool,
+    published_shares: Option<(f64, f64)>,
 ) -> Vec<TextLine<'a>> {
     let room = (width as usize).saturating_sub(NAME_WIDTH);
     let long = if roomy { 2 * room } else { room };
-    let (least, most) = published_targeted_shares();
-    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| match published {
-        true => {
+    let targeted = measures.targeted_development.map_or("–".to_owned(), |share| match published_shares {
+        Some((least, most)) => {
             format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
         }
-        false => percent(share, 0),
+        None => percent(share, 0),
     });
     let planning = format!("{:.1} planning words", measures.planning.planning_each);
     let words = measures.planning.words_each;

@@ -380,7 +380,7 @@ impl<'a> BranchSimulation<'a> {
         self.call_entries.clear();
         self.days.push(figures);
         let days_per_week = params.run.days_per_week;
-        if world.day == week_end(world.day, days_per_week, world.total_days) || world.is_over(params) {
+        if world.day == week_end(world.day, days_per_week, world.last_day(params)) || world.is_over(params) {
             self.finish_week();
         }
     }

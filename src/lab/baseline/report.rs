@@ -291,7 +291,7 @@ fn notes(grid: &PolicyGrid, is_published: bool, board: &RankedResults<'_>) -> Ve
         notes.push(format!(
             "Published for mid / S1 / heavy / $100K at the paper's seed 42: {}. The same seed gives different random draws here ({}).",
             dollars(published_results().rule_based_baseline),
-            published_results().source
+            published_results().paper().source
         ));
     }
     notes

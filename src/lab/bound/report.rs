@@ -30,7 +30,7 @@ pub fn bound_report(account: &BoundAccount, slacks: &[SensitivityRow]) -> LabRep
         "The estimate is the published share of the amount before the discount. The estimate does not limit the cash that a run can reach. The line \"before discount\" is the result of the account."
             .to_owned(),
     );
-    exhibit.notes.push(format!("Published: {}.", published_results().source));
+    exhibit.notes.push(format!("Published: {}.", published_results().paper().source));
     exhibit
 }
 

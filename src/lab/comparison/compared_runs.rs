@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::lab_report::Measure;
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_report::ranking::{PublishedAgent, published_results};
+use novamind_world::params::{HorizonRule, Interface};
 
 /// A row of the comparison: one figure with a value for each run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -57,7 +58,15 @@ pub struct Comparison {
     pub runs: Vec<String>,
     /// Participant of each run; `None` for runs without a label.
     pub participants: Vec<Option<String>>,
-    /// Indices into `runs`, best result first.
+    /// Scenario of each run.
+    pub scenarios: Vec<String>,
+    /// Generation of the released simulator whose rules each run has.
+    pub generations: Vec<Interface>,
+    /// Last day of each run, and the rule that derived the last day.
+    pub horizons: Vec<(u32, HorizonRule)>,
+    /// Whether all runs have the same generation. Runs of different generations are not ranked.
+    pub is_ranked: bool,
+    /// Indices into `runs`, best result first; in the order of `runs` if the runs are not ranked.
     pub order: Vec<usize>,
     /// Last simulated day of each run, with the reason for the end; `None` if the run is unfinished.
     pub ends: Vec<(u32, Option<RunEndReason>)>,
@@ -85,7 +94,7 @@ pub(super) fn published_range(
     what: &'static str,
     of: impl Fn(&PublishedAgent) -> Option<f64>,
 ) -> Option<PublishedRange> {
-    let values: Vec<f64> = published_results().agent.iter().filter_map(of).collect();
+    let values: Vec<f64> = published_results().paper().agent.iter().filter_map(of).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     (!values.is_empty()).then_some(PublishedRange { least, most, what })

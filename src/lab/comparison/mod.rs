@@ -10,17 +10,27 @@ pub use figures::{ComparedFigure, FIGURES, find_figure};
 pub use table::{comparison_to_rows, comparison_to_text};
 
 use novamind_report::Logbook;
-use novamind_report::ranking::compare_results;
+use novamind_report::ranking::{compare_results, published_results};
 use novamind_report::ranking_eligibility::{RankingCriteria, describe_unranked_runs};
 
 /// Compares runs by result, weekly cash, decisions and behavior.
 pub fn compare_runs(runs: &[Logbook]) -> Comparison {
     let mut figures: Vec<_> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
     figures.extend(figures::group_rows(runs));
+    let paper = published_results().paper().generation;
+    if !runs.iter().any(|run| paper == run.generation.into()) {
+        // The published ranges are of another generation.
+        figures.iter_mut().for_each(|row| row.published = None);
+    }
+    let is_ranked = runs.iter().all(|run| run.generation == runs[0].generation);
     Comparison {
         runs: runs.iter().map(|run| run.run.clone()).collect(),
         participants: runs.iter().map(Logbook::player_name).collect(),
-        order: order_by_result(runs),
+        scenarios: runs.iter().map(|run| run.scenario.clone()).collect(),
+        generations: runs.iter().map(|run| run.generation).collect(),
+        horizons: runs.iter().map(|run| (run.days, run.horizon_rule)).collect(),
+        is_ranked,
+        order: if is_ranked { order_by_result(runs) } else { (0..runs.len()).collect() },
         ends: runs.iter().map(|run| (run.day, run.ended)).collect(),
         figures,
         cash: figures::cash_rows(runs),
@@ -56,6 +66,12 @@ fn decisions_by_day(runs: &[Logbook]) -> Vec<ComparedDecisions> {
 fn caveats(runs: &[Logbook]) -> Vec<String> {
     let Some(first) = runs.first() else { return Vec::new() };
     let mut caveats = Vec::new();
+    if runs.iter().any(|run| run.generation != first.generation) {
+        caveats.push(
+            "The runs are of release 1 and of release 2: they are shown side by side and are not ranked."
+                .to_owned(),
+        );
+    }
     let mut note = |differ: bool, what: &str| {
         if differ {
             caveats.push(format!("The runs differ in their {what}."));
@@ -64,6 +80,7 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
     let any = |differs: &dyn Fn(&Logbook, &Logbook) -> bool| runs.iter().any(|run| differs(run, first));
     note(any(&|logbook, first| logbook.seed != first.seed), "seed");
     note(any(&|logbook, first| logbook.days != first.days), "days");
+    note(any(&|logbook, first| logbook.horizon_rule != first.horizon_rule), "horizon rule");
     note(any(&|logbook, first| logbook.start_cash != first.start_cash), "cash at the start");
     note(any(&|logbook, first| logbook.parameters_digest != first.parameters_digest), "parameters");
     note(any(&|logbook, first| logbook.mode != first.mode), "mode");

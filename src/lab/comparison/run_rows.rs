@@ -1,6 +1,7 @@
 //! Comparison of many runs: one row per run, best result first.
 
 use super::compared_runs::{Comparison, ComparisonRow};
+use super::table::describe_horizon;
 use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure, column_name};
 use novamind_base::formatting::grouped_number;
 use novamind_record::trajectory::record::RunEndReason;
@@ -32,23 +33,33 @@ pub(super) fn row_per_run_report(comparison: &Comparison) -> LabReport {
     let mut columns = vec![Column::text("run", "run"), Column::number("place", "#", Measure::Count)];
     columns.extend(has_labels.then(|| Column::text("participant", "who")));
     columns.push(Column::text("end", "end"));
+    columns.push(Column::text("generation", "generation"));
+    columns.push(Column::text("last_day", "last day"));
     columns.extend(
         figures
             .iter()
             .map(|(row, heading)| Column::number(&column_name(&row.figure), heading, row.measure())),
     );
+    // Runs of different generations have no place.
+    let place_cell = |place: usize| match comparison.is_ranked {
+        true => CellValue::Number((place + 1) as f64),
+        false => CellValue::Missing,
+    };
     let row = |(place, run): (usize, &usize)| {
-        let mut cells = vec![CellValue::text(&*comparison.runs[*run]), CellValue::Number((place + 1) as f64)];
+        let mut cells = vec![CellValue::text(&*comparison.runs[*run]), place_cell(place)];
         cells.extend(
             has_labels.then(|| CellValue::text(short_label(comparison.participants[*run].as_deref()))),
         );
         cells.push(CellValue::text(describe_end(comparison.ends[*run])));
+        cells.push(CellValue::text(comparison.generations[*run].name()));
+        cells.push(CellValue::text(describe_horizon(&comparison.horizons[*run])));
         cells.extend(figures.iter().map(|(row, _)| CellValue::number(row.values[*run])));
         cells
     };
     let rows = comparison.order.iter().enumerate().map(row).collect();
     let table = LabTable { rows, ..LabTable::new("runs", "", columns) };
-    let exhibit = LabReport::with_table(format!("{} runs, best result first", comparison.runs.len()), table);
+    let order = if comparison.is_ranked { "best result first" } else { "not ranked" };
+    let exhibit = LabReport::with_table(format!("{} runs, {order}", comparison.runs.len()), table);
     exhibit.with_note("Use --csv for cash by week and all figures, --json to add decisions.")
 }
 
@@ -78,6 +89,7 @@ fn describe_end((day, ended): (u32, Option<RunEndReason>)) -> String {
 mod tests {
     use super::super::{compare_runs, comparison_to_text};
     use novamind_report::{Logbook, sample_logbook};
+    use novamind_session::Generation;
 
     /// Returns thirty runs with different names, players and results.
     fn thirty_runs() -> Vec<Logbook> {
@@ -120,5 +132,28 @@ mod tests {
         for (figure, of, _) in super::COLUMNS {
             assert!(super::super::find_figure(figure, of).is_some(), "{figure}");
         }
+    }
+
+    #[test]
+    fn runs_of_different_generations_are_not_ranked() {
+        let mut logbooks = thirty_runs()[..2].to_vec();
+        logbooks[0].cash = 1.0;
+        let ranked = compare_runs(&logbooks);
+        assert_eq!((ranked.is_ranked, ranked.order.as_slice()), (true, &[1, 0][..]));
+        assert!(ranked.figures.iter().any(|row| row.published.is_some()));
+        logbooks[0].generation = Generation::Release2;
+        let mixed = compare_runs(&logbooks);
+        assert_eq!((mixed.is_ranked, mixed.order.as_slice()), (false, &[0, 1][..]));
+        let (wide, narrow) = (comparison_to_text(&mixed, 400), comparison_to_text(&mixed, 80));
+        for text in [&wide, &narrow] {
+            let sentence =
+                "The runs are of release 1 and of release 2: they are shown side by side and are not ranked.";
+            let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(words.contains(sentence) && words.contains("release 2"), "{text}");
+        }
+        assert!(narrow.contains("2 runs, not ranked"), "{narrow}");
+        logbooks[1].generation = Generation::Release2;
+        let second = compare_runs(&logbooks);
+        assert!(second.is_ranked && second.figures.iter().all(|row| row.published.is_none()));
     }
 }

@@ -3,7 +3,8 @@
 use super::compared_runs::{Comparison, ComparisonRow, PublishedRange};
 use super::run_rows::row_per_run_report;
 use novamind_base::formatting::{dollars, grouped_number, percent};
-use novamind_report::ranking::{describe_published_conditions, published_results};
+use novamind_report::ranking::{describe_published_conditions, format_horizon, published_results};
+use novamind_world::params::HorizonRule;
 
 /// Maximum number of cash rows in the text. For longer runs, weeks are skipped.
 const MAX_CASH_ROWS: usize = 20;
@@ -31,6 +32,7 @@ fn side_by_side(comparison: &Comparison) -> String {
     players.extend(comparison.participants.iter().map(|who| who.clone().unwrap_or_else(|| "-".to_owned())));
     players.push(String::new());
     rows.push(players);
+    rows.extend(condition_rows(comparison));
     rows.extend(comparison.figures.iter().map(text_row));
     rows.push(vec![String::new(); comparison.runs.len() + 2]);
     let last = comparison.cash.len().saturating_sub(1);
@@ -40,11 +42,38 @@ fn side_by_side(comparison: &Comparison) -> String {
     align_cells(&rows)
 }
 
+/// Returns the rows with scenario, generation and last day of each run and of the paper's runs.
+fn condition_rows(comparison: &Comparison) -> [Vec<String>; 3] {
+    let row = |name: &str, cells: Vec<String>, published: String| {
+        [vec![name.to_owned()], cells, vec![published]].concat()
+    };
+    let generations = comparison.generations.iter().map(|generation| generation.name().to_owned()).collect();
+    let paper = published_results().paper();
+    [
+        row("scenario", comparison.scenarios.clone(), String::new()),
+        row("generation", generations, paper.generation.name().to_owned()),
+        row(
+            "last day",
+            comparison.horizons.iter().map(describe_horizon).collect(),
+            paper.describe_horizons(),
+        ),
+    ]
+}
+
+/// Describes a last day, with the rule unless it is exact: `497 (whole_weeks_below)`.
+pub(super) fn describe_horizon((days, rule): &(u32, HorizonRule)) -> String {
+    match rule {
+        HorizonRule::Exact => days.to_string(),
+        _ => format!("{days} ({})", rule.name()),
+    }
+}
+
 /// Returns the notes on comparability and the source of the published figures.
 fn footnotes(comparison: &Comparison) -> Vec<String> {
     let mut lines = comparison.caveats.clone();
     lines.push(format!("{}.", describe_published_conditions()));
-    lines.push(format!("Published: {}.", published_results().source));
+    lines.push(format!("Published: {}.", published_results().paper().source));
+    lines.push(format!("{}.", published_results().explain_unranked_agents()));
     lines
 }
 
@@ -146,11 +175,21 @@ fn wrap_decisions(decisions: &[String], width: usize) -> Vec<String> {
 }
 
 fn published_agents_text() -> String {
-    let head = ["published agent", "best cash", "mean survival", "turns a week", "targeted development"];
+    let head = [
+        "published agent",
+        "generation",
+        "last day",
+        "best cash",
+        "mean survival",
+        "turns a week",
+        "targeted development",
+    ];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
-    for agent in &published_results().agent {
+    for agent in published_results().paper().agent.iter().chain(published_results().unranked_agents()) {
         rows.push(vec![
             agent.name.clone(),
+            agent.generation.name().to_owned(),
+            format_horizon(agent.horizon_days),
             dollars(agent.best_cash),
             format!("{:.1} days", agent.mean_survival_days),
             format!("{:.2}", agent.turns_per_week),

@@ -23,7 +23,7 @@ impl ArmKey {
         wanted: &RecordedFigures,
         configuration: &Configuration,
     ) -> Result<ArmKey, RunError> {
-        let (days, cash, params) = arm.run_conditions(configuration)?;
+        let (horizon, cash, params) = arm.run_conditions(configuration)?;
         let policy = &arm.policy;
         let plays = (&policy.rule_based, &policy.calls, &policy.enterprise);
         let mut hasher = blake3::Hasher::new();
@@ -31,7 +31,7 @@ impl ArmKey {
             format!("{} {MECHANICS}", env!("CARGO_PKG_VERSION")),
             params.digest(),
             format!("{plays:?}"),
-            format!("{days} {:?} {}", arm.spec.stop_after_day, cash.to_bits()),
+            format!("{} {:?} {}", horizon.total_days, arm.spec.stop_after_day, cash.to_bits()),
             format!("{wanted:?}"),
         ] {
             hasher.update(&(part.len() as u64).to_le_bytes());

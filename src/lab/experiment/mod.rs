@@ -25,7 +25,7 @@ use super::policy::Policy;
 use super::runner::{RunSpec, new_run};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_world::params::Params;
+use novamind_world::params::{Horizon, Params};
 
 /// An arm: one condition of an experiment.
 #[derive(Debug, Clone)]
@@ -44,16 +44,17 @@ impl Arm {
         Arm { name: name.into(), policy, spec: RunSpec::for_seed(0) }
     }
 
-    /// Returns the last day, the cash on day 0 in dollars, and the parameters of the arm's runs.
+    /// Returns the horizon, the cash on day 0 in dollars, and the parameters of the arm's runs.
     ///
     /// # Errors
     /// Fails if the scenario is unknown or a parameter is invalid.
-    pub fn run_conditions(&self, configuration: &Configuration) -> Result<(u32, f64, Params), RunError> {
+    pub fn run_conditions(&self, configuration: &Configuration) -> Result<(Horizon, f64, Params), RunError> {
         let run = new_run(&self.policy, &self.spec);
         let scenario = configuration.load_scenario(&run.scenario)?;
         let params = configuration.load_parameters(&scenario, &run.overrides, true)?;
         let (days, cash) = scenario.days_and_cash_with(&params);
-        Ok((run.days.unwrap_or(days), run.cash.unwrap_or(cash), params))
+        let horizon = params.run.horizon(run.days.unwrap_or(days));
+        Ok((horizon, run.cash.unwrap_or(cash), params))
     }
 }
 

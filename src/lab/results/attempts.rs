@@ -88,6 +88,8 @@ mod tests {
             participant: None,
             policy: None,
             seed: 42,
+            generation: novamind_session::Generation::Release1,
+            days: 500,
             score,
             is_bankrupt: score == 0.0,
             survival_days: days,

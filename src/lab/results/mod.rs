@@ -11,13 +11,19 @@ use super::metrics::MetricsCollector;
 use super::policy::Policy;
 use super::runner::{RunEnd, RunError, RunSpec, play_policy};
 use novamind_base::statistics::SampleStatistics;
-use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_record::trajectory::{Line, find_policy};
 use novamind_report::measures::{survival_days, tool_use};
-use novamind_report::ranking::{compare_results, count_published_below, published_results};
-use novamind_report::ranking_eligibility::{PUBLISHED_SEED, RankingObstacle, explain_unranked_runs};
+use novamind_report::ranking::{
+    PublishedAgent, PublishedGeneration, PublishedTable, compare_results, count_published_below,
+    published_results,
+};
+use novamind_report::ranking_eligibility::{
+    PUBLISHED_DAYS, PUBLISHED_SEED, PUBLISHED_WHOLE_WEEKS, RankingObstacle, explain_unranked_runs,
+};
 use novamind_session::Session;
+use novamind_world::params::Interface;
 
 #[cfg(feature = "server")]
 pub use attempts::{AttemptResult, attempts_report};
@@ -33,6 +39,10 @@ pub struct FinishedRun {
     pub policy: Option<String>,
     /// Seed of the run.
     pub seed: u64,
+    /// Generation of the released simulator whose rules the run has.
+    pub generation: Interface,
+    /// Last day of the run.
+    pub days: u32,
     /// Cash after the last day, dollars; 0 after a bankruptcy.
     pub score: f64,
     /// Whether the run went bankrupt.
@@ -52,6 +62,8 @@ impl FinishedRun {
             participant: manifest.participant.clone(),
             policy: find_policy(lines).map(str::to_owned),
             seed: manifest.seed,
+            generation: manifest.generation(),
+            days: manifest.days,
             score: session.score()?,
             is_bankrupt: session.ended() == Some(RunEndReason::Bankruptcy),
             survival_days: survival_days(session.ended(), session.day(), manifest.days),
@@ -119,6 +131,10 @@ pub struct ResultsRow {
     pub name: String,
     /// Kind of the player.
     pub source: PlayerKind,
+    /// Generation of the runs. Rows are ranked only within a generation.
+    pub generation: PublishedGeneration,
+    /// Last days of the runs; empty if they are not published.
+    pub horizon_days: Vec<u32>,
     /// Number of runs of the player.
     pub runs: u32,
     /// Number of bankruptcies; `None` if the number is not published.
@@ -135,14 +151,15 @@ pub struct ResultsRow {
     pub std_survival_days: Option<f64>,
     /// Calls per week: state-changing calls of own runs, or turns of published agents.
     pub calls_per_week: Option<f64>,
-    /// Number of published best runs with less final cash.
-    pub beaten_count: usize,
+    /// Number of published best runs of the same generation with less final cash; `None` if there are none of the
+    /// generation.
+    pub beaten_count: Option<usize>,
 }
 
 /// The results table: own runs, the idle company and the published results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultsTable {
-    /// Rows of the table, best result first.
+    /// Rows of the table by generation, best result of a generation first.
     pub rows: Vec<ResultsRow>,
     /// Notes below the table.
     pub notes: Vec<String>,
@@ -156,18 +173,29 @@ const UNNAMED_ROW: &str = "(no label)";
 
 const IDLE_ROW: &str = "idle company";
 
-/// Plays the idle company on the seed of the published runs.
+/// Plays the idle company of a generation on the seed of the published runs.
 ///
 /// # Errors
 /// Fails if the run cannot start.
-pub fn play_idle_company(policy: &Policy, configuration: &Configuration) -> Result<FinishedRun, RunError> {
-    let spec = RunSpec { surges: Some(true), ..RunSpec::for_seed(PUBLISHED_SEED) };
+pub fn play_idle_company(
+    policy: &Policy,
+    generation: Interface,
+    configuration: &Configuration,
+) -> Result<FinishedRun, RunError> {
+    let scenario = match generation {
+        Interface::Release1 => DEFAULT_SCENARIO,
+        Interface::Release2 => "release-2",
+    };
+    let scenario = Some(scenario.to_owned());
+    let spec = RunSpec { scenario, surges: Some(true), ..RunSpec::for_seed(PUBLISHED_SEED) };
     let outcome = play_policy(policy, &spec, configuration, &mut MetricsCollector::disabled())?;
     Ok(FinishedRun {
         run: String::new(),
         participant: None,
         policy: Some(outcome.policy),
         seed: outcome.seed,
+        generation,
+        days: outcome.days,
         score: outcome.cash.max(0.0),
         is_bankrupt: outcome.ended == RunEnd::Bankruptcy,
         survival_days: outcome.day,
@@ -176,19 +204,22 @@ pub fn play_idle_company(policy: &Policy, configuration: &Configuration) -> Resu
 }
 
 impl ResultsTable {
-    /// Creates the table of own runs, the idle company and the published rows. Notes list the reasons why runs are not
+    /// Creates the table of own runs, the idle company of each generation and the published rows. Notes list the reasons why runs are not
     /// comparable.
     pub fn new(
         runs: &[FinishedRun],
         left_out: &[Vec<RankingObstacle>],
-        idle: &FinishedRun,
+        idle: &[FinishedRun],
         by: ResultsGrouping,
     ) -> ResultsTable {
-        let mut groups: BTreeMap<(PlayerKind, String), Vec<&FinishedRun>> = BTreeMap::new();
+        let mut groups: BTreeMap<(PublishedGeneration, PlayerKind, String), Vec<&FinishedRun>> =
+            BTreeMap::new();
         let mut played_by_people = 0;
         for run in runs {
             match by.row_source(run) {
-                Some(player) => groups.entry(player).or_default().push(run),
+                Some((kind, name)) => {
+                    groups.entry((run.generation.into(), kind, name)).or_default().push(run);
+                }
                 None => played_by_people += 1,
             }
         }
@@ -199,25 +230,32 @@ impl ResultsTable {
         let again: Vec<&str> = groups
             .iter()
             .filter(|(_, finished_runs)| has_one_twice(finished_runs))
-            .map(|((_, name), _)| name.as_str())
+            .map(|((_, _, name), _)| name.as_str())
             .collect();
         let again = (!again.is_empty()).then(|| {
             format!("Several runs of one seed: {}. A person who repeats a seed knows its future; a policy repeats its play.", again.join(", "))
         });
         let mut rows: Vec<ResultsRow> = groups
             .into_iter()
-            .filter_map(|(player, finished_runs)| results_row(player, &finished_runs))
+            .filter_map(|((_, kind, name), finished_runs)| results_row((kind, name), &finished_runs))
             .collect();
-        rows.extend(
-            results_row((PlayerKind::IdleCompany, IDLE_ROW.to_owned()), &[idle])
-                .map(|row| ResultsRow { best_run: None, ..row }),
-        );
+        rows.extend(idle.iter().filter_map(|idle| {
+            let row = results_row((PlayerKind::IdleCompany, IDLE_ROW.to_owned()), &[idle])?;
+            Some(ResultsRow { best_run: None, ..row })
+        }));
         rows.extend(published_rows());
         rows.sort_by(|one, other| {
             let result = |row: &ResultsRow| (row.best_cash, row.max_survival_days.unwrap_or(0.0) as u32);
-            compare_results(result(other), result(one)).then_with(|| one.name.cmp(&other.name))
+            let by_result = compare_results(result(other), result(one));
+            one.generation.cmp(&other.generation).then(by_result).then_with(|| one.name.cmp(&other.name))
         });
         let mut notes = table_notes();
+        if runs.iter().any(|run| published_results().table_of(run.generation).is_none()) {
+            notes.push(
+                "No results of release 2 are published: its runs are compared only with each other."
+                    .to_owned(),
+            );
+        }
         notes.extend(explain_unranked_runs(left_out));
         if rows.iter().any(|row| row.source == PlayerKind::Policy) {
             notes.push("Policies are distinguished only by the names in their files.".to_owned());
@@ -231,7 +269,8 @@ impl ResultsTable {
                 "Own runs with seeds other than {PUBLISHED_SEED} had other random draws than published runs."
             ));
         }
-        notes.push(format!("Published: {}.", published_results().source));
+        notes.push(format!("Published: {}.", published_results().paper().source));
+        notes.push(format!("{}.", published_results().explain_unranked_agents()));
         ResultsTable { rows, notes }
     }
 }
@@ -247,11 +286,13 @@ fn best_run<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
 
 fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
     let best = best_run(runs)?;
-    let lives: Vec<f64> = runs.iter().map(|run| f64::from(run.survival_days)).collect();
+    let lives: Vec<f64> = runs.iter().map(|run| published_survival(run)).collect();
     let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
     Some(ResultsRow {
         name,
         source: player,
+        generation: best.generation.into(),
+        horizon_days: runs.iter().map(|run| run.days).collect::<BTreeSet<u32>>().into_iter().collect(),
         runs: runs.len() as u32,
         bankruptcies: Some(runs.iter().filter(|run| run.is_bankrupt).count() as u32),
         best_cash: best.score,
@@ -260,8 +301,15 @@ fn results_row((player, name): (PlayerKind, String), runs: &[&FinishedRun]) -> O
         mean_survival_days: Some(SampleStatistics::from_values(&lives).mean),
         std_survival_days: (lives.len() > 1).then(|| population_std(&lives)),
         calls_per_week: Some(SampleStatistics::from_values(&calls).mean),
-        beaten_count: count_published_below(best.score).0,
+        beaten_count: count_published_below(best.score, best.generation).map(|(below, _)| below),
     })
+}
+
+/// Returns the survival of a run in days. As in the published tables, a run that survived its whole weeks counts as a
+/// run that survived to [`PUBLISHED_DAYS`].
+fn published_survival(run: &FinishedRun) -> f64 {
+    let is_whole = !run.is_bankrupt && run.days == PUBLISHED_WHOLE_WEEKS;
+    f64::from(if is_whole { PUBLISHED_DAYS } else { run.survival_days })
 }
 
 /// Returns the population standard deviation, as in the published tables.
@@ -271,13 +319,20 @@ fn population_std(values: &[f64]) -> f64 {
 }
 
 fn published_rows() -> Vec<ResultsRow> {
-    let paper = published_results();
-    let mut rows: Vec<ResultsRow> = paper
-        .agent
-        .iter()
-        .map(|agent| ResultsRow {
+    let published = published_results();
+    let below = |agent: &PublishedAgent, table: Option<&PublishedTable>| {
+        let agents = &table?.agent;
+        Some(agents.iter().filter(|other| other.best_cash < agent.best_cash).count())
+    };
+    let paper = published.paper();
+    let ranked = paper.agent.iter().map(|agent| (agent, Some(paper)));
+    let mut rows: Vec<ResultsRow> = ranked
+        .chain(published.unranked_agents().map(|agent| (agent, None)))
+        .map(|(agent, table)| ResultsRow {
             name: agent.name.clone(),
             source: PlayerKind::PublishedAgent,
+            generation: agent.generation,
+            horizon_days: agent.horizon_days.into_iter().collect(),
             runs: agent.runs,
             bankruptcies: Some(agent.bankruptcies),
             best_cash: agent.best_cash,
@@ -286,21 +341,25 @@ fn published_rows() -> Vec<ResultsRow> {
             mean_survival_days: Some(agent.mean_survival_days),
             std_survival_days: Some(agent.std_survival_days),
             calls_per_week: Some(agent.turns_per_week),
-            beaten_count: count_published_below(agent.best_cash).0,
+            beaten_count: below(agent, table),
         })
         .collect();
     rows.push(ResultsRow {
         name: "rule-based baseline".to_owned(),
         source: PlayerKind::PublishedBaseline,
+        generation: paper.generation,
+        horizon_days: Vec::new(),
         runs: 1,
         bankruptcies: None,
-        best_cash: paper.rule_based_baseline,
+        best_cash: published.rule_based_baseline,
         best_run: None,
         max_survival_days: None,
         mean_survival_days: None,
         std_survival_days: None,
         calls_per_week: None,
-        beaten_count: count_published_below(paper.rule_based_baseline).0,
+        beaten_count: Some(
+            paper.agent.iter().filter(|agent| agent.best_cash < published.rule_based_baseline).count(),
+        ),
     });
     rows
 }
@@ -308,13 +367,14 @@ fn published_rows() -> Vec<ResultsRow> {
 /// Returns the notes that define the figures of the table.
 fn table_notes() -> Vec<String> {
     vec![
+        "Rows are ranked within their generation; results of different generations are not comparable. Published cash is that of day 500, also for runs that ended on day 497 or 504.".to_owned(),
         "The best run has the most final cash; if all runs went bankrupt, it has the longest survival. The spread of survival is the population standard deviation."
             .to_owned(),
         "Calls a week: for own runs, accepted state-changing calls, averaged over runs; for published runs, turns of an agent, which can contain several calls."
             .to_owned(),
         format!(
             "{IDLE_ROW}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. Beats: how many of the {} published best runs ended with less cash.",
-            published_results().agent.len()
+            published_results().paper().agent.len()
         ),
     ]
 }
@@ -329,6 +389,8 @@ mod tests {
             participant: who.map(str::to_owned),
             policy: None,
             seed: 42,
+            generation: Interface::Release1,
+            days: 500,
             score,
             is_bankrupt: days < 500,
             survival_days: days,
@@ -354,27 +416,30 @@ mod tests {
         let table = ResultsTable::new(
             &runs,
             &[vec![RankingObstacle::Length(28)]],
-            &idle,
+            std::slice::from_ref(&idle),
             ResultsGrouping::Participant,
         );
         let first = find_row(&table, "P01");
         assert_eq!((first.bankruptcies, first.runs, first.best_run.as_deref()), (Some(1), 3, Some("a2")));
-        assert_eq!((first.best_cash, first.beaten_count), (3e6, 14));
+        assert_eq!((first.best_cash, first.beaten_count), (3e6, Some(14)));
         // Published mean survival and standard deviation of an agent with one bankruptcy in three runs.
         assert_eq!(first.mean_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(461.7));
         assert_eq!(first.std_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(54.2));
         let second = find_row(&table, "P02");
         assert_eq!((second.best_run.as_deref(), second.max_survival_days), (Some("b2"), Some(131.0)));
         assert!(table.notes.iter().any(|note| note.contains("28 days instead of 500")), "{:?}", table.notes);
-        assert!(table.rows.is_sorted_by(|one, other| one.best_cash >= other.best_cash));
-        let policies = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Policy);
+        let is_in_order = |one: &ResultsRow, other: &ResultsRow| {
+            one.generation < other.generation || one.best_cash >= other.best_cash
+        };
+        assert!(table.rows.is_sorted_by(is_in_order));
+        let policies = ResultsTable::new(&runs, &[], std::slice::from_ref(&idle), ResultsGrouping::Policy);
         assert_eq!(find_row(&policies, "mine").source, PlayerKind::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
         // A participant's runs are never merged with a policy's runs or with published runs that have the same name.
         let named_so =
             [finished_run("e1", Some("mine"), 9e6, 500), finished_run("e2", Some("idle company"), 8e6, 500)];
         let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
-        let table = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Participant);
+        let table = ResultsTable::new(&runs, &[], std::slice::from_ref(&idle), ResultsGrouping::Participant);
         let of = |name: &str| {
             let rows = table.rows.iter().filter(|row| row.name == name);
             rows.map(|row| (row.source.describe(), row.runs)).collect::<Vec<_>>()
@@ -387,10 +452,40 @@ mod tests {
     fn idle_company_beats_13_of_16() {
         let configuration = Configuration::bundled();
         let policy = Policy::find(IDLE_POLICY, &configuration).expect("a bundled policy");
-        let idle = play_idle_company(&policy, &configuration).expect("it plays");
+        let idle = play_idle_company(&policy, Interface::Release1, &configuration).expect("it plays");
         assert_eq!((idle.survival_days, idle.is_bankrupt, idle.score.round()), (500, false, 957_500.0));
-        let table = ResultsTable::new(&[], &[], &idle, ResultsGrouping::Participant);
-        assert_eq!(find_row(&table, IDLE_ROW).beaten_count, 13);
-        assert_eq!(table.rows.len(), 16 + 2);
+        let table = ResultsTable::new(&[], &[], std::slice::from_ref(&idle), ResultsGrouping::Participant);
+        assert_eq!(find_row(&table, IDLE_ROW).beaten_count, Some(13));
+        assert_eq!(table.rows.len(), 16 + 2 + 3);
+    }
+
+    #[test]
+    fn generations_have_separate_rankings() {
+        let of_release_2 = |name: &str, score: f64| FinishedRun {
+            generation: Interface::Release2,
+            ..finished_run(name, Some("P01"), score, 500)
+        };
+        let runs =
+            [finished_run("a1", Some("P01"), 2e6, 500), of_release_2("a2", 9e7), of_release_2("a3", 8e7)];
+        let idle = [finished_run("", None, 957_500.0, 500), of_release_2("", 957_500.0)];
+        let table = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Participant);
+        let of = |generation: PublishedGeneration| {
+            let rows = table.rows.iter().filter(move |row| row.generation == generation);
+            rows.map(|row| (row.name.as_str(), row.runs, row.beaten_count)).collect::<Vec<_>>()
+        };
+        let first = of(PublishedGeneration::Release1);
+        assert_eq!((first[0].0, first.len()), ("rule-based baseline", 16 + 3));
+        assert!(first.contains(&("P01", 1, Some(13))), "{first:?}");
+        assert_eq!(of(PublishedGeneration::Release2), [("P01", 2, None), (IDLE_ROW, 1, None)]);
+        let not_stated = ["Kimi K3", "Grok 4.6", "Grok 4.5"].map(|name| (name, 3, None));
+        assert_eq!(of(PublishedGeneration::NotStated), not_stated);
+        assert_eq!(table.rows[first.len()].name, "P01", "the rows of a generation are together");
+        assert!(table.notes.iter().any(|note| note.starts_with("No results of release 2")));
+        // Published runs that survived to day 497 have a survival of 500 days.
+        let weeks =
+            FinishedRun { days: 497, is_bankrupt: false, ..finished_run("w1", Some("P02"), 1e6, 497) };
+        let table = ResultsTable::new(&[weeks], &[], &idle, ResultsGrouping::Participant);
+        let row = find_row(&table, "P02");
+        assert_eq!((row.max_survival_days, row.horizon_days.as_slice()), (Some(500.0), &[497][..]));
     }
 }

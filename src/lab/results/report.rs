@@ -4,6 +4,7 @@ use super::{ResultsRow, ResultsTable};
 use crate::lab_report::{
     AxisScale, CellValue, Column, Graph, GraphAxis, GraphForm, LabReport, LabTable, Measure, Series,
 };
+use novamind_report::ranking::{PublishedGeneration, format_horizon};
 
 impl ResultsTable {
     /// Returns a report with the results table and a bar graph of the best runs.
@@ -11,6 +12,8 @@ impl ResultsTable {
         let columns = vec![
             Column::text("name", "who"),
             Column::text("source", "source"),
+            Column::text("generation", "generation"),
+            Column::text("horizon_days", "last day"),
             Column::number("bankrupt", "bankrupt", Measure::Count),
             Column::number("runs", "runs", Measure::Count),
             Column::number("best_cash", "best run, cash", Measure::Dollars),
@@ -30,19 +33,29 @@ impl ResultsTable {
     }
 
     fn best_run_graph(&self) -> Graph {
-        let point = |(place, row): (usize, &ResultsRow)| ((place + 1) as f64, row.best_cash);
+        let ranked: Vec<&ResultsRow> =
+            self.rows.iter().filter(|row| row.generation == PublishedGeneration::Release1).collect();
+        let point = |(place, row): (usize, &&ResultsRow)| ((place + 1) as f64, row.best_cash);
         let axis = |label, scale| GraphAxis { label, scale };
         Graph {
-            title: "Cash of the best runs, by rank".to_owned(),
-            summary: format!("{} results, highest cash first.", self.rows.len()),
+            title: "Cash of the best runs of release 1, by rank".to_owned(),
+            summary: format!("{} results, highest cash first.", ranked.len()),
             x_axis: axis("place", AxisScale::Whole),
             y_axis: axis("dollars", AxisScale::Linear),
             series: vec![Series {
                 name: "best run".to_owned(),
-                points: self.rows.iter().enumerate().map(point).collect(),
+                points: ranked.iter().enumerate().map(point).collect(),
             }],
             form: GraphForm::Bars,
         }
+    }
+}
+
+/// Describes the last days of runs: `497 or 500`, or `not stated` if they are not published.
+fn describe_horizons(days: &[u32]) -> String {
+    match days {
+        [] => format_horizon(None),
+        days => days.iter().map(u32::to_string).collect::<Vec<_>>().join(" or "),
     }
 }
 
@@ -50,6 +63,8 @@ fn row_cells(row: &ResultsRow) -> Vec<CellValue> {
     vec![
         CellValue::text(&*row.name),
         CellValue::text(row.source.describe()),
+        CellValue::text(row.generation.name()),
+        CellValue::text(describe_horizons(&row.horizon_days)),
         CellValue::number(row.bankruptcies.map(f64::from)),
         CellValue::Number(f64::from(row.runs)),
         CellValue::Number(row.best_cash),
@@ -57,7 +72,7 @@ fn row_cells(row: &ResultsRow) -> Vec<CellValue> {
         CellValue::number(row.mean_survival_days),
         CellValue::number(row.std_survival_days),
         CellValue::number(row.calls_per_week),
-        CellValue::Number(row.beaten_count as f64),
+        CellValue::number(row.beaten_count.map(|count| count as f64)),
         CellValue::text(row.best_run.as_deref().unwrap_or_default()),
     ]
 }

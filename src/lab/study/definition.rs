@@ -12,7 +12,7 @@ use crate::runner::RunSpec;
 use crate::seeds::parse_seeds;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
+use novamind_world::params::{Horizon, ParameterError, Params, Replayed, line_of_key};
 
 const MAX_RUNS: u64 = 1_000_000;
 
@@ -409,8 +409,8 @@ fn validated_parameters(
     configuration: &Configuration,
 ) -> Result<Params, ParameterError> {
     let error = match (arm.run_conditions(configuration), study_file.until) {
-        (Ok((days, ..)), Some(until)) if until > days => {
-            return Err(source.error_at_key("until", format!("the runs of the study end on day {days}")));
+        (Ok((Horizon { last_day, .. }, ..)), Some(until)) if until > last_day => {
+            return Err(source.error_at_key("until", format!("the runs of the study end on day {last_day}")));
         }
         (Ok((.., params)), _) => return Ok(params),
         (Err(error), _) => error,

@@ -29,7 +29,7 @@ pub struct Scenario {
     pub title: String,
     /// Description of the differences from the default scenario.
     pub description: String,
-    /// Last day of the run, if the scenario sets a last day.
+    /// Length of the run in days, if the scenario sets a length.
     pub days: Option<u32>,
     /// Starting cash in dollars, if the scenario sets an amount.
     pub cash: Option<f64>,
@@ -159,7 +159,9 @@ impl Configuration {
     /// # Errors
     /// A parameter value is invalid; the error names the position of the first invalid value.
     pub fn days_and_cash(&self, scenario: &Scenario, with_world_files: bool) -> Result<(u32, f64), RunError> {
-        Ok(scenario.days_and_cash_with(&self.load_parameters(scenario, &[], with_world_files)?))
+        let params = self.load_parameters(scenario, &[], with_world_files)?;
+        let (days, cash) = scenario.days_and_cash_with(&params);
+        Ok((params.run.horizon(days).last_day, cash))
     }
 
     /// Loads the parameters of a scenario and applies the overrides. Each override is a pair `(table.key, value as TOML)`.
@@ -194,7 +196,8 @@ impl Scenario {
         ParameterSource { name: self.source.name.clone(), text }
     }
 
-    /// Returns the last day and the starting cash, with defaults from the parameters.
+    /// Returns the length in days and the starting cash, with defaults from the parameters. `run.horizon_rule` derives the
+    /// last day from the length.
     pub fn days_and_cash_with(&self, params: &Params) -> (u32, f64) {
         (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }

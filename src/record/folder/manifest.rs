@@ -19,7 +19,9 @@ use crate::trajectory::{Line, Record};
 use novamind_voice::model::settings::RecordedModelSettings;
 use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
-use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources};
+use novamind_world::params::{
+    HorizonRule, Interface, ParameterError, ParameterSource, Params, bundled_sources,
+};
 
 /// Format number of the trajectories and manifests that this program writes.
 pub const FORMAT: u32 = 2;
@@ -43,6 +45,9 @@ pub struct Manifest {
     pub seed: u64,
     /// Last day of the run.
     pub days: u32,
+    /// Length that scales competitor events, if it differs from the last day.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub total_days: Option<u32>,
     /// Cash on day 0, dollars.
     pub cash: f64,
     /// Name of the scenario.
@@ -92,6 +97,26 @@ impl Manifest {
     /// Returns the run id as a number, or 0 if the id is not hexadecimal.
     pub fn id_number(&self) -> u32 {
         u32::from_str_radix(&self.id, 16).unwrap_or(0)
+    }
+
+    /// Returns the length that scales competitor events, in days ([`Horizon`](novamind_world::params::Horizon)).
+    pub fn total_days(&self) -> u32 {
+        self.total_days.unwrap_or(self.days)
+    }
+
+    /// Returns the rule that derived the last day.
+    pub fn horizon_rule(&self) -> HorizonRule {
+        self.parameter("run", "horizon_rule").unwrap_or(HorizonRule::Exact)
+    }
+
+    /// Returns the generation of the released simulator whose rules the run has at its start.
+    pub fn generation(&self) -> Interface {
+        self.parameter("fidelity", "interface").unwrap_or(Interface::Release1)
+    }
+
+    /// Returns the value of a parameter that differs from the bundled parameters.
+    fn parameter<T: serde::de::DeserializeOwned>(&self, table: &str, key: &str) -> Option<T> {
+        self.parameters.get(table)?.get(key)?.clone().try_into().ok()
     }
 
     /// Reads the manifest in a run folder.
@@ -160,6 +185,7 @@ impl Manifest {
             created: line.at.clone(),
             seed: start.seed,
             days: start.days,
+            total_days: start.total_days,
             cash: start.cash,
             scenario: start.scenario,
             mode: start.mode,
@@ -215,15 +241,17 @@ impl Manifest {
     }
 
     /// Returns whether the run has a seeded fault or parameters that differ from the bundled scenario of the same name.
+    /// The horizon rule does not count, because it only determines the length.
     pub fn has_changed_parameters(&self) -> bool {
         let shipped = Configuration::bundled();
         let as_shipped =
             || shipped.load_parameters(&shipped.load_scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
             // Fast path for run lists: most runs use the default scenario, which has no overrides.
-            "default" => !self.parameters.is_empty() || self.fault.is_some(),
+            "default" => self.fault.is_some() || self.parameters.iter().any(|entry| !is_horizon_rule(entry)),
             // The digests are compared because a scenario can have keys that the recording version did not have.
-            _ => as_shipped().is_none_or(|params| {
+            _ => as_shipped().is_none_or(|mut params| {
+                params.run.horizon_rule = self.horizon_rule();
                 ![params.digest(), params.earlier_digest()].contains(&self.parameters_digest)
             }),
         }
@@ -248,6 +276,11 @@ impl Manifest {
         let digest = params.digest();
         if digest == self.parameters_digest { Ok(params) } else { Err(other(digest)) }
     }
+}
+
+/// Returns whether a table of changed parameters contains only the horizon rule.
+fn is_horizon_rule((name, table): (&String, &Value)) -> bool {
+    name == "run" && table.as_table().is_some_and(|table| table.keys().all(|key| key == "horizon_rule"))
 }
 
 /// Returns the number of earlier runs with this seed and scenario.
@@ -287,6 +320,7 @@ pub fn to_start_record(manifest: &Manifest) -> Record {
         run: manifest.id,
         seed: manifest.seed,
         days: manifest.days,
+        total_days: manifest.total_days,
         cash: manifest.cash,
         scenario: manifest.scenario,
         overrides: manifest.parameters,
@@ -320,6 +354,7 @@ mod tests {
             created: "2026-11-21T10:00:00Z".to_owned(),
             seed: 42,
             days: 500,
+            total_days: None,
             cash: 1_000_000.0,
             scenario: "paper".to_owned(),
             mode: Mode::Sandbox,

@@ -15,6 +15,7 @@ use crate::stamp::EarlierRun;
 use crate::trajectory::find_policy;
 use crate::trajectory::record::RunEndReason;
 use crate::trajectory::{Line, Record};
+use novamind_world::params::{HorizonRule, Interface};
 
 /// Summary of a run for run lists.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -48,6 +49,10 @@ pub struct RunSummary {
     pub day: u32,
     /// Last day of the run.
     pub days: u32,
+    /// Rule that derived the last day.
+    pub horizon_rule: HorizonRule,
+    /// Generation of the released simulator whose rules the run has.
+    pub generation: Interface,
     /// Cash on day 0, dollars.
     pub starting_cash: f64,
     /// Cash after the last week, dollars.
@@ -161,6 +166,8 @@ fn summarize_run(folder: &Path) -> RunSummary {
     RunSummary {
         copy_of: (manifest.id != id).then(|| manifest.id.clone()),
         id,
+        horizon_rule: manifest.horizon_rule(),
+        generation: manifest.generation(),
         has_own_parameters: manifest.has_changed_parameters()
             || (may_set_parameters(&manifest) && has_override_lines(&folder.join("trajectory.jsonl"))),
         judged_by_model: manifest.voice.as_ref().is_some_and(|model| model.judge),
@@ -213,6 +220,8 @@ fn unreadable_summary(id: String, problem: String) -> RunSummary {
         participant: None,
         day: 0,
         days: 0,
+        horizon_rule: HorizonRule::Exact,
+        generation: Interface::Release1,
         starting_cash: 0.0,
         cash: 0.0,
         ended: None,

@@ -10,6 +10,7 @@ use super::run_report::RunReport;
 use novamind_base::formatting::escape_control_characters;
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::RunEndReason;
+use novamind_session::Generation;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct LabeledFigure {
@@ -106,7 +107,14 @@ fn describe_source(report: &RunReport) -> String {
     let seed = report.observation.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
     let changed = if report.observation.has_own_parameters { " · changed parameters" } else { "" };
     let scenario: String = escape_control_characters(&report.observation.scenario).chars().take(24).collect();
-    format!("scenario {scenario}{seed}{changed} · version {}", escape_control_characters(&report.version))
+    let generation = match report.observation.generation {
+        Generation::Release1 => "",
+        Generation::Release2 => " · release 2",
+    };
+    format!(
+        "scenario {scenario}{generation}{seed}{changed} · version {}",
+        escape_control_characters(&report.version)
+    )
 }
 
 #[cfg(test)]

@@ -22,7 +22,10 @@ use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
 use novamind_record::trajectory::record::{RunEndReason, SubmittedForecast};
 use novamind_record::trajectory::{Line, Record, find_end, find_policy};
-use novamind_session::{Attendance, RecordedModelSettings, ScoredForecast, Session, SessionCount, TimeSpent};
+use novamind_session::{
+    Attendance, Generation, HorizonRule, RecordedModelSettings, ScoredForecast, Session, SessionCount,
+    TimeSpent,
+};
 use timeline::{Timeline, WeekSpan};
 
 /// Log of a run and of the player's actions in it.
@@ -42,6 +45,10 @@ pub struct Logbook {
     pub seed: u64,
     /// Planned last day of the run.
     pub days: u32,
+    /// Rule that derived the last day.
+    pub horizon_rule: HorizonRule,
+    /// Generation of the released simulator whose rules the run has.
+    pub generation: Generation,
     /// Cash on day 0, dollars.
     pub start_cash: f64,
     /// Format version of the trajectory.
@@ -191,6 +198,8 @@ impl Logbook {
             scenario: manifest.scenario.clone(),
             seed: manifest.seed,
             days: manifest.days,
+            horizon_rule: manifest.horizon_rule(),
+            generation: manifest.generation(),
             start_cash: manifest.cash,
             version: manifest.version.clone(),
             parameters_digest: manifest.parameters_digest.clone(),

@@ -57,8 +57,12 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
             => run.study.as_ref().map(|study| study.refused_labels);
         "mode", "word", "baseline, sandbox, lesson or debug" => run.mode.id();
         "scenario", "name", "scenario of the run" => run.scenario;
+        "generation", "word", "generation of the released simulator whose rules the run has: release_1 or release_2"
+            => run.generation.id();
         "seed", "number", "seed of all random draws" => run.seed;
         "days", "days", "planned last day of the run" => run.days;
+        "horizon_rule", "word", "rule that derived the last day: exact, whole_weeks_below or whole_weeks_above"
+            => run.horizon_rule.name();
         "start_cash", "dollars", "cash on day 0" => run.start_cash;
         "parent", "name", "parent run; empty unless the run is a branch" => run.parent;
         "earlier_runs", "count", "earlier runs of the same participant with this seed and scenario; in format 1, of all participants"

@@ -257,6 +257,8 @@ impl Transcript {
             "scenario": manifest.scenario,
             "mode": manifest.mode.id(),
             "days": manifest.days,
+            "total_days": manifest.total_days(),
+            "generation": manifest.generation(),
             "starting_cash": manifest.cash,
             "parameters_digest": manifest.parameters_digest,
             "program": format!("NovaMind console {}", manifest.version),

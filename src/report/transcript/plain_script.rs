@@ -47,7 +47,7 @@ pub(super) fn new_run_options(run: &Transcript) -> String {
         "--seed {} --scenario {} --days {} --cash {} --mode {}",
         manifest.seed,
         manifest.scenario,
-        manifest.days,
+        manifest.total_days(),
         manifest.cash,
         manifest.mode.id()
     );

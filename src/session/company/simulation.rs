@@ -63,7 +63,7 @@ impl Simulation {
     /// Creates the company of a run on day 0.
     pub fn new(manifest: &Manifest, params: Arc<Params>) -> Simulation {
         let mut facts = Facts::default();
-        let world = World::new(manifest.days, manifest.cash, &params, &mut facts);
+        let world = World::new(manifest.total_days(), manifest.cash, &params, &mut facts);
         Simulation::from_state(manifest, params, (world, facts))
     }
 

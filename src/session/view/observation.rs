@@ -16,6 +16,7 @@ use novamind_record::trajectory::record::RunEndReason;
 use novamind_voice::model::settings::RecordedModelSettings;
 use novamind_world::day::closing_figures;
 use novamind_world::identifiers::{Group, Plan};
+use novamind_world::params::{HorizonRule, Interface};
 
 /// A summary of the company and its run for the player.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -41,6 +42,10 @@ pub struct Observation {
     pub day: u32,
     /// Last day of the run.
     pub last_day: u32,
+    /// Rule that derived the last day.
+    pub horizon_rule: HorizonRule,
+    /// Generation of the released simulator whose rules the run has.
+    pub generation: Interface,
     /// Week of the last simulated day.
     pub week: u32,
     /// Current cash, dollars.
@@ -141,6 +146,8 @@ impl CompanyView<'_> {
             participant: self.manifest.participant.clone(),
             day: self.simulation.world.day,
             last_day: self.manifest.days,
+            horizon_rule: self.manifest.horizon_rule(),
+            generation: self.manifest.generation(),
             week: week_of_day(self.simulation.world.day),
             cash: self.simulation.world.finance.cash,
             starting_cash: self.manifest.cash,

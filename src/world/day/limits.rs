@@ -49,7 +49,7 @@ pub fn exceeded_limit_on_next_day(
 fn expected_leads(world: &World, params: &Params, streams: &Streams) -> f64 {
     let day = world.day + 1;
     let mut market = world.market.clone();
-    surges::draw_week_surges(day, world.total_days, &mut market.surges, params, streams);
+    surges::draw_week_surges(day, world.last_day(params), &mut market.surges, params, streams);
     yields::vary_yields(day, &mut market.yields, params, streams);
     economy::step(day, &mut market.economy, false, params, streams, &mut Facts::default());
     let subscribers = world.customers.active_by_group();

@@ -18,8 +18,8 @@ pub struct Surge {
 canonical! { Surge { day, end_day, multiplier } }
 
 /// Returns the last day of the week that contains `day`. Weeks end on days divisible by 7, and the last week ends with the run.
-pub fn week_end(day: u32, days_per_week: u32, total_days: u32) -> u32 {
-    day.next_multiple_of(days_per_week).min(total_days.max(day))
+pub fn week_end(day: u32, days_per_week: u32, last_day: u32) -> u32 {
+    day.next_multiple_of(days_per_week).min(last_day.max(day))
 }
 
 /// Draws the surge of a day, or returns `None` if the day has no surge.
@@ -47,14 +47,14 @@ pub fn surge_on_day(day: u32, params: &Params, streams: &Streams) -> Option<Surg
 /// Draws the surges of all days of a week on the first day of the week.
 pub fn draw_week_surges(
     day: u32,
-    total_days: u32,
+    last_day: u32,
     surges: &mut Vec<Surge>,
     params: &Params,
     streams: &Streams,
 ) {
     let length = params.run.days_per_week;
     if day % length == 1 {
-        let days = day..=week_end(day, length, total_days);
+        let days = day..=week_end(day, length, last_day);
         surges.extend(days.filter_map(|day| surge_on_day(day, params, streams)));
     }
 }

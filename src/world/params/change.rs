@@ -8,8 +8,8 @@ use super::names::{keys, nearest_keys, value_at};
 
 /// Parameters, tables and lists that cannot change during a run. These keys take effect only at the start of a run, or
 /// define texts that are already recorded.
-const START_ONLY_KEYS: [&str; 6] =
-    ["run.seed", "run.total_days", "run.days_per_week", "initial", "channel", "personas"];
+const START_ONLY_KEYS: [&str; 7] =
+    ["run.seed", "run.total_days", "run.horizon_rule", "run.days_per_week", "initial", "channel", "personas"];
 /// Parameters in `initial` that can change during a run, because they apply to every new customer.
 const PER_CUSTOMER_KEYS: [&str; 2] = ["initial.customer_satisfaction", "initial.customer_relationship"];
 

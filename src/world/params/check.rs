@@ -7,7 +7,9 @@ use toml::{Table, Value};
 
 use super::super::fault::Fault;
 use super::super::identifiers::{Channel, Group};
-use super::{Fidelity, GroupDrift, IndividualDrift, MacroBeta, Params, Personas, Segment, SeriesChoice};
+use super::{
+    Fidelity, GroupDrift, HorizonRule, IndividualDrift, MacroBeta, Params, Personas, Segment, SeriesChoice,
+};
 
 /// Key of an invalid parameter, and the reason why the value is invalid.
 type Problem = (String, String);
@@ -68,7 +70,7 @@ macro_rules! single {
 }
 single!(f64, u8, u32, u64, bool, String, Segment);
 // Types whose numbers have no allowed range.
-single!(Fault, Fidelity, GroupDrift, IndividualDrift, MacroBeta, Personas, SeriesChoice);
+single!(Fault, Fidelity, GroupDrift, HorizonRule, IndividualDrift, MacroBeta, Personas, SeriesChoice);
 
 impl<T: Ranged> Ranged for Option<T> {
     fn check(value: &Value, path: &str, range: &Range) -> Checked {

@@ -39,7 +39,8 @@ use super::identifiers::{ByChannel, ByGroup, Channel, Group};
 
 /// Keys that were added after runs had been recorded. Each element consists of the table, the key, and the default
 /// value as JSON. The default value preserves the earlier behavior.
-const ADDED_KEYS: [(&str, &str, &str); 4] = [
+const ADDED_KEYS: [(&str, &str, &str); 5] = [
+    ("run", "horizon_rule", "\"exact\""),
     ("fidelity", "insight_noise", "\"independent\""),
     ("fidelity", "renewal_price", "\"list\""),
     ("fidelity", "enterprise_quality_cap", "\"one\""),

@@ -11,6 +11,8 @@ parameters! {
         pub seed: u64,
         /// Default length of a run in days. Competitor events grow until shortly before the last day.
         pub total_days: u32 where 7.0..=100_000.0,
+        /// Rule that derives the last day from the length of a run.
+        pub horizon_rule: HorizonRule,
         /// Days that one `next_week` call simulates. The last week of a run can be shorter.
         pub days_per_week: u32 where 7.0..=7.0,
         /// Bankruptcy threshold, dollars. The run ends when cash is below the threshold at the end of a day.
@@ -75,6 +77,56 @@ parameters! {
         pub dashboard_post_preview_chars: u32 where 0.0..=1e9,
         /// Horizons of the weekly cash forecasts, in days.
         pub prediction_horizons_days: Vec<u32> where 1.0..=100_000.0,
+    }
+}
+
+/// Rule that derives the last day from the length of a run (`docs/mechanics/day.md#last-day`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HorizonRule {
+    /// The run ends on the last day of its length. The last week can be shorter.
+    Exact,
+    /// The length is rounded down to whole weeks, as by the packaged agent runners of the released simulator.
+    WholeWeeksBelow,
+    /// The last week is simulated completely, as by the command line of the released simulator.
+    WholeWeeksAbove,
+}
+
+/// Last day of a run, and the length that scales competitor events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Horizon {
+    /// Last day of the run.
+    pub last_day: u32,
+    /// Length that scales the size, the frequency and the last possible day of competitor events, in days.
+    pub total_days: u32,
+}
+
+impl Run {
+    /// Returns the horizon of a run with a length of `days`. The horizon of `last_day` has the same last day, and the
+    /// horizon of `total_days` is the same.
+    pub fn horizon(&self, days: u32) -> Horizon {
+        let week = self.days_per_week;
+        match self.horizon_rule {
+            HorizonRule::Exact => Horizon { last_day: days, total_days: days },
+            HorizonRule::WholeWeeksBelow => {
+                let whole = days - days % week;
+                Horizon { last_day: whole, total_days: whole }
+            }
+            HorizonRule::WholeWeeksAbove => {
+                Horizon { last_day: days.next_multiple_of(week), total_days: days }
+            }
+        }
+    }
+}
+
+impl HorizonRule {
+    /// Returns the name of the rule in parameters and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            HorizonRule::Exact => "exact",
+            HorizonRule::WholeWeeksBelow => "whole_weeks_below",
+            HorizonRule::WholeWeeksAbove => "whole_weeks_above",
+        }
     }
 }
 
@@ -237,6 +289,24 @@ pub enum Interface {
     Release2,
 }
 
+impl Interface {
+    /// Returns the identifier of the generation in parameters and data.
+    pub fn id(self) -> &'static str {
+        match self {
+            Interface::Release1 => "release_1",
+            Interface::Release2 => "release_2",
+        }
+    }
+
+    /// Returns the name of the generation in texts and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Interface::Release1 => "release 1",
+            Interface::Release2 => "release 2",
+        }
+    }
+}
+
 /// Recorded series that are replayed instead of being drawn (`docs/mechanics/randomness.md#recorded-series`).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -253,4 +323,38 @@ pub enum Replayed {
     None,
     /// Series recorded from the released simulator with seed 42.
     Seed42,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Params;
+
+    #[test]
+    fn horizon_has_whole_weeks_unless_the_rule_is_exact() {
+        use HorizonRule::{Exact, WholeWeeksAbove, WholeWeeksBelow};
+        let mut run = Params::bundled().run;
+        for (rule, days, last_day, total_days) in [
+            (Exact, 500, 500, 500),
+            // The packaged agent runners are configured with 497 days, the command line with 500 days.
+            (WholeWeeksBelow, 500, 497, 497),
+            (WholeWeeksAbove, 500, 504, 500),
+            (Exact, 100, 100, 100),
+            (WholeWeeksBelow, 100, 98, 98),
+            (WholeWeeksAbove, 100, 105, 100),
+            (WholeWeeksBelow, 497, 497, 497),
+            (WholeWeeksAbove, 497, 497, 497),
+            (WholeWeeksBelow, 504, 504, 504),
+            (WholeWeeksAbove, 504, 504, 504),
+            (WholeWeeksBelow, 7, 7, 7),
+            (WholeWeeksAbove, 8, 14, 8),
+            (WholeWeeksAbove, 100_000, 100_002, 100_000),
+        ] {
+            run.horizon_rule = rule;
+            let horizon = run.horizon(days);
+            assert_eq!(horizon, Horizon { last_day, total_days }, "{rule:?}, {days} days");
+            assert_eq!(run.horizon(horizon.total_days), horizon, "{rule:?}, {days} days");
+            assert_eq!(run.horizon(horizon.last_day).last_day, last_day, "{rule:?}, {days} days");
+        }
+    }
 }

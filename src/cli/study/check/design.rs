@@ -23,7 +23,8 @@ fn days_and_horizons(study: &Study, configuration: &Configuration) -> Result<(u3
     let scenario = configuration.load_scenario(&study.protocol.world.scenario)?;
     let params = configuration.load_parameters(&scenario, &[], false)?;
     let (days, _) = configuration.days_and_cash(&scenario, false)?;
-    Ok((study.protocol.world.days.unwrap_or(days), params.limits.prediction_horizons_days.clone()))
+    let horizon = params.run.horizon(study.protocol.world.days.unwrap_or(days));
+    Ok((horizon.last_day, params.limits.prediction_horizons_days.clone()))
 }
 
 /// Reports questionnaires that are due after the last week of a session.

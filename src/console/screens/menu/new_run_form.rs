@@ -34,7 +34,7 @@ pub(super) const FORM_ROWS: [(&str, &str); 7] = [
     ("Mode", "Purpose of the run; left and right change the mode. Fixed once the run starts."),
     ("Scenario", "Parameters of the market; left and right change the scenario."),
     ("Seed", "The same seed gives the same random events."),
-    ("Days", "Last day of the run, at least 7. Published results ran for 500."),
+    ("Days", "Length of the run, at least 7. Published results are those of day 500."),
     ("Starting cash", "Dollars on day 0."),
     ("Participant", "A label for the record, required in baseline runs."),
     ("Start", "Start the run (enter)"),

@@ -7,7 +7,9 @@ use novamind_base::formatting::{compact_number, dollars};
 use novamind_record::folder::runs::RunSummary;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_report::ranking::{describe_published_conditions, published_results};
+use novamind_report::ranking::{
+    PublishedAgent, describe_published_conditions, format_horizon, published_results,
+};
 use novamind_report::ranking_eligibility::{RankingCriteria, RankingObstacle, explain_unranked_runs};
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::text::wrap;
@@ -17,38 +19,47 @@ use novamind_tui::widgets::table::first_visible_row;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RankedResult {
     name: String,
+    rank: Option<usize>,
     cash: f64,
     note: String,
     is_own: bool,
 }
 
-/// Returns the published results and the user's results, the best first.
+/// Returns the published results of release 1 and the user's results, the best first, then the published results that
+/// are not ranked.
 pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
-    let paper = published_results();
+    let published = published_results();
     let baseline = RankedResult {
         name: "Rule-based baseline".to_owned(),
-        cash: paper.rule_based_baseline,
+        rank: None,
+        cash: published.rule_based_baseline,
         note: String::new(),
         is_own: false,
     };
     let mut results = vec![baseline];
-    results.extend(paper.agent.iter().map(|agent| RankedResult {
+    let row = |agent: &PublishedAgent, note: String| RankedResult {
         name: agent.name.clone(),
+        rank: None,
         cash: agent.best_cash,
-        note: format!("{} of {} bankrupt", agent.bankruptcies, agent.runs),
+        note: format!("{} of {} bankrupt · {note}", agent.bankruptcies, agent.runs),
         is_own: false,
-    }));
+    };
+    let days = |agent: &PublishedAgent| format!("{} days", format_horizon(agent.horizon_days));
+    results.extend(published.paper().agent.iter().map(|agent| row(agent, days(agent))));
     results.extend(
         runs.iter()
             .filter(|run| obstacles(run).is_some_and(|ranking_obstacles| ranking_obstacles.is_empty()))
             .map(|run| RankedResult {
                 name: format!("You · {}", run.id),
+                rank: None,
                 cash: if run.ended == Some(RunEndReason::Bankruptcy) { 0.0 } else { run.cash },
-                note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
+                note: format!("{} · seed {} · {} days", run.mode.map_or("", Mode::id), run.seed, run.days),
                 is_own: true,
             }),
     );
     results.sort_by(|left, right| right.cash.total_cmp(&left.cash).then_with(|| left.name.cmp(&right.name)));
+    results.iter_mut().enumerate().for_each(|(at, result)| result.rank = Some(at + 1));
+    results.extend(published.unranked_agents().map(|agent| row(agent, "generation not stated".to_owned())));
     results
 }
 
@@ -71,8 +82,8 @@ impl StartMenu {
         let list = Rect { height: inside.height.saturating_sub(lines.len() as u16 + 1), ..inside };
         let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
         let from = first_visible_row(self.selected, list.height as usize, results.len());
-        for (row, (at, result)) in row_rects(list).zip(results.iter().enumerate().skip(from)) {
-            draw_result(canvas, row, at, result, most);
+        for (row, result) in row_rects(list).zip(results.iter().skip(from)) {
+            draw_result(canvas, row, result, most);
         }
         let used = list.height + 1;
         let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
@@ -96,25 +107,27 @@ impl StartMenu {
 fn source_text() -> String {
     let bound = compact_number(published_results().estimated_upper_bound);
     format!(
-        "{}, best cash of three runs each. Estimated upper bound: ${bound}.",
-        describe_published_conditions()
+        "{}, best cash of three runs each.\nEstimated upper bound: ${bound}. {}.",
+        describe_published_conditions(),
+        published_results().explain_unranked_agents()
     )
 }
 
-fn draw_result(canvas: &mut Canvas<'_>, row: Rect, at: usize, result: &RankedResult, most: f64) {
+fn draw_result(canvas: &mut Canvas<'_>, row: Rect, result: &RankedResult, most: f64) {
     let role = if result.is_own { Role::Key } else { Role::Text };
     let place =
         |x: u16, width: u16| Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
     let mark = if result.is_own { "▌" } else { " " };
+    let rank = result.rank.map_or("–".to_owned(), |rank| rank.to_string());
     canvas.draw_text(place(0, 1), mark, role);
-    canvas.draw_aligned(place(1, 2), &(at + 1).to_string(), Role::Dim, Align::Right);
+    canvas.draw_aligned(place(1, 2), &rank, Role::Dim, Align::Right);
     canvas.draw_text(place(4, 22), &result.name, role);
     canvas.draw_aligned(place(27, 13), &dollars(result.cash), role, Align::Right);
-    canvas.draw_text(place(41, 20), &result.note, Role::Dim);
-    let room = row.width.saturating_sub(62);
+    canvas.draw_text(place(41, 31), &result.note, Role::Dim);
+    let room = row.width.saturating_sub(73);
     let length = (f64::from(room) * (result.cash / most).clamp(0.0, 1.0)).round() as usize;
     let bar = "█".repeat(length.max(usize::from(result.cash > 0.0)));
-    canvas.draw_text(place(62, room), &bar, if result.is_own { Role::Key } else { Role::Series(0) });
+    canvas.draw_text(place(73, room), &bar, if result.is_own { Role::Key } else { Role::Series(0) });
 }
 
 #[cfg(test)]
@@ -151,6 +164,10 @@ mod tests {
         let ranked_result =
             results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt run");
         assert!(ranked_result.cash.abs() < 1e-9);
-        assert!(results.is_sorted_by(|left, right| left.cash >= right.cash));
+        let (ranked, others): (Vec<&RankedResult>, Vec<&RankedResult>) =
+            results.iter().partition(|result| result.rank.is_some());
+        assert!(ranked.is_sorted_by(|left, right| left.cash >= right.cash));
+        let names: Vec<&str> = others.iter().map(|result| result.name.as_str()).collect();
+        assert_eq!(names, ["Kimi K3", "Grok 4.6", "Grok 4.5"]);
     }
 }

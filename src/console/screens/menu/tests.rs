@@ -6,7 +6,7 @@ use super::*;
 use crate::test_kit::{only_question, render_rows};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::RunEndReason;
-use novamind_session::{Access, SeekTarget};
+use novamind_session::{Access, Generation, HorizonRule, SeekTarget};
 use novamind_worker::request::{RecordSource, Request};
 
 pub(crate) fn summary(id: &str) -> RunSummary {
@@ -17,6 +17,8 @@ pub(crate) fn summary(id: &str) -> RunSummary {
         mode: Some(Mode::Sandbox),
         seed: 42,
         scenario: "default".to_owned(),
+        horizon_rule: HorizonRule::Exact,
+        generation: Generation::Release1,
         has_own_parameters: false,
         judged_by_model: false,
         is_branch: false,

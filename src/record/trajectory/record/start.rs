@@ -29,6 +29,9 @@ pub struct Start {
     pub seed: u64,
     /// Last day of the run.
     pub days: u32,
+    /// Length that scales competitor events, if it differs from the last day.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub total_days: Option<u32>,
     /// Cash on day 0, dollars.
     #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,

@@ -32,7 +32,7 @@ pub(super) struct NewRunForm {
 /// Label and description of each row of the form.
 pub(super) const FORM_ROWS: [(&str, &str); 7] = [
     ("Mode", "Purpose of the run; left and right change the mode. Fixed once the run starts."),
-    ("Scenario", "Parameters of the market; left and right change the scenario."),
+    ("Scenario", "Rules of the market; left and right change the scenario."),
     ("Seed", "The same seed gives the same random events."),
     ("Days", "Last day of the run, at least 7. Published results ran for 500."),
     ("Starting cash", "Dollars on day 0."),
@@ -40,6 +40,7 @@ pub(super) const FORM_ROWS: [(&str, &str); 7] = [
     ("Start", "Start the run (enter)"),
 ];
 
+const SCENARIO_ROW: usize = 1;
 const VALUE_COLUMN: u16 = 17;
 const FIELD_WIDTH: u16 = 18;
 
@@ -214,9 +215,16 @@ impl NewRunForm {
         }
         let mode = Mode::SELECTABLE[self.mode];
         let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
-        say("", Role::Dim);
-        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
-        say(&format!("scenario: {scenario}"), Role::Text);
+        if below.height > 5 {
+            say("", Role::Dim);
+        }
+        let mode = format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode));
+        let mut descriptions = [mode, format!("scenario: {scenario}")];
+        // The text about the selected row comes first, because a small window does not show both.
+        if self.selected_row == SCENARIO_ROW {
+            descriptions.swap(0, 1);
+        }
+        descriptions.iter().for_each(|text| say(text, Role::Text));
         for (row, (line, role)) in row_rects(below).zip(&lines) {
             canvas.draw_text(row, line, *role);
         }

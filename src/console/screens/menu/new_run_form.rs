@@ -203,28 +203,27 @@ impl NewRunForm {
                 self.draw_row(canvas, Rect { y, height: 1, ..inside }, at);
             }
         }
-        let used = (FORM_ROWS.len() + gap + 1) as u16;
+        let used = (FORM_ROWS.len() + gap + usize::from(inside.height > 10)) as u16;
         let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
         let mut lines: Vec<(String, Role)> = Vec::new();
         let mut say = |text: &str, role: Role| {
             lines.extend(wrap(text, below.width.min(100) as usize).into_iter().map(|line| (line, role)));
         };
+        let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
+        let (help, scenario) = (FORM_ROWS[self.selected_row].1, format!("scenario: {scenario}"));
+        // A small window has space for only one of the texts.
+        let (first, last) = match self.selected_row == SCENARIO_ROW && self.rejection.is_none() {
+            true => (&*scenario, help),
+            false => (help, &*scenario),
+        };
         match &self.rejection {
             Some(problem) => say(&format!("! {problem}"), Role::Bad),
-            None => say(FORM_ROWS[self.selected_row].1, Role::Text),
+            None => say(first, Role::Text),
         }
         let mode = Mode::SELECTABLE[self.mode];
-        let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
-        if below.height > 5 {
-            say("", Role::Dim);
-        }
-        let mode = format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode));
-        let mut descriptions = [mode, format!("scenario: {scenario}")];
-        // The text about the selected row comes first, because a small window does not show both.
-        if self.selected_row == SCENARIO_ROW {
-            descriptions.swap(0, 1);
-        }
-        descriptions.iter().for_each(|text| say(text, Role::Text));
+        say("", Role::Dim);
+        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
+        say(last, Role::Text);
         for (row, (line, role)) in row_rects(below).zip(&lines) {
             canvas.draw_text(row, line, *role);
         }

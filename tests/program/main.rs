@@ -33,6 +33,8 @@ mod python_client;
 #[cfg(unix)]
 mod python_scripts;
 #[cfg(feature = "server")]
+mod release_2;
+#[cfg(feature = "server")]
 mod retries;
 mod scenarios;
 mod seeded_faults;

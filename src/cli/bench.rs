@@ -29,6 +29,9 @@ pub struct Options {
     /// Run one repetition, and skip benchmarks that take minutes
     #[arg(long, conflicts_with = "runs")]
     quick: bool,
+    /// Scenario of the measured runs; targets are defined for `default` [default: default]
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
     /// Folder for the measured runs [default: the system's temporary folder]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
@@ -69,6 +72,7 @@ struct Row {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
+    options.scenario.as_ref().map(|name| context.configuration.load_scenario(name)).transpose()?;
     let scratch = ScratchFolder::create(options.folder.as_deref())?;
     let cases = options.cases();
     if options.measure {
@@ -76,19 +80,20 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             repetitions: options.repetitions(),
             scratch_folder: scratch.0.clone(),
             configuration: context.configuration.clone(),
+            scenario: options.scenario.clone(),
         };
         return measure_in_process(&cases, &bench);
     }
     let loops: Vec<f64> = (0..options.repetitions()).map(|_| calibration_seconds()).collect();
     let calibration = median(&loops).unwrap_or(f64::NAN);
     if !options.json {
-        print(&header(calibration, options.repetitions()))?;
+        print(&header(calibration, options.repetitions(), options.scenario.as_deref()))?;
     }
     let progress = progress_bar(cases.len() as u64, "cases");
     let mut rows = Vec::new();
     for case in cases {
         progress.set_message(case.name);
-        let measured = measure(case, options.repetitions(), &scratch.0);
+        let measured = measure(case, options, &scratch.0);
         progress.inc(1);
         for (figure, samples) in case.figures.iter().zip(measured?) {
             let row = Row { case: case.name, figure, samples };
@@ -99,7 +104,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
     }
     progress.finish_and_clear();
-    if options.json { print(&(to_json(&rows, calibration) + "\n")) } else { Ok(()) }
+    if options.json {
+        print(&(to_json(&rows, calibration, options.scenario.as_deref()) + "\n"))
+    } else {
+        Ok(())
+    }
 }
 
 /// A temporary folder that is removed when the value is dropped.
@@ -131,23 +140,32 @@ fn measure_in_process(cases: &[&BenchCase], bench: &BenchContext) -> Result<(), 
 }
 
 /// Runs a benchmark in child processes, because peak memory can only be measured for a whole process.
-fn measure(case: &BenchCase, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+fn measure(case: &BenchCase, options: &Options, scratch: &Path) -> Result<Samples, Failure> {
+    let repetitions = options.repetitions();
     let (processes, each) = if case.needs_new_process { (repetitions, 1) } else { (1, repetitions) };
     let mut all: Samples = vec![Vec::new(); case.figures.len()];
     for _ in 0..processes {
-        for (samples, more) in all.iter_mut().zip(measure_in_child(case, each, scratch)?) {
+        for (samples, more) in
+            all.iter_mut().zip(measure_in_child(case, each, options.scenario.as_deref(), scratch)?)
+        {
             samples.extend(more);
         }
     }
     Ok(all)
 }
 
-fn measure_in_child(case: &BenchCase, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+fn measure_in_child(
+    case: &BenchCase,
+    repetitions: usize,
+    scenario: Option<&str>,
+    scratch: &Path,
+) -> Result<Samples, Failure> {
     let failed = |problem: String| Failure::failed(format!("{}: {problem}", case.name));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let output = Command::new(program)
         .args(["bench", "--measure", "--only", case.name, "--runs", &repetitions.to_string(), "--folder"])
         .arg(scratch)
+        .args(scenario.into_iter().flat_map(|name| ["--scenario", name]))
         .stdin(Stdio::null())
         .stderr(Stdio::inherit())
         .output()
@@ -162,11 +180,12 @@ fn thread_count() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-fn header(calibration: f64, repetitions: usize) -> String {
+fn header(calibration: f64, repetitions: usize, scenario: Option<&str>) -> String {
+    let scenario = scenario.map_or(String::new(), |name| format!(" · scenario {name}"));
     let often =
         if repetitions == 1 { "one repetition".to_owned() } else { format!("medians of {repetitions}") };
     format!(
-        "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s\n\n{:<54} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
+        "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s{scenario}\n\n{:<54} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
         env!("CARGO_PKG_VERSION"),
         thread_count(),
         "",
@@ -207,7 +226,7 @@ fn calibration_ratio(value: Option<f64>, unit: BenchUnit, calibration: f64) -> O
     Some(value? * unit.seconds_per_unit()? / calibration)
 }
 
-fn to_json(rows: &[Row], calibration: f64) -> String {
+fn to_json(rows: &[Row], calibration: f64, scenario: Option<&str>) -> String {
     let row = |row: &Row| {
         let value = median(&row.samples);
         let verdict: TargetVerdict = row.figure.verdict(value);
@@ -227,6 +246,7 @@ fn to_json(rows: &[Row], calibration: f64) -> String {
     let report = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "threads": thread_count(),
+        "scenario": scenario,
         "calibration_seconds": calibration,
         "figures": all,
     });

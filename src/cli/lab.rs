@@ -33,7 +33,7 @@ use super::run::{SeedRange, parse_seeds, progress_bar, thread_pool};
 use super::{Context, Failure, print};
 use crate::lab::{
     GoldenComparison, MetricValue, MetricsCollector, Policy, ReferenceFigures, RunSpec,
-    compare_with_reference, play_policy, read_reference,
+    compare_with_reference, play_policy, read_reference, read_reference_scenario,
 };
 
 #[derive(Debug, Args)]
@@ -87,6 +87,9 @@ struct GoldenOptions {
     /// Folder of policy files [default: the reference folder, otherwise the bundled policies]
     #[arg(long, value_name = "DIR")]
     policies: Option<PathBuf>,
+    /// Scenario [default: the scenario in reference.toml of the folder, otherwise the scenario of the policies]
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
     /// Seeds, at least 24; suspicious figures are rerun on the same number of subsequent seeds
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
@@ -146,6 +149,8 @@ impl Verdict {
 fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> {
     let names = policy_names(&golden.folder, &golden.only)?;
     let pool = thread_pool(golden.jobs)?;
+    let scenario = golden_scenario(golden, context)?;
+    let scenario = scenario.as_deref();
     let (mut verdicts, mut unplayed) = (Vec::new(), Vec::new());
     for name in &names {
         let mut reference = read_reference(&golden.folder, name)?;
@@ -162,14 +167,27 @@ fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> 
         let seeds = &golden.seeds;
         let comparison = compare_with_reference(
             &reference,
-            &checkpoint_figures(&policy, &reference, seeds, context, &pool)?,
+            &checkpoint_figures(&policy, scenario, &reference, seeds, context, &pool)?,
         );
-        let biased = confirm_bias(&comparison, &policy, &reference, seeds, context, &pool)?;
+        let biased = confirm_bias(&comparison, &policy, scenario, &reference, seeds, context, &pool)?;
         let verdict = Verdict { comparison, biased };
         print(&describe(&verdict, golden.all))?;
         verdicts.push(verdict);
     }
     summarize(&verdicts, &unplayed, &golden.seeds)
+}
+
+/// Returns the scenario of the comparison, and prints the scenario if it was chosen by the option or the reference.
+fn golden_scenario(golden: &GoldenOptions, context: &Context) -> Result<Option<String>, Failure> {
+    let scenario = match &golden.scenario {
+        Some(name) => Some(name.clone()),
+        None => read_reference_scenario(&golden.folder)?,
+    };
+    if let Some(name) = &scenario {
+        context.configuration.load_scenario(name)?;
+        print(&format!("scenario {name}\n"))?;
+    }
+    Ok(scenario)
 }
 
 fn is_excluded(without: &[String], figure: &str, group: &str) -> bool {
@@ -208,6 +226,7 @@ fn find_policy(golden: &GoldenOptions, context: &Context, name: &str) -> Result<
 /// Returns the figures of every seed at the checkpoint days of a reference.
 fn checkpoint_figures(
     policy: &Policy,
+    scenario: Option<&str>,
     reference: &ReferenceFigures,
     seeds: &SeedRange,
     context: &Context,
@@ -220,6 +239,7 @@ fn checkpoint_figures(
             days: policy.start.days.or(Some(500)),
             stop_after_day: Some(until),
             surges: Some(policy.start.surges == Some(true)),
+            scenario: scenario.map(str::to_owned),
             ..RunSpec::for_seed(seed)
         };
         let mut collector = MetricsCollector::new(Some(reference.days()));
@@ -238,6 +258,7 @@ fn checkpoint_figures(
 fn confirm_bias(
     comparison: &GoldenComparison,
     policy: &Policy,
+    scenario: Option<&str>,
     reference: &ReferenceFigures,
     seeds: &SeedRange,
     context: &Context,
@@ -249,9 +270,8 @@ fn confirm_bias(
     }
     let count = seeds.last - seeds.first + 1;
     let following = SeedRange { first: seeds.last + 1, last: seeds.last + count };
-    let again =
-        compare_with_reference(reference, &checkpoint_figures(policy, reference, &following, context, pool)?)
-            .suspect_figures();
+    let figures = checkpoint_figures(policy, scenario, reference, &following, context, pool)?;
+    let again = compare_with_reference(reference, &figures).suspect_figures();
     let confirmed = suspects.into_iter().filter_map(|(figure, first)| {
         let (_, second) =
             again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;

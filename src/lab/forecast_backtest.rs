@@ -21,16 +21,18 @@ pub struct PlayedWeeks {
     pub weeks: Vec<WeekFigures>,
 }
 
-/// Plays a policy on a seed and returns the weeks of the run.
+/// Plays a policy on a seed and returns the weeks of the run. Without a scenario, the policy's scenario is used.
 ///
 /// # Errors
 /// Fails if the run cannot start or a tool rejects a call that must succeed.
 pub fn play_weeks(
     policy: &Policy,
     seed: u64,
+    scenario: Option<&str>,
     configuration: &Configuration,
 ) -> Result<PlayedWeeks, RunError> {
-    let weeks = play_all_weeks(policy, &RunSpec::for_seed(seed), configuration)?;
+    let spec = RunSpec { scenario: scenario.map(str::to_owned), ..RunSpec::for_seed(seed) };
+    let weeks = play_all_weeks(policy, &spec, configuration)?;
     Ok(PlayedWeeks { policy: policy.name.clone(), weeks })
 }
 

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use super::metrics::MetricValue;
 use novamind_base::statistics::{SampleStatistics, median};
 
@@ -106,6 +108,31 @@ pub fn read_reference(folder: &Path, policy: &str) -> Result<ReferenceFigures, G
         }
     }
     Ok(reference)
+}
+
+/// File of a reference folder with facts about the whole reference.
+const REFERENCE_FILE: &str = "reference.toml";
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ReferenceFile {
+    /// Scenario that reproduces the measured release.
+    scenario: String,
+}
+
+/// Returns the scenario that `reference.toml` of a reference folder names, or `None` if the folder has no such file.
+///
+/// # Errors
+/// Fails if the file cannot be read or is invalid.
+pub fn read_reference_scenario(folder: &Path) -> Result<Option<String>, GoldenError> {
+    let path = folder.join(REFERENCE_FILE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let wrong = |problem: String| GoldenError { path: path.clone(), problem };
+    let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    let file: ReferenceFile = toml::from_str(&text).map_err(|error| wrong(error.message().to_owned()))?;
+    Ok(Some(file.scenario))
 }
 
 fn read_table<const WIDTH: usize>(

@@ -39,6 +39,7 @@ pub use forecast_backtest::{
 };
 pub use golden_figures::{
     GoldenComparison, GoldenError, ReferenceFigures, compare_with_reference, read_reference,
+    read_reference_scenario,
 };
 pub use lesson_check::{
     FigureResult, GoalResult, LessonCheck, PlayResult, TOLERANCE, check_lesson, check_plays,

@@ -218,7 +218,12 @@ fn queries_match_plain_tables_within_step_limit() {
 fn print_statement_times_with_190_000_subscribers() {
     let scratch = tempfile::tempdir().expect("a folder");
     let configuration = Configuration::bundled();
-    let bench = BenchContext { repetitions: 1, scratch_folder: scratch.path().to_owned(), configuration };
+    let bench = BenchContext {
+        repetitions: 1,
+        scratch_folder: scratch.path().to_owned(),
+        configuration,
+        scenario: None,
+    };
     let session = create_company_for_queries(&bench).expect("a company");
     let connection = session.database().open_connection().expect("a connection");
     let patient = QueryLimits { steps: None, time: Duration::from_secs(120), ..LIMITS };

@@ -337,6 +337,20 @@ fn short_lessons_pass_their_check_on_a_seed() {
 }
 
 #[test]
+fn lesson_passes_its_check_under_release_2() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("ladder.toml");
+    let lesson = Lesson::load("ladder", &Configuration::bundled()).expect("a lesson");
+    lesson.copy_to(&path).expect("a copy");
+    let plan = std::fs::read_to_string(&path).expect("a plan").replace("\"competitor-off\"", "\"release-2\"");
+    std::fs::write(&path, plan).expect("a plan");
+    let lesson = Lesson::from_file(&path).expect("a lesson");
+    assert_eq!(lesson.plan.parts[0].scenario, "release-2");
+    let check = check_plays(&Arc::new(lesson), &[2]).expect("it plays");
+    assert!(check.describe_problems().is_empty(), "{:?}", check.describe_problems());
+}
+
+#[test]
 #[ignore = "slow: .ci/full runs it"]
 fn all_lessons_pass_their_check_on_a_seed() {
     check_lessons(&[]);

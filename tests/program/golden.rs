@@ -24,14 +24,35 @@ fn all_policies_match_golden_figures() {
     check_policies(&["P0", "P10", "P1a", "P1b", "P6", "P8"]);
 }
 
-fn check_policies(policies: &[&str]) {
+/// Policies agree with the figures of release 2 under the scenario `release-2`, and differ under `default`.
+#[test]
+#[ignore = "slow: .ci/full runs it"]
+fn golden_figures_of_release_2_match_their_generation_only() {
+    let policies = ["P1a", "P1b"];
+    let (text, agrees) = compare_with_golden("golden-r2", &policies, &["--seeds", "1..48"]);
+    assert!(agrees && text.starts_with("scenario release-2\n"), "{text}");
+    for policy in policies {
+        assert!(text.contains(&format!("{policy} ")), "{policy} was not compared:\n{text}");
+    }
+    let (text, agrees) = compare_with_golden("golden-r2", &policies, &["--scenario", "default"]);
+    assert!(!agrees && text.starts_with("scenario default\n"), "{text}");
+    assert!(text.lines().any(|line| line.starts_with("P1a ") && line.ends_with("FAILS")), "{text}");
+}
+
+/// Compares policies with a folder of golden figures. Returns the output and whether the figures agree.
+fn compare_with_golden(folder: &str, policies: &[&str], options: &[&str]) -> (String, bool) {
     let runs = tempfile::tempdir().expect("a folder");
     let mut command = Command::new(env!("CARGO_BIN_EXE_novamind"));
-    command.args(["lab", "golden"]).arg(data_path("golden")).env("NOVAMIND_RUNS", runs.path());
-    command.args(policies.iter().flat_map(|policy| ["--only", policy]));
+    command.args(["lab", "golden"]).arg(data_path(folder)).env("NOVAMIND_RUNS", runs.path());
+    command.args(options).args(policies.iter().flat_map(|policy| ["--only", policy]));
     let output = command.output().expect("the program starts");
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    let text = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    (text.concat(), output.status.success())
+}
+
+fn check_policies(policies: &[&str]) {
+    let (text, agrees) = compare_with_golden("golden", policies, &[]);
+    assert!(agrees, "{text}");
     for policy in policies {
         assert!(text.contains(&format!("{policy} ")), "{policy} was not compared:\n{text}");
     }
@@ -85,13 +106,15 @@ fn figures(path: &Path) -> Figures {
 /// Compares exact figures with the last release. Random streams are the same in every version, so a difference is
 /// either an error or an intended change with a new mechanics number and new figures.
 #[track_caller]
-fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
+fn check_figures(name: &str, policy: &str, scenario: &str, seeds: &str, until: &str, days: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let (path, kept) = (folder.path().join("own.csv"), data_path("paired").join(name));
     let options = [
         "run",
         "--policy",
         policy,
+        "--scenario",
+        scenario,
         "--seed",
         seeds,
         "--days",
@@ -127,16 +150,22 @@ fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str)
 #[test]
 fn run_with_every_setting_keeps_released_figures() {
     let policy = data_path("policies/everything.toml");
-    check_figures("everything.csv", &policy.to_string_lossy(), "1..2", "182", "56,119,182");
+    check_figures("everything.csv", &policy.to_string_lossy(), "default", "1..2", "182", "56,119,182");
+}
+
+#[test]
+fn run_under_release_2_keeps_released_figures() {
+    let policy = data_path("policies/everything.toml");
+    check_figures("everything-r2.csv", &policy.to_string_lossy(), "release-2", "1", "182", "56,182");
 }
 
 #[test]
 fn run_with_saturated_market_keeps_released_figures() {
-    check_figures("P1a.csv", "P1a", "3", "300", "120,300");
+    check_figures("P1a.csv", "P1a", "default", "3", "300", "120,300");
 }
 
 #[test]
 fn other_policies_keep_released_figures() {
-    check_figures("P8.csv", "P8", "4", "200", "60,200");
-    check_figures("P10.csv", "P10", "5", "200", "60,200");
+    check_figures("P8.csv", "P8", "default", "4", "200", "60,200");
+    check_figures("P10.csv", "P10", "default", "5", "200", "60,200");
 }

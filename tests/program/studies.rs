@@ -75,8 +75,20 @@ fn recorded_answers(run: &std::path::Path) -> Vec<String> {
 
 #[test]
 fn participant_session_runs_from_label_to_thanks() {
+    play_participant_session("default");
+}
+
+#[test]
+fn participant_session_runs_under_release_2() {
+    play_participant_session("release-2");
+}
+
+fn play_participant_session(scenario: &str) {
     let lab = StudyHome::new();
+    lab.edit("scenario = \"default\"", &format!("scenario = \"{scenario}\""));
     lab.assign();
+    let protocol = lab.0.run(&["study", "protocol", &lab.folder()]).stdout;
+    assert!(protocol.contains(&format!("Session: scenario {scenario}, 35 days")), "{protocol}");
     let script = format!("P9\nP01\nwhat?\nyes\n8\n5\nset_prices A=9 B=19\n{WEEKS}4\n2\nquit\n");
     let first = lab.play_session(&script);
     assert_eq!(first.exit_code, 0, "{}", first.stderr);
@@ -111,6 +123,7 @@ fn participant_session_runs_from_label_to_thanks() {
     else {
         panic!("the first line")
     };
+    assert_eq!(start.scenario, scenario);
     let stamp = start.study.as_ref().expect("a study");
     assert_eq!((stamp.refused_labels, stamp.order, stamp.practice), (1, Some(1), false));
     assert!(

@@ -9,9 +9,10 @@ use crate::cli::{Context, Failure};
 use crate::lab::Policy;
 use crate::lab::ablation::{
     AblationAxis, COPY_SETTINGS, CompetitorSetting, DRAIN_SETTINGS, SHORT_DAYS, ShortRun, ablation_report,
-    competitor_arms, shared_development_probe, short_run_policies, targeted_development_probe,
+    competitor_arms, rebase_arms, shared_development_probe, short_run_policies, targeted_development_probe,
 };
 use crate::lab::experiment::{Experiment, ExperimentResults};
+use crate::record::folder::configuration::DEFAULT_SCENARIO;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -22,6 +23,9 @@ pub struct Options {
     /// Seed, or a range including both ends
     #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
     seeds: SeedRange,
+    /// Scenario to which the competitor settings are applied
+    #[arg(long, default_value = DEFAULT_SCENARIO, value_name = "NAME")]
+    scenario: String,
     /// Day on which subscribers are compared, the last day of a week
     #[arg(long, default_value = "140", value_name = "N", value_parser = parse_week_end)]
     day: u32,
@@ -52,12 +56,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let play =
         |policy: &Policy, settings: &[CompetitorSetting], days: u32| -> Result<ExperimentResults, Failure> {
             let seeds = options.seeds.first..=options.seeds.last;
-            run_experiment(
-                "ablate",
-                &Experiment::new(competitor_arms(policy, settings, days), seeds),
-                &options.play,
-                context,
-            )
+            let mut arms = competitor_arms(policy, settings, days);
+            if options.scenario != DEFAULT_SCENARIO {
+                arms = rebase_arms(arms, &options.scenario, &context.configuration)?;
+            }
+            run_experiment("ablate", &Experiment::new(arms, seeds), &options.play, context)
         };
     let copy = play(&shared, &COPY_SETTINGS, LONG_DAYS)?;
     let drain = play(&targeted, &DRAIN_SETTINGS, LONG_DAYS)?;
@@ -69,17 +72,21 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     for (name, policy) in short_run_policies()? {
         short.push((name.to_owned(), play(&policy, &few, SHORT_DAYS)?));
     }
+    let scenario = match options.scenario.as_str() {
+        DEFAULT_SCENARIO => String::new(),
+        name => format!(", scenario: {name}"),
+    };
     let axes = [
         AblationAxis {
             name: "copy",
-            caption: format!("Copying of the shared bank, policy: {}", shared.name),
+            caption: format!("Copying of the shared bank, policy: {}{scenario}", shared.name),
             policy: &shared.name,
             settings: &COPY_SETTINGS,
             results: &copy,
         },
         AblationAxis {
             name: "drain",
-            caption: format!("Draining of the targeted bank, policy: {}", targeted.name),
+            caption: format!("Draining of the targeted bank, policy: {}{scenario}", targeted.name),
             policy: &targeted.name,
             settings: &DRAIN_SETTINGS,
             results: &drain,

@@ -22,6 +22,9 @@ pub struct Options {
     /// Play only this policy, by name or path; can be repeated [default: the bundled policies except the strong policies]
     #[arg(long, value_name = "NAME|FILE")]
     only: Vec<String>,
+    /// Scenario [default: the scenario of the policies]
+    #[arg(long, value_name = "NAME")]
+    scenario: Option<String>,
     /// Number of seeds to play in parallel
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
@@ -65,7 +68,7 @@ fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, F
     let pool = thread_pool(options.jobs)?;
     let runs: Result<Vec<PlayedWeeks>, _> = pool.install(|| {
         let play = |(policy, seed): &(&Policy, u64)| {
-            let run = play_weeks(policy, *seed, &context.configuration);
+            let run = play_weeks(policy, *seed, options.scenario.as_deref(), &context.configuration);
             bar.inc(1);
             run
         };

@@ -2,6 +2,8 @@
 
 use crate::experiment::Arm;
 use crate::policy::Policy;
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 
 /// The behavior of competitors in one arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,4 +64,25 @@ pub fn competitor_arms(policy: &Policy, settings: &[CompetitorSetting], days: u3
         arm
     };
     settings.iter().map(arm).collect()
+}
+
+/// Moves arms to another scenario: differences between the arm's scenario and `default` become overrides.
+///
+/// # Errors
+/// Fails if a scenario is unknown or a parameter is invalid.
+pub fn rebase_arms(
+    arms: Vec<Arm>,
+    scenario: &str,
+    configuration: &Configuration,
+) -> Result<Vec<Arm>, RunError> {
+    let load = |name: &str| configuration.load_parameters(&configuration.load_scenario(name)?, &[], true);
+    let default = load(DEFAULT_SCENARIO)?;
+    let rebase = |mut arm: Arm| {
+        let own = arm.spec.scenario.replace(scenario.to_owned());
+        let changes = default.differences(&load(own.as_deref().unwrap_or(DEFAULT_SCENARIO))?);
+        let overrides = changes.into_iter().filter_map(|change| Some((change.key, change.new?.to_string())));
+        arm.spec.overrides.splice(0..0, overrides);
+        Ok(arm)
+    };
+    arms.into_iter().map(rebase).collect()
 }

@@ -77,3 +77,20 @@ fn first_50_days_have_no_competitors_or_drift() {
     let named: Vec<&str> = short_run_policies().expect("policies").iter().map(|(name, _)| *name).collect();
     assert_eq!(named, ["the paper's baseline", "ads from day 0"]);
 }
+
+#[test]
+fn rebased_arms_keep_their_competitors() {
+    let configuration = novamind_record::folder::configuration::Configuration::bundled();
+    let arms = competitor_arms(&shared_development_probe().expect("a probe"), &DRAIN_SETTINGS, 500);
+    let arms = rebase_arms(arms, "release-2", &configuration).expect("arms");
+    let scenario = configuration.load_scenario("release-2").expect("a scenario");
+    let params = |name: &str| {
+        let arm = arms.iter().find(|arm| arm.name == name).expect("an arm");
+        assert_eq!(arm.spec.scenario.as_deref(), Some("release-2"));
+        configuration.load_parameters(&scenario, &arm.spec.overrides, true).expect("parameters")
+    };
+    assert_eq!(params("default"), configuration.load_parameters(&scenario, &[], true).expect("parameters"));
+    assert!(params("off").competitor.competitor_events_disabled);
+    assert_eq!(params("hard").competitor.competitor_feedback_u_max, 0.8);
+    assert_eq!(params("drain to 0.2").competitor.competitor_segment_drain_u_max, 0.2);
+}

@@ -219,6 +219,7 @@ fn play_500_days(projection: bool, bench: &BenchContext) -> Result<(f64, String)
     let spec = RunSpec {
         save_folder: Some(bench.scratch_folder.clone()),
         saves_database: projection,
+        scenario: bench.scenario.clone(),
         ..RunSpec::for_seed(SEED)
     };
     let outcome = play_policy(&policy, &spec, &bench.configuration, &mut MetricsCollector::disabled())?;

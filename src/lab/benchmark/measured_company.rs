@@ -64,7 +64,7 @@ impl MeasuredCompany {
         bench: &BenchContext,
     ) -> Result<MeasuredCompany, BenchError> {
         let policy = Policy::find(POLICY, &bench.configuration)?;
-        let mut spec = RunSpec::for_seed(SEED);
+        let mut spec = RunSpec { scenario: bench.scenario.clone(), ..RunSpec::for_seed(SEED) };
         if market == MarketSize::Large {
             spec.cash = Some(1e9);
             spec.overrides = vec![("leads.saturation_base".to_owned(), "14.5".to_owned())];

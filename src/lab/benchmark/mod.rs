@@ -216,6 +216,8 @@ pub struct BenchContext {
     pub scratch_folder: PathBuf,
     /// Configuration of the measured runs.
     pub configuration: Configuration,
+    /// Scenario of the measured runs; `None` for the scenario of the policy.
+    pub scenario: Option<String>,
 }
 
 /// The reason why a measurement failed.

@@ -311,6 +311,14 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     line
 }
 
+/// Returns the comment that follows a parameter in the bundled files, or `None` if there is none.
+pub fn parameter_comment(key: &str) -> Option<String> {
+    bundled_sources().iter().find_map(|source| {
+        let line = source.text.lines().nth(line_of_key(&source.text, key)? - 1)?;
+        line.split_once(" # ").map(|(_, comment)| comment.trim().to_owned())
+    })
+}
+
 fn entry_name(entry: &DeValue<'_>) -> Option<String> {
     let DeValue::Table(fields) = entry else { return None };
     NAME_FIELDS.iter().find_map(|field| match fields.get(*field)?.get_ref() {

@@ -24,7 +24,9 @@ pub use change::ParameterDifference;
 pub use customers::*;
 pub use discovery::*;
 pub use enterprise::*;
-pub use load::{ParameterError, ParameterSource, apply_override, bundled_sources, line_of_key};
+pub use load::{
+    ParameterError, ParameterSource, apply_override, bundled_sources, line_of_key, parameter_comment,
+};
 pub use market::*;
 #[cfg(test)]
 pub(crate) use names::keys;

@@ -32,7 +32,7 @@ pub(super) struct NewRunForm {
 /// Label and description of each row of the form.
 pub(super) const FORM_ROWS: [(&str, &str); 7] = [
     ("Mode", "Purpose of the run; left and right change the mode. Fixed once the run starts."),
-    ("Scenario", "Parameters of the market; left and right change the scenario."),
+    ("Scenario", "Rules of the market; left and right change the scenario."),
     ("Seed", "The same seed gives the same random events."),
     ("Days", "Length of the run, at least 7. Published results are those of day 500."),
     ("Starting cash", "Dollars on day 0."),
@@ -40,6 +40,7 @@ pub(super) const FORM_ROWS: [(&str, &str); 7] = [
     ("Start", "Start the run (enter)"),
 ];
 
+const SCENARIO_ROW: usize = 1;
 const VALUE_COLUMN: u16 = 17;
 const FIELD_WIDTH: u16 = 18;
 
@@ -202,21 +203,27 @@ impl NewRunForm {
                 self.draw_row(canvas, Rect { y, height: 1, ..inside }, at);
             }
         }
-        let used = (FORM_ROWS.len() + gap + 1) as u16;
+        let used = (FORM_ROWS.len() + gap + usize::from(inside.height > 10)) as u16;
         let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
         let mut lines: Vec<(String, Role)> = Vec::new();
         let mut say = |text: &str, role: Role| {
             lines.extend(wrap(text, below.width.min(100) as usize).into_iter().map(|line| (line, role)));
         };
+        let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
+        let (help, scenario) = (FORM_ROWS[self.selected_row].1, format!("scenario: {scenario}"));
+        // A small window has space for only one of the texts.
+        let (first, last) = match self.selected_row == SCENARIO_ROW && self.rejection.is_none() {
+            true => (&*scenario, help),
+            false => (help, &*scenario),
+        };
         match &self.rejection {
             Some(problem) => say(&format!("! {problem}"), Role::Bad),
-            None => say(FORM_ROWS[self.selected_row].1, Role::Text),
+            None => say(first, Role::Text),
         }
         let mode = Mode::SELECTABLE[self.mode];
-        let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
         say("", Role::Dim);
         say(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
-        say(&format!("scenario: {scenario}"), Role::Text);
+        say(last, Role::Text);
         for (row, (line, role)) in row_rects(below).zip(&lines) {
             canvas.draw_text(row, line, *role);
         }

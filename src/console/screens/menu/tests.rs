@@ -277,6 +277,25 @@ fn form_shows_the_selected_scenario() {
 }
 
 #[test]
+fn form_explains_the_generations_in_every_window() {
+    let mut menu = menu(Vec::new());
+    menu.handle_action(Action::NewRun);
+    menu.form.selected_row = 1;
+    let configuration = Configuration::bundled();
+    for name in configuration.scenario_names() {
+        let description = configuration.load_scenario(&name).expect("a scenario").description;
+        for (width, height) in
+            [(80, 23), (60, 15)].into_iter().filter(|_| ["default", "release-2"].contains(&&*name))
+        {
+            let screen = menu_text(&menu, width, height);
+            let words = screen.replace(['│', '┃'], " ").split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(words.contains(&description), "{name} at {width}x{height}:\n{screen}");
+        }
+        menu.handle_action(Action::Right);
+    }
+}
+
+#[test]
 fn unavailable_modes_are_not_offered() {
     let mut menu = menu(Vec::new());
     menu.handle_action(Action::NewRun);

@@ -34,6 +34,7 @@ mod python_client;
 mod python_scripts;
 #[cfg(feature = "server")]
 mod release_2;
+#[cfg(feature = "server")]
 mod release_2_commands;
 #[cfg(feature = "server")]
 mod release_history;

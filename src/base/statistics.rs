@@ -1,13 +1,13 @@
 //! Statistics of small samples: mean, spread, quantiles, and their uncertainty.
 //!
-//! Intervals are percentile bootstraps: the sample is resampled with replacement [`RESAMPLES`] times. The random seed
+//! Intervals are percentile bootstraps: the sample is resampled with replacement [`RESAMPLE_COUNT`] times. The random seed
 //! depends only on the sample size, so equal samples give equal intervals on every machine.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Number of bootstrap resamples per interval.
-pub const RESAMPLES: usize = 2_000;
+pub const RESAMPLE_COUNT: usize = 2_000;
 
 /// Confidence level of the intervals: the share of resamples inside an interval.
 pub const CONFIDENCE_LEVEL: f64 = 0.95;
@@ -106,7 +106,7 @@ impl Interval {
     }
 }
 
-/// Returns the percentile bootstrap interval of a statistic, which contains [`CONFIDENCE_LEVEL`] of [`RESAMPLES`]
+/// Returns the percentile bootstrap interval of a statistic, which contains [`CONFIDENCE_LEVEL`] of [`RESAMPLE_COUNT`]
 /// resamples. Returns `None` if the statistic has no value or if there are fewer than [`MIN_SAMPLE_SIZE`] values.
 ///
 /// The `statistic` function may reorder the values that it receives.
@@ -118,7 +118,7 @@ pub fn bootstrap_interval(values: &[f64], statistic: impl Fn(&mut [f64]) -> Opti
         drawn.iter_mut().for_each(|place| *place = values[rng.random_range(0..count) as usize]);
         statistic(&mut drawn)
     };
-    let mut found: Vec<f64> = (0..RESAMPLES).filter_map(&mut resample).collect();
+    let mut found: Vec<f64> = (0..RESAMPLE_COUNT).filter_map(&mut resample).collect();
     found.sort_by(f64::total_cmp);
     let at = |share| quantile_of_sorted(&found, share);
     Some(Interval { low: at((1.0 - CONFIDENCE_LEVEL) / 2.0)?, high: at((1.0 + CONFIDENCE_LEVEL) / 2.0)? })

@@ -56,7 +56,7 @@ impl Options {
         if self.quick { 1 } else { self.runs as usize }
     }
 
-    fn cases(&self) -> Vec<&'static BenchCase> {
+    fn selected_cases(&self) -> Vec<&'static BenchCase> {
         let named = |case: &&BenchCase| self.only.iter().any(|name| name == case.name);
         let asked_for = |case: &&BenchCase| {
             if self.only.is_empty() { !(self.quick && case.is_slow) } else { named(case) }
@@ -65,7 +65,7 @@ impl Options {
     }
 }
 
-struct Row {
+struct BenchRow {
     case: &'static str,
     figure: &'static BenchFigure,
     samples: Vec<f64>,
@@ -74,7 +74,7 @@ struct Row {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.scenario.as_ref().map(|name| context.configuration.load_scenario(name)).transpose()?;
     let scratch = ScratchFolder::create(options.folder.as_deref())?;
-    let cases = options.cases();
+    let cases = options.selected_cases();
     if options.measure {
         let bench = BenchContext {
             repetitions: options.repetitions(),
@@ -87,7 +87,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let loops: Vec<f64> = (0..options.repetitions()).map(|_| calibration_seconds()).collect();
     let calibration = median(&loops).unwrap_or(f64::NAN);
     if !options.json {
-        print(&header(calibration, options.repetitions(), options.scenario.as_deref()))?;
+        print(&report_header(calibration, options.repetitions(), options.scenario.as_deref()))?;
     }
     let progress = progress_bar(cases.len() as u64, "cases");
     let mut rows = Vec::new();
@@ -96,7 +96,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         let measured = measure(case, options, &scratch.0);
         progress.inc(1);
         for (figure, samples) in case.figures.iter().zip(measured?) {
-            let row = Row { case: case.name, figure, samples };
+            let row = BenchRow { case: case.name, figure, samples };
             if !options.json {
                 progress.suspend(|| print(&format_row(&row, calibration)))?;
             }
@@ -180,7 +180,7 @@ fn thread_count() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-fn header(calibration: f64, repetitions: usize, scenario: Option<&str>) -> String {
+fn report_header(calibration: f64, repetitions: usize, scenario: Option<&str>) -> String {
     let scenario = scenario.map_or(String::new(), |name| format!(" · scenario {name}"));
     let often =
         if repetitions == 1 { "one repetition".to_owned() } else { format!("medians of {repetitions}") };
@@ -197,8 +197,8 @@ fn header(calibration: f64, repetitions: usize, scenario: Option<&str>) -> Strin
     )
 }
 
-fn format_row(row: &Row, calibration: f64) -> String {
-    let Row { figure, .. } = row;
+fn format_row(row: &BenchRow, calibration: f64) -> String {
+    let BenchRow { figure, .. } = row;
     let value = median(&row.samples);
     let written =
         |value: Option<f64>| value.map_or_else(String::new, |value| format_value(value, figure.unit));
@@ -226,8 +226,8 @@ fn calibration_ratio(value: Option<f64>, unit: BenchUnit, calibration: f64) -> O
     Some(value? * unit.seconds_per_unit()? / calibration)
 }
 
-fn to_json(rows: &[Row], calibration: f64, scenario: Option<&str>) -> String {
-    let row = |row: &Row| {
+fn to_json(rows: &[BenchRow], calibration: f64, scenario: Option<&str>) -> String {
+    let row = |row: &BenchRow| {
         let value = median(&row.samples);
         let verdict: TargetVerdict = row.figure.verdict(value);
         json!({

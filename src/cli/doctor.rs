@@ -37,13 +37,12 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let items = checks(if options.full { FULL_RUN } else { SHORT_RUN }, context);
+    let items = run_checks(if options.full { FULL_RUN } else { SHORT_RUN }, context);
     if options.json {
-        let object =
-            |item: &CheckItem| json!({"name": item.name, "verdict": item.verdict(), "text": item.text()});
+        let object = |item: &CheckItem| json!({"name": item.name, "verdict": item.verdict(), "text": item.explanation()});
         print(&format!("{}\n", json!({"checks": items.iter().map(object).collect::<Vec<_>>()})))?;
     } else {
-        let lines: String = items.iter().map(CheckItem::line).collect();
+        let lines: String = items.iter().map(CheckItem::report_line).collect();
         print(&format!(
             "novamind doctor\n{lines}\nFor a bug report, attach this output, the steps that lead to the problem, and the text or a picture of \
              the screen.\nIf the problem concerns a run, also attach the file that `novamind runs export ID` writes. It contains \
@@ -53,7 +52,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     report_failures(&items)
 }
 
-fn checks(known: KnownHash, context: &Context) -> Vec<CheckItem> {
+fn run_checks(known: KnownHash, context: &Context) -> Vec<CheckItem> {
     let mut items = vec![
         CheckItem::new("version", Ok(describe_build())),
         CheckItem::new("records", describe_versions(&context.configuration)),
@@ -117,9 +116,10 @@ fn check_simulation((days, expected): KnownHash) -> Result<String, String> {
 }
 
 fn describe_terminal() -> Result<String, String> {
-    let mut words =
-        vec![variable("TERM").map_or("TERM is not set".to_owned(), |name| format!("TERM={name}"))];
-    words.extend(variable("TERM_PROGRAM").map(|name| format!("TERM_PROGRAM={name}")));
+    let mut words = vec![
+        environment_variable("TERM").map_or("TERM is not set".to_owned(), |name| format!("TERM={name}")),
+    ];
+    words.extend(environment_variable("TERM_PROGRAM").map(|name| format!("TERM_PROGRAM={name}")));
     let layers = [
         ("TMUX", "in tmux"),
         ("STY", "in screen"),
@@ -127,12 +127,15 @@ fn describe_terminal() -> Result<String, String> {
         ("WSL_DISTRO_NAME", "in WSL"),
     ];
     words.extend(
-        layers.iter().filter(|(name, _)| variable(name).is_some()).map(|(_, text)| (*text).to_owned()),
+        layers
+            .iter()
+            .filter(|(name, _)| environment_variable(name).is_some())
+            .map(|(_, text)| (*text).to_owned()),
     );
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
         words.push("input or output is not a terminal: the game is played line by line here".to_owned());
     }
-    if variable("TERM").as_deref() == Some("dumb") {
+    if environment_variable("TERM").as_deref() == Some("dumb") {
         return Err(
             "TERM=dumb: the console needs a terminal that can move the cursor; play with --plain".to_owned()
         );
@@ -142,9 +145,9 @@ fn describe_terminal() -> Result<String, String> {
 
 /// Lists the environment variables that select colors. On a terminal, also shows samples of 16 and of 16 million colors.
 fn describe_colors() -> String {
-    let depth =
-        variable("COLORTERM").map_or("COLORTERM is not set".to_owned(), |name| format!("COLORTERM={name}"));
-    if variable("NO_COLOR").is_some() {
+    let depth = environment_variable("COLORTERM")
+        .map_or("COLORTERM is not set".to_owned(), |name| format!("COLORTERM={name}"));
+    if environment_variable("NO_COLOR").is_some() {
         return format!("{depth}, NO_COLOR is set: the console uses the theme mono");
     }
     if !std::io::stdout().is_terminal() {
@@ -208,7 +211,7 @@ fn abbreviate_home_folder(path: &Path) -> String {
 }
 
 /// Returns the value of an environment variable without control characters, or `None` if it is empty.
-fn variable(name: &str) -> Option<String> {
+fn environment_variable(name: &str) -> Option<String> {
     let value = std::env::var(name).ok().filter(|value| !value.is_empty())?;
     Some(value.replace(char::is_control, "\u{fffd}"))
 }

@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_full_disk_has_the_exit_code_of_a_failed_operation() {
+    fn full_disk_error_has_the_exit_code_of_a_failed_operation() {
         let code = |kind: ErrorKind| {
             Failure::from(RunError::Io { path: "run.toml".into(), error: kind.into() }).code
         };

@@ -171,10 +171,10 @@ fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> 
         );
         let biased = confirm_bias(&comparison, &policy, scenario, &reference, seeds, context, &pool)?;
         let verdict = Verdict { comparison, biased };
-        print(&describe(&verdict, golden.all))?;
+        print(&describe_verdict(&verdict, golden.all))?;
         verdicts.push(verdict);
     }
-    summarize(&verdicts, &unplayed, &golden.seeds)
+    print_summary(&verdicts, &unplayed, &golden.seeds)
 }
 
 /// Returns the scenario of the comparison, and prints the scenario if it was chosen by the option or the reference.
@@ -280,7 +280,7 @@ fn confirm_bias(
     Ok(confirmed.collect())
 }
 
-fn describe(verdict: &Verdict, all: bool) -> String {
+fn describe_verdict(verdict: &Verdict, all: bool) -> String {
     let comparison = &verdict.comparison;
     let mut text = format!(
         "{}  {} cells  |z| < 2: {:.1} %  |z| < 3: {:.1} %  {}\n",
@@ -319,7 +319,7 @@ fn describe(verdict: &Verdict, all: bool) -> String {
     text
 }
 
-fn summarize(verdicts: &[Verdict], unplayed: &[&str], seeds: &SeedRange) -> Result<(), Failure> {
+fn print_summary(verdicts: &[Verdict], unplayed: &[&str], seeds: &SeedRange) -> Result<(), Failure> {
     let cells: usize = verdicts.iter().map(|verdict| verdict.comparison.cells.len()).sum();
     let below = |bound: f64| {
         let counts = verdicts

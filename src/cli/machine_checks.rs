@@ -49,18 +49,19 @@ impl CheckItem {
     }
 
     /// Returns the explanation of the outcome.
-    pub fn text(&self) -> &str {
+    pub fn explanation(&self) -> &str {
         let (CheckOutcome::Passed(text) | CheckOutcome::Note(text) | CheckOutcome::Failed(text)) =
             &self.outcome;
         text
     }
 
     /// Formats the check as one line of a report: verdict, name and explanation.
-    pub fn line(&self) -> String {
+    pub fn report_line(&self) -> String {
         let verdict = if self.verdict() == "wrong" { "WRONG" } else { self.verdict() };
         // Line breaks and escape sequences in paths and variables could forge a line of the report.
-        let text: String =
-            self.text().replace(|letter: char| letter.is_control() && self.name != "colors", "\u{fffd}");
+        let text: String = self
+            .explanation()
+            .replace(|letter: char| letter.is_control() && self.name != "colors", "\u{fffd}");
         format!("  {verdict:<5} {:<11} {text}\n", self.name)
     }
 }

@@ -80,7 +80,7 @@ impl Options {
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
         let mode = if self.lesson.is_some() { Mode::Lesson } else { Mode::Sandbox };
-        let lesson = self.lesson_entry(context)?;
+        let lesson = self.lesson_options(context)?;
         Ok(NewRun { lesson, ..self.made_of.new_run(mode, context)? })
     }
 }
@@ -91,7 +91,7 @@ impl Options {
         Options { lesson: Some(name), ..options }
     }
 
-    fn lesson_entry(&self, context: &Context) -> Result<Option<LessonOptions>, Failure> {
+    fn lesson_options(&self, context: &Context) -> Result<Option<LessonOptions>, Failure> {
         let Some(name) = &self.lesson else { return Ok(None) };
         let lesson = super::lesson::find_lesson(name, &context.configuration)?;
         Ok(Some(LessonOptions { lesson: Arc::new(lesson), part: 0, is_judged: true }))

@@ -53,7 +53,7 @@ fn parse_weeks(text: &str) -> Result<(u32, Option<u32>), String> {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.cast {
         Some(file) => {
-            cast::record_cast(file, find_recorded(&options.run), options.week, &options.recording, context)
+            cast::record_cast(file, find_record(&options.run), options.week, &options.recording, context)
         }
         None if options.verify => verify(options, context),
         None => show_replay(options, context),
@@ -61,7 +61,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 fn show_replay(options: &Options, context: &Context) -> Result<(), Failure> {
-    let recorded = find_recorded(&options.run);
+    let recorded = find_record(&options.run);
     if options.xray {
         check_inspection(&recorded, context)?;
     }
@@ -123,13 +123,13 @@ fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Resu
 }
 
 /// Returns the record at a path if the path exists, otherwise the record of the run with this id.
-fn find_recorded(name: &str) -> RecordSource {
+fn find_record(name: &str) -> RecordSource {
     let path = PathBuf::from(name);
     if path.exists() { RecordSource::File(path) } else { RecordSource::Run(name.to_owned()) }
 }
 
 fn verify(options: &Options, context: &Context) -> Result<(), Failure> {
-    let recorded = find_recorded(&options.run);
+    let recorded = find_record(&options.run);
     record_view(&recorded, "verify", context)?;
     let place = match recorded {
         RecordSource::File(path) => path,

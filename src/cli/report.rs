@@ -75,7 +75,7 @@ fn render_report(folder: &Path, format: ReportFormat) -> Result<String, Failure>
         ReportFormat::Json => Err(Failure::usage(
             "a report is markdown or html; json needs --session. For figures, use `novamind query`",
         )),
-        ReportFormat::Text | ReportFormat::Svg => Err(only_for_cards()),
+        ReportFormat::Text | ReportFormat::Svg => Err(card_format_failure()),
     }
 }
 
@@ -89,7 +89,7 @@ fn render_card(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     Ok(write(&RunReport::from_session(&Session::open_to_read(folder, true)?)))
 }
 
-fn only_for_cards() -> Failure {
+fn card_format_failure() -> Failure {
     Failure::usage("text and svg need --card")
 }
 
@@ -100,7 +100,7 @@ fn render_session(folder: &Path, format: ReportFormat) -> Result<String, Failure
         ReportFormat::Markdown => session_to_markdown(&logbook),
         ReportFormat::Html => session_to_html(&logbook),
         ReportFormat::Json => serde_json::to_string_pretty(&logbook).unwrap_or_default() + "\n",
-        ReportFormat::Text | ReportFormat::Svg => return Err(only_for_cards()),
+        ReportFormat::Text | ReportFormat::Svg => return Err(card_format_failure()),
     })
 }
 

@@ -185,11 +185,11 @@ impl ResultWriter<'_> {
             let until = self.options.until.unwrap_or(outcome.days).min(outcome.days);
             write_figures(file, outcome.seed, &collector.finish(until))?;
         }
-        print(&summary(outcome, self.options.json))
+        print(&format_outcome(outcome, self.options.json))
     }
 }
 
-fn summary(outcome: &PolicyRunOutcome, json: bool) -> String {
+fn format_outcome(outcome: &PolicyRunOutcome, json: bool) -> String {
     if json {
         serde_json::to_string(outcome).expect("an outcome holds plain values") + "\n"
     } else {

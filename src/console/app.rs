@@ -55,8 +55,8 @@ use novamind_worker::Job;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::{Message, SimulatedDay};
 use novamind_worker::question::{OutgoingQuestion, Pending};
-use novamind_worker::readings::Reading;
 use novamind_worker::request::Request;
+use novamind_worker::screen_queries::Reading;
 
 pub use busy::BusyState;
 use exit::ExitTarget;
@@ -151,9 +151,9 @@ pub struct Run {
     /// The next-week dialog.
     pub next_week: NextWeekDialog,
     /// The run report, after the run has ended and the report was built.
-    pub story: Option<Arc<RunReport>>,
+    pub run_report: Option<Arc<RunReport>>,
     /// Screen queries requested since the run last changed.
-    pub requested_readings: BTreeMap<Reading, Pending<Reading>>,
+    pub requested_queries: BTreeMap<Reading, Pending<Reading>>,
     /// The tour, while it is shown.
     pub tour: Option<Tour>,
     /// Playback state, if a recorded run is being replayed.
@@ -281,12 +281,12 @@ impl App {
         match message {
             Message::Input(event) => self.handle_input(event),
             Message::Response(news) => self.handle_response(news),
-            Message::Arrived(delivery) => {
+            Message::Delivered(delivery) => {
                 delivery.deliver();
                 self.take_answers();
             }
             Message::Signal(number) => self.exit_run(ExitTarget::Signal(number)),
-            Message::TimePassed => {
+            Message::RedrawDue => {
                 if self.busy.as_ref().is_some_and(|busy| busy.is_stopping_script) {
                     self.orders.push(Order::CancelQuery);
                 }
@@ -415,8 +415,8 @@ impl App {
     /// Requests the data of the current screen that is missing or outdated.
     fn request_screen_data(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        for reading in run.screens.get(run.screen).readings() {
-            if let Entry::Vacant(place) = run.requested_readings.entry(*reading) {
+        for reading in run.screens.get(run.screen).screen_queries() {
+            if let Entry::Vacant(place) = run.requested_queries.entry(*reading) {
                 let ask = place.insert(Pending::default()).ask(*reading);
                 self.orders.push(Order::Ask(ask, self.busy.is_some()));
             }

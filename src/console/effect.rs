@@ -10,8 +10,8 @@ use novamind_session::identifiers::Group;
 use novamind_study::Study;
 use novamind_tools::ToolId;
 use novamind_worker::question::OutgoingQuestion;
-use novamind_worker::readings::Reading;
 use novamind_worker::request::{RecordSource, Request};
+use novamind_worker::screen_queries::Reading;
 
 impl Effect {
     /// Returns whether the effect would change the run.

@@ -170,7 +170,7 @@ fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, contex
 /// Returns whether the screen shows data from before the database fell behind.
 fn is_stale(run: &Run) -> bool {
     run.database_error.is_some()
-        && (run.screen == ScreenId::Sql || !run.screens.get(run.screen).readings().is_empty())
+        && (run.screen == ScreenId::Sql || !run.screens.get(run.screen).screen_queries().is_empty())
 }
 
 fn draw_database_warning(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {

@@ -228,7 +228,7 @@ impl Headless {
 
     fn count_response(&mut self, message: &Message) {
         let is_answer = match message {
-            Message::Arrived(delivery) => delivery.is_answer,
+            Message::Delivered(delivery) => delivery.is_answer,
             Message::Response(news) => !matches!(
                 news,
                 Response::ClockStopped
@@ -243,7 +243,7 @@ impl Headless {
                     | Response::DatabaseCurrent
                     | Response::Study(StudyResponse::QuestionsDue(_))
             ),
-            Message::Input(_) | Message::Signal(_) | Message::TimePassed => false,
+            Message::Input(_) | Message::Signal(_) | Message::RedrawDue => false,
         };
         self.pending_responses -= u32::from(is_answer).min(self.pending_responses);
     }
@@ -308,7 +308,7 @@ impl Headless {
     /// A response does not arrive.
     pub fn advance_time(&mut self, time: Duration) -> io::Result<()> {
         self.app.stopwatch.advance(time);
-        self.app.handle_message(Message::TimePassed);
+        self.app.handle_message(Message::RedrawDue);
         self.wait_until_idle()
     }
 

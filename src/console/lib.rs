@@ -116,7 +116,7 @@ impl Console {
                 .recv_timeout(self.app.time_until_wake().map_or(patience, |wake| wake.min(patience)))
             {
                 Ok(message) => self.handle_message(message)?,
-                Err(RecvTimeoutError::Timeout) => self.app.handle_message(Message::TimePassed),
+                Err(RecvTimeoutError::Timeout) => self.app.handle_message(Message::RedrawDue),
                 Err(RecvTimeoutError::Disconnected) => return Ok((1, None)),
             }
             // Handle all messages that have arrived before drawing one frame.

@@ -21,7 +21,7 @@ use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::question::{OutgoingQuestion, Question};
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 pub use novamind_worker::test_kit::{new_session, played_session, session_with_negotiations};
 
 /// Returns the company of a new run.
@@ -30,12 +30,12 @@ pub fn new_company() -> DisplayedCompany {
 }
 
 /// Runs the queries of a screen and returns the results.
-pub fn query_readings(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, QueryResult)> {
+pub fn run_screen_queries(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, QueryResult)> {
     let ask = |reading: &Reading| {
         let rows = session.query(reading.sql());
         (*reading, rows.unwrap_or_else(|refusal| panic!("{reading:?}: {refusal}")))
     };
-    screen.readings().iter().map(ask).collect()
+    screen.screen_queries().iter().map(ask).collect()
 }
 
 /// Returns a screen that has received all data of a company.
@@ -44,7 +44,7 @@ pub fn loaded_screen<S: Screen + Default>(session: &mut Session, company: &Displ
     let keys = KeyBindings::bundled();
     let context = ScreenContext { company, keys: &keys, page_rows: 5 };
     screen.on_company_change(&context);
-    for (reading, rows) in query_readings(session, &screen) {
+    for (reading, rows) in run_screen_queries(session, &screen) {
         screen.apply_rows(reading, &rows, &context);
     }
     screen

@@ -40,9 +40,9 @@ trait BlockTableDefinition: Send + Sync + Sized + 'static {
     type Run: RowRun;
     const DECLARATION: &'static CStr;
     /// Index of the day column.
-    const DAY: c_int = 0;
+    const DAY_COLUMN: c_int = 0;
     /// Index of the row number column, if the table has a row number.
-    const NUMBER: Option<c_int> = None;
+    const ROW_NUMBER_COLUMN: Option<c_int> = None;
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
     fn indexes(seen: &QueryView) -> &CustomerIndexes<Self::Run>;
@@ -130,8 +130,8 @@ impl BlockTableDefinition for Issues {
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(issue_id INTEGER, customer_id INTEGER, group_id TEXT, open_day INTEGER,
         days_open INTEGER, status TEXT, resolved_day INTEGER, resolution_type TEXT)";
-    const DAY: c_int = issues::column::OPEN_DAY;
-    const NUMBER: Option<c_int> = Some(issues::column::ISSUE);
+    const DAY_COLUMN: c_int = issues::column::OPEN_DAY;
+    const ROW_NUMBER_COLUMN: Option<c_int> = Some(issues::column::ISSUE);
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>] {
         &store.issues
@@ -170,11 +170,11 @@ fn constraint_code<K: BlockTableDefinition>(column: c_int, operator: IndexConstr
     match operator {
         SQLITE_INDEX_CONSTRAINT_EQ if column == CUSTOMER_COLUMN => Some('c'),
         SQLITE_INDEX_CONSTRAINT_EQ
-            if K::NUMBER.is_some_and(|number| column == number || column == ROWID_COLUMN) =>
+            if K::ROW_NUMBER_COLUMN.is_some_and(|number| column == number || column == ROWID_COLUMN) =>
         {
             Some('n')
         }
-        _ if column != K::DAY => None,
+        _ if column != K::DAY_COLUMN => None,
         SQLITE_INDEX_CONSTRAINT_EQ => Some('='),
         SQLITE_INDEX_CONSTRAINT_GT => Some('>'),
         SQLITE_INDEX_CONSTRAINT_GE => Some('g'),
@@ -236,7 +236,8 @@ unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
         info.set_idx_str(&plan);
         // The table returns rows in ascending order of day and row number.
         let by_day = |order: OrderBy<'_>| {
-            (order.column() == K::DAY || K::NUMBER == Some(order.column())) && !order.is_order_by_desc()
+            (order.column() == K::DAY_COLUMN || K::ROW_NUMBER_COLUMN == Some(order.column()))
+                && !order.is_order_by_desc()
         };
         let in_order = info.num_of_order_by() == 1 && info.order_bys().all(by_day);
         info.set_order_by_consumed(in_order);
@@ -417,7 +418,7 @@ unsafe impl<K: BlockTableDefinition> VTabCursor for BlockCursor<'_, K> {
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
         match column {
             CUSTOMER_COLUMN => context.set_result(self.row_customer()),
-            day if day == K::DAY => context.set_result(self.row_day()),
+            day if day == K::DAY_COLUMN => context.set_result(self.row_day()),
             other => {
                 let at = (&self.store, self.row_day().unwrap_or(0));
                 self.row_data().map_or(Ok(()), |row| K::column(at, row, other, context))

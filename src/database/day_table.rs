@@ -36,7 +36,7 @@ pub(super) trait DayTableDefinition: Send + Sync + Sized + 'static {
     /// Returns the kind of the row at a position, as an index into `KINDS`.
     fn kind(day: &Self::Day, place: u64) -> usize;
     /// Index of the text column, which is the last column.
-    const TEXT: c_int;
+    const TEXT_COLUMN: c_int;
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str>;
     fn texts(seen: &QueryView) -> &TextIndexes;
     /// Sets the result to a table-specific column: a column after the third and before the last.
@@ -58,9 +58,9 @@ pub(super) struct DayRow<'a, K: DayTableDefinition> {
     pub place: u64,
 }
 
-const NUMBER: c_int = 0;
-const DAY: c_int = 1;
-const KIND: c_int = 2;
+const NUMBER_COLUMN: c_int = 0;
+const DAY_COLUMN: c_int = 1;
+const KIND_COLUMN: c_int = 2;
 /// Column number by which SQLite refers to the rowid.
 const ROWID_COLUMN: c_int = -1;
 
@@ -108,8 +108,9 @@ impl HandledConstraint {
         text: c_int,
     ) -> Option<HandledConstraint> {
         let comparison = Comparison::from_operator(operator)?;
-        let column = if column == ROWID_COLUMN { NUMBER } else { column };
-        let useful = !(column == text || matches!(column, NUMBER | KIND)) || comparison == Comparison::Equal;
+        let column = if column == ROWID_COLUMN { NUMBER_COLUMN } else { column };
+        let useful = !(column == text || matches!(column, NUMBER_COLUMN | KIND_COLUMN))
+            || comparison == Comparison::Equal;
         (useful && (0..10).contains(&column)).then_some(HandledConstraint { column, comparison })
     }
 
@@ -140,12 +141,16 @@ impl RowOrder {
     /// Returns the order for sorting by a list of columns, or `None` if the table does not support this order.
     fn for_columns(columns: &[c_int]) -> Option<RowOrder> {
         match columns {
-            [NUMBER | ROWID_COLUMN, ..] | [DAY] | [DAY, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::Number),
-            [KIND]
-            | [KIND, DAY]
-            | [KIND, NUMBER | ROWID_COLUMN, ..]
-            | [KIND, DAY, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::ByKind),
-            [DAY, KIND] | [DAY, KIND, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::DayAndKind),
+            [NUMBER_COLUMN | ROWID_COLUMN, ..]
+            | [DAY_COLUMN]
+            | [DAY_COLUMN, NUMBER_COLUMN | ROWID_COLUMN, ..] => Some(RowOrder::Number),
+            [KIND_COLUMN]
+            | [KIND_COLUMN, DAY_COLUMN]
+            | [KIND_COLUMN, NUMBER_COLUMN | ROWID_COLUMN, ..]
+            | [KIND_COLUMN, DAY_COLUMN, NUMBER_COLUMN | ROWID_COLUMN, ..] => Some(RowOrder::ByKind),
+            [DAY_COLUMN, KIND_COLUMN] | [DAY_COLUMN, KIND_COLUMN, NUMBER_COLUMN | ROWID_COLUMN, ..] => {
+                Some(RowOrder::DayAndKind)
+            }
             _ => None,
         }
     }
@@ -181,13 +186,17 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
     fn best_index(&self, info: &mut IndexInfo) -> rusqlite::Result<bool> {
         let usable = info.constraints().enumerate().filter(|(_, constraint)| constraint.is_usable());
         let is_text = |handled_constraint: &HandledConstraint| {
-            handled_constraint.column == KIND || handled_constraint.column == K::TEXT
+            handled_constraint.column == KIND_COLUMN || handled_constraint.column == K::TEXT_COLUMN
         };
         let handled: Vec<(usize, HandledConstraint)> = usable
             .filter_map(|(at, constraint)| {
                 Some((
                     at,
-                    HandledConstraint::from_constraint(constraint.column(), &constraint.operator(), K::TEXT)?,
+                    HandledConstraint::from_constraint(
+                        constraint.column(),
+                        &constraint.operator(),
+                        K::TEXT_COLUMN,
+                    )?,
                 ))
             })
             // The table compares texts byte by byte, so it cannot check a constraint with another collation, such as NOCASE.
@@ -201,7 +210,8 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
             // The table checks equality of days and kinds exactly for values of every type. SQLite checks all other
             // constraints again.
             usage.set_omit(
-                constraint.comparison == Comparison::Equal && matches!(constraint.column, DAY | KIND),
+                constraint.comparison == Comparison::Equal
+                    && matches!(constraint.column, DAY_COLUMN | KIND_COLUMN),
             );
         }
         let columns: Option<Vec<c_int>> =
@@ -220,10 +230,10 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
                 .fold(1.0, f64::min)
         };
         let rows = 1e6
-            * share(NUMBER, 1e-6, 1.0)
-            * share(DAY, 0.002, 0.3)
-            * share(KIND, 0.3, 1.0)
-            * share(K::TEXT, 1e-5, 1.0);
+            * share(NUMBER_COLUMN, 1e-6, 1.0)
+            * share(DAY_COLUMN, 0.002, 0.3)
+            * share(KIND_COLUMN, 0.3, 1.0)
+            * share(K::TEXT_COLUMN, 1e-5, 1.0);
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_num(order.unwrap_or(RowOrder::Number) as c_int);
@@ -380,34 +390,36 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
         for ((at, value), HandledConstraint { column, comparison }) in values.iter().enumerate().zip(handled)
         {
             let number = match value.data_type() {
-                Type::Text if column == KIND => {
+                Type::Text if column == KIND_COLUMN => {
                     let wanted: String = values.get(at)?;
                     // An unknown kind has no rows.
                     kinds &= K::KINDS.iter().position(|kind| *kind == wanted).map_or(0, |at| 1 << at);
                     continue;
                 }
-                Type::Text if column == K::TEXT => {
+                Type::Text if column == K::TEXT_COLUMN => {
                     wanted_text = Some(values.get::<String>(at)?);
                     continue;
                 }
-                Type::Text if column != KIND => comparison_number(&values.get::<String>(at)?),
+                Type::Text if column != KIND_COLUMN => comparison_number(&values.get::<String>(at)?),
                 // Blobs are greater than every number.
-                Type::Blob if column != KIND && column != K::TEXT => f64::INFINITY,
-                Type::Integer | Type::Real if column != KIND && column != K::TEXT => values.get::<f64>(at)?,
+                Type::Blob if column != KIND_COLUMN && column != K::TEXT_COLUMN => f64::INFINITY,
+                Type::Integer | Type::Real if column != KIND_COLUMN && column != K::TEXT_COLUMN => {
+                    values.get::<f64>(at)?
+                }
                 // A comparison with NULL is never true.
                 Type::Null => f64::NAN,
                 // The kind column contains text, so no number is equal to a kind.
-                _ if column == KIND => f64::NAN,
+                _ if column == KIND_COLUMN => f64::NAN,
                 _ => continue,
             };
             if number.is_nan() {
                 days[1] = f64::NEG_INFINITY;
             }
             match (column, comparison) {
-                (NUMBER, _) => self.row_number_filter = Some(number),
-                (DAY, Comparison::Equal) => days = [days[0].max(number), days[1].min(number)],
-                (DAY, Comparison::Greater | Comparison::AtLeast) => days[0] = days[0].max(number),
-                (DAY, _) => days[1] = days[1].min(number),
+                (NUMBER_COLUMN, _) => self.row_number_filter = Some(number),
+                (DAY_COLUMN, Comparison::Equal) => days = [days[0].max(number), days[1].min(number)],
+                (DAY_COLUMN, Comparison::Greater | Comparison::AtLeast) => days[0] = days[0].max(number),
+                (DAY_COLUMN, _) => days[1] = days[1].min(number),
                 _ => kinds &= K::matching_kinds(column, comparison, number),
             }
         }
@@ -442,11 +454,11 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
         let (Some(day), Some(pass)) = (self.day(), self.passes.get(self.pass)) else { return Ok(()) };
         match column {
-            NUMBER => context.set_result((day.first() + self.place) as i64),
-            DAY => context.set_result(day.day()),
-            KIND => context.set_result(K::KINDS[K::kind(day, self.place)]),
+            NUMBER_COLUMN => context.set_result((day.first() + self.place) as i64),
+            DAY_COLUMN => context.set_result(day.day()),
+            KIND_COLUMN => context.set_result(K::KINDS[K::kind(day, self.place)]),
             other => match self.row_at(pass.day, self.place, self.kinds_to_read(pass)) {
-                Some(row) if other == K::TEXT => context.set_result(&*K::text(&row)),
+                Some(row) if other == K::TEXT_COLUMN => context.set_result(&*K::text(&row)),
                 Some(row) => K::column(&row, other, context),
                 None => Ok(()),
             },
@@ -468,7 +480,7 @@ pub(super) fn comparison_number(text: &str) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss};
+    use super::super::notices::{Inbox, LEAD_LOST_INDEX, NoticeDay, RepeatedLoss};
     use super::super::packed_tables::register;
     use super::*;
     use novamind_world::events::LossCause;
@@ -482,7 +494,7 @@ mod tests {
         for number in 1..=5u32 {
             let mut day = NoticeDay::new(number, first);
             day.push(6, &format!("R&D of day {number}"));
-            day.push(LEAD_LOST, "lost");
+            day.push(LEAD_LOST_INDEX, "lost");
             day.push(0, "won");
             day.set_repeats(number.saturating_sub(1).min(3));
             if number == 3 {
@@ -585,7 +597,7 @@ mod tests {
     }
 
     #[test]
-    fn counting_by_type_or_day_sorts_nothing() {
+    fn count_by_type_or_day_needs_no_sort() {
         let connection = connection();
         for key in ["type", "day", "day, type", "type, day"] {
             let sql = format!("EXPLAIN QUERY PLAN SELECT {key}, count(*) FROM notifications GROUP BY {key}");

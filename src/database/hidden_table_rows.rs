@@ -34,13 +34,13 @@ impl QueryConnection {
         &self,
         ticket: QueryTicket,
         table: &Table,
-        anew: bool,
+        replaces_rows: bool,
         rows: impl Iterator<Item = [HiddenValue; COLUMNS]>,
     ) -> Result<(), QueryError> {
         self.interrupt.begin(ticket, MAX_FILL_TIME, None);
         let write = |connection: &Connection| {
             let transaction = connection.unchecked_transaction()?;
-            if anew {
+            if replaces_rows {
                 transaction.execute(&format!("DELETE FROM {}", table.name), [])?;
             }
             let rows = rows.map(|row| row.map(to_sql_value));

@@ -22,11 +22,11 @@ pub(super) const NOTICE_TYPES: [&str; 8] = [
 ];
 
 /// Index of the type `lead_lost` in [`NOTICE_TYPES`].
-pub(super) const LEAD_LOST: u8 = 3;
+pub(super) const LEAD_LOST_INDEX: u8 = 3;
 
 /// Returns the index of a notice's type in [`NOTICE_TYPES`].
 pub(super) fn type_index(notice: &Notice) -> u8 {
-    NOTICE_TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST, |at| at as u8)
+    NOTICE_TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST_INDEX, |at| at as u8)
 }
 
 /// A lost lead that is reported again every day.
@@ -161,7 +161,7 @@ impl PackedRows for NoticeDay {
     fn next_of_kinds(&self, kinds: KindSet, mut place: u64) -> Option<u64> {
         while place < self.len() {
             match self.notice_at(place) {
-                NoticeSlot::Repeated(_) if kinds & (1 << LEAD_LOST) != 0 => return Some(place),
+                NoticeSlot::Repeated(_) if kinds & (1 << LEAD_LOST_INDEX) != 0 => return Some(place),
                 NoticeSlot::Repeated(_) => place = u64::from(self.before_repeats) + u64::from(self.repeats),
                 NoticeSlot::Stored(at) if kinds & (1 << self.types[at]) != 0 => return Some(place),
                 NoticeSlot::Stored(_) => place += 1,
@@ -295,7 +295,7 @@ mod tests {
             let mut day = NoticeDay::new(7, 40);
             texts.iter().for_each(|text| day.push(2, text));
             day.set_repeats(repeats);
-            day.push(LEAD_LOST, "007 of 99999999999999999999");
+            day.push(LEAD_LOST_INDEX, "007 of 99999999999999999999");
             let read = NoticeDay::from_bytes(7, &day.to_bytes());
             prop_assert_eq!(read.as_ref(), Some(&day));
             for (at, text) in texts.iter().enumerate() {
@@ -316,7 +316,7 @@ mod tests {
     #[test]
     fn notice_types_are_sorted() {
         assert!(NOTICE_TYPES.is_sorted());
-        assert_eq!(NOTICE_TYPES[usize::from(LEAD_LOST)], Notice::LeadSilent.kind());
+        assert_eq!(NOTICE_TYPES[usize::from(LEAD_LOST_INDEX)], Notice::LeadSilent.kind());
         assert_eq!(type_index(&Notice::EnterpriseLead), 2);
     }
 
@@ -324,7 +324,7 @@ mod tests {
     fn repeated_losses_follow_day_notices_and_precede_call_notices() {
         let mut day = NoticeDay::new(9, 1);
         day.push(2, "a");
-        day.push(LEAD_LOST, "b");
+        day.push(LEAD_LOST_INDEX, "b");
         day.set_repeats(2);
         day.push(5, "c");
         let places: Vec<NoticeSlot> = (0..day.len()).map(|place| day.notice_at(place)).collect();
@@ -343,7 +343,7 @@ mod tests {
             std::iter::successors(day.next_of_kinds(1 << number, 0), next).collect::<Vec<_>>()
         };
         assert_eq!(
-            (of_type(2), of_type(LEAD_LOST), of_type(5), of_type(0)),
+            (of_type(2), of_type(LEAD_LOST_INDEX), of_type(5), of_type(0)),
             (vec![0], vec![1, 2, 3], vec![4], vec![])
         );
     }

@@ -13,7 +13,7 @@ use super::ledger::{
     CATEGORIES, INCOME_CATEGORIES, LEAD_COST_CATEGORY, LeadsAndPayments, LedgerDay, LedgerRow,
     PAYMENT_CATEGORY, lead_note, payment_note,
 };
-use super::notices::{LEAD_LOST, NOTICE_TYPES, NoticeDay, NoticeSlot};
+use super::notices::{LEAD_LOST_INDEX, NOTICE_TYPES, NoticeDay, NoticeSlot};
 use super::packing::KindSet;
 use super::text_index::TextIndexes;
 
@@ -57,7 +57,7 @@ impl DayTableDefinition for Ledger {
         }
     }
 
-    const TEXT: c_int = 4;
+    const TEXT_COLUMN: c_int = 4;
 
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str> {
         let LeadsAndPayments { leads, payments } = row.unpacked;
@@ -112,11 +112,11 @@ impl DayTableDefinition for Notifications {
     fn kind(day: &NoticeDay, place: u64) -> usize {
         match day.notice_at(place) {
             NoticeSlot::Stored(at) => usize::from(day.type_at(at)),
-            NoticeSlot::Repeated(_) => usize::from(LEAD_LOST),
+            NoticeSlot::Repeated(_) => usize::from(LEAD_LOST_INDEX),
         }
     }
 
-    const TEXT: c_int = 3;
+    const TEXT_COLUMN: c_int = 3;
 
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str> {
         match row.day.notice_at(row.place) {

@@ -99,10 +99,10 @@ impl Projector {
         location: DatabaseLocation,
         owner: u32,
         params: Arc<Params>,
-        known: impl Fn(&ProjectionPosition) -> bool,
+        accepts_position: impl Fn(&ProjectionPosition) -> bool,
     ) -> Result<(Projector, Option<ProjectionPosition>), ProjectionError> {
         let store = SharedStore::default();
-        let opened = open_existing(&location, &store, known);
+        let opened = open_existing(&location, &store, accepts_position);
         let (mut connection, position) = match opened {
             Some(opened) => opened,
             None => (recreate(&location, owner).map_err(to_error)?, None),
@@ -353,14 +353,14 @@ pub fn file_digest(path: &Path) -> Option<String> {
 fn open_existing(
     location: &DatabaseLocation,
     store: &SharedStore,
-    known: impl Fn(&ProjectionPosition) -> bool,
+    accepts_position: impl Fn(&ProjectionPosition) -> bool,
 ) -> Option<(Connection, Option<ProjectionPosition>)> {
     if !location.path()?.exists() {
         return None;
     }
     let connection = location.open_writer().ok()?;
     let position = stored_position(&connection).ok()??;
-    if !known(&position) || !is_current_layout(&connection) {
+    if !accepts_position(&position) || !is_current_layout(&connection) {
         return None;
     }
     let loaded = load_store(&connection)?;

@@ -440,13 +440,13 @@ impl QueryConnection {
 /// Returns whether a statement begins with a keyword of statements that change data. Syntax errors in such statements
 /// are reported without help.
 fn is_write_statement(sql: &str) -> bool {
-    const WORDS: [&str; 11] = [
+    const WRITE_KEYWORDS: [&str; 11] = [
         "INSERT", "REPLACE", "UPDATE", "DELETE", "CREATE", "DROP", "ALTER", "ATTACH", "DETACH", "REINDEX",
         "VACUUM",
     ];
     let tokens = tokenize(strip_explain_query_plan(sql));
     let first = tokens.iter().find(|token| !token.is_symbol(";") && !token.is_word("EXPLAIN"));
-    first.is_some_and(|first| WORDS.iter().any(|word| first.is_word(word)))
+    first.is_some_and(|first| WRITE_KEYWORDS.iter().any(|word| first.is_word(word)))
 }
 
 /// Internal error of a statement, before its conversion to a [`QueryError`].

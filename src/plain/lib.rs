@@ -63,7 +63,7 @@ fn run_dialogue(
     lines: &mut LineSource,
 ) -> io::Result<(EndReason, Session)> {
     session.activity().attach(Interface { name: "plain", window: None });
-    let mut interpreter = Interpreter::new(session, library, lines.watch(), io::stdin().is_terminal());
+    let mut interpreter = Interpreter::new(session, library, lines.signal_watch(), io::stdin().is_terminal());
     interpreter.code_check = study.and_then(Study::code_check);
     interpreter.is_participant = study.is_some();
     let mut out = io::stdout();
@@ -99,11 +99,11 @@ fn command_loop(
 ) -> io::Result<EndReason> {
     greet(out, &interpreter.session, style)?;
     if let Some(command_response) = interpreter.restore_limit_pause() {
-        print_response(out, style, lines.number(), None, &command_response, interpreter.session.day())?;
+        print_response(out, style, lines.line_number(), None, &command_response, interpreter.session.day())?;
     }
     loop {
         for response in interpreter.check_limits() {
-            print_response(out, style, lines.number(), None, &response, interpreter.session.day())?;
+            print_response(out, style, lines.line_number(), None, &response, interpreter.session.day())?;
         }
         if let Some(end) = ask_questions(interpreter, lines, style, study)? {
             return Ok(end);
@@ -112,7 +112,7 @@ fn command_loop(
             show_prompt(&interpreter.prompt_text())?;
         }
         let read = lines.read_line_timeout(interpreter.limit_check_timeout())?;
-        let number = lines.number();
+        let number = lines.line_number();
         let (line, day) = match read {
             None => continue,
             Some(InputLine::End) => return Ok(lines.end_reason()),
@@ -140,7 +140,7 @@ fn command_loop(
             return Ok(EndReason::Quit);
         }
         print_response(out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
-        if lines.watch().caught_signal().is_some() {
+        if lines.signal_watch().caught_signal().is_some() {
             return Ok(lines.end_reason());
         }
         if interpreter.session.log().loss_reason().is_some() {

@@ -9,7 +9,7 @@ use super::input::{Input, InputLine};
 use super::signals::{Phase, SignalWatch};
 
 /// An event that ends the wait for a line.
-enum Event {
+enum LineEvent {
     /// The number of a line, and the result of reading the line.
     Line(u32, io::Result<InputLine>),
     /// A signal that ends the session.
@@ -19,7 +19,7 @@ enum Event {
 /// A source of input lines. A separate thread reads each line on request.
 pub struct LineSource {
     requests: Sender<()>,
-    events: Receiver<Event>,
+    events: Receiver<LineEvent>,
     watch: SignalWatch,
     /// Whether a line has been requested and has not arrived yet.
     is_requested: bool,
@@ -31,13 +31,13 @@ impl LineSource {
     pub fn from_stdin() -> LineSource {
         let (sender, events) = channel();
         let signals = sender.clone();
-        let watch = SignalWatch::start(move |signal| drop(signals.send(Event::Signal(signal))));
+        let watch = SignalWatch::start(move |signal| drop(signals.send(LineEvent::Signal(signal))));
         let (wanted, wants) = channel();
         std::thread::spawn(move || {
             let mut input = Input::new(io::stdin().lock());
             while wants.recv().is_ok() {
                 let (number, read) = (input.next_number(), input.read_line());
-                if sender.send(Event::Line(number, read)).is_err() {
+                if sender.send(LineEvent::Line(number, read)).is_err() {
                     return;
                 }
             }
@@ -46,7 +46,7 @@ impl LineSource {
     }
 
     /// Returns the signal watch of the session.
-    pub fn watch(&self) -> SignalWatch {
+    pub fn signal_watch(&self) -> SignalWatch {
         self.watch.clone()
     }
 
@@ -56,7 +56,7 @@ impl LineSource {
     }
 
     /// Returns the number of the last line that was read, counted from 1.
-    pub fn number(&self) -> u32 {
+    pub fn line_number(&self) -> u32 {
         self.number
     }
 
@@ -96,19 +96,19 @@ impl LineSource {
         self.watch.set_phase(Phase::Working);
         match event {
             None => Ok(None),
-            Some(Event::Signal(number)) => {
+            Some(LineEvent::Signal(number)) => {
                 self.watch.record_signal(number);
                 Ok(Some(InputLine::End))
             }
-            Some(Event::Line(number, read)) => {
+            Some(LineEvent::Line(number, read)) => {
                 (self.is_requested, self.number) = (false, number);
                 read.map(Some)
             }
         }
     }
 
-    fn next_event(&self, at_most: Option<Duration>) -> Option<Event> {
-        let end = || Event::Line(self.number, Ok(InputLine::End));
+    fn next_event(&self, at_most: Option<Duration>) -> Option<LineEvent> {
+        let end = || LineEvent::Line(self.number, Ok(InputLine::End));
         match at_most {
             None => Some(self.events.recv().unwrap_or_else(|_| end())),
             Some(time) => match self.events.recv_timeout(time) {

@@ -46,27 +46,27 @@ impl SignalWatch {
         };
         let watch = SignalWatch(Arc::new(Mutex::new(state)));
         #[cfg(unix)]
-        watch.listen(prompt);
+        watch.spawn_listener(prompt);
         #[cfg(not(unix))]
         drop(prompt);
         watch
     }
 
     #[cfg(unix)]
-    fn listen(&self, prompt: impl Fn(i32) + Send + 'static) {
+    fn spawn_listener(&self, prompt: impl Fn(i32) + Send + 'static) {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
         let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
         let watch = self.clone();
         std::thread::spawn(move || {
             for signal in signals.forever() {
-                watch.handle(signal, signal == SIGINT, &prompt);
+                watch.handle_signal(signal, signal == SIGINT, &prompt);
             }
         });
     }
 
     #[cfg(unix)]
-    fn handle(&self, signal: i32, by_key: bool, prompt: &impl Fn(i32)) {
-        let mut state = self.state();
+    fn handle_signal(&self, signal: i32, by_key: bool, prompt: &impl Fn(i32)) {
+        let mut state = self.lock_state();
         if state.leaving {
             // A second signal ends the program. Only the last line can be lost; all confirmed actions are already written.
             std::process::exit(128 + signal);
@@ -93,12 +93,12 @@ impl SignalWatch {
 
     /// Sets the current activity of plain mode.
     pub fn set_phase(&self, phase: Phase) {
-        self.state().phase = phase;
+        self.lock_state().phase = phase;
     }
 
     /// Sets the activity to waiting for a line. Returns false if a signal has already arrived, because the wait would not end.
     pub fn enter_prompt(&self) -> bool {
-        let mut state = self.state();
+        let mut state = self.lock_state();
         let waits = state.caught.is_none();
         if waits {
             state.phase = Phase::Prompt;
@@ -108,28 +108,28 @@ impl SignalWatch {
 
     /// Sets the activity to a query. A signal stops the query through `interrupt`.
     pub fn enter_query(&self, interrupt: Interrupt) {
-        let mut state = self.state();
+        let mut state = self.lock_state();
         (state.phase, state.interrupt) = (Phase::Query, Some(interrupt));
     }
 
     /// Sets the activity to a simulation. The returned flag becomes true when the simulation must stop.
     pub fn enter_simulation(&self) -> Arc<AtomicBool> {
-        let mut state = self.state();
+        let mut state = self.lock_state();
         (state.phase, state.stop) = (Phase::Simulation, Arc::default());
         state.stop.clone()
     }
 
     /// Records a signal that ended the wait at a prompt.
     pub fn record_signal(&self, signal: i32) {
-        self.state().caught = Some(signal);
+        self.lock_state().caught = Some(signal);
     }
 
     /// Returns the signal that ends the session, if a signal was received.
     pub fn caught_signal(&self) -> Option<i32> {
-        self.state().caught
+        self.lock_state().caught
     }
 
-    fn state(&self) -> MutexGuard<'_, WatchState> {
+    fn lock_state(&self) -> MutexGuard<'_, WatchState> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn signal_before_the_prompt_is_not_lost() {
         let watch = SignalWatch::start(|_| panic!("no prompt is waiting"));
-        watch.handle(15, false, &|_| panic!("no prompt is waiting"));
+        watch.handle_signal(15, false, &|_| panic!("no prompt is waiting"));
         assert!(!watch.enter_prompt());
         assert_eq!(watch.caught_signal(), Some(15));
     }

@@ -5,7 +5,7 @@ use novamind_base::formatting::{dollars, price_to_cents, signed_dollars};
 use novamind_session::{IdenticalPlans, Observation, Preview};
 
 /// Describes income, committed costs and runway before the next week, one line per topic.
-pub fn money_lines(seen: &Observation) -> Vec<String> {
+pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
     let (pace, now) = (seen.pace, seen.pace.committed);
     let change = now - seen.committed_before;
     let changed = match change {
@@ -85,7 +85,7 @@ mod tests {
     use novamind_session::Session;
 
     #[test]
-    fn money_lines_total_changes_and_list_purchases_separately() {
+    fn income_and_cost_lines_list_purchases_separately() {
         let mut session = test_kit::play_weeks(0);
         for (tool, arguments) in [
             ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
@@ -97,7 +97,7 @@ mod tests {
             session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         }
         assert_eq!(
-            money_lines(&session.company().observe()),
+            income_and_cost_lines(&session.company().observe()),
             [
                 "Committed: $5,585 a day = $39,095 a week",
                 "One-time costs since the last week: $25,000",
@@ -105,7 +105,7 @@ mod tests {
             ]
         );
         let played = test_kit::play_weeks(3);
-        let lines = money_lines(&played.company().observe());
+        let lines = income_and_cost_lines(&played.company().observe());
         assert!(lines[0].starts_with("Committed: $") && !lines[0].contains("since"), "{lines:?}");
         assert!(lines[1].starts_with("Last 3 weeks: income $"), "{lines:?}");
     }

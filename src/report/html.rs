@@ -11,7 +11,7 @@ pub(super) const STYLE: &str = include_str!("../../assets/report.css");
 pub fn to_html(page: &Page) -> String {
     let tags: String = page.tags.iter().map(|tag| format!("<li>{}</li>", escape_html(tag))).collect();
     let mut body = String::new();
-    let folded = page.blocks.iter().filter(|block| matches!(block, Block::Folded { .. })).count();
+    let folded = page.blocks.iter().filter(|block| matches!(block, Block::Collapsible { .. })).count();
     let mut shape = BlockContext { chart_count: 0, is_unfolded: folded <= MAX_EXPANDED_SECTIONS };
     let mut open = false;
     for block in &page.blocks {
@@ -70,7 +70,7 @@ fn block_html(block: &Block, shape: &mut BlockContext) -> String {
                 svg::draw(chart, shape.chart_count)
             )
         }
-        Block::Folded { title, note, lines, points } => {
+        Block::Collapsible { title, note, lines, points } => {
             let lines: String = lines.iter().map(|line| format!("<p>{}</p>\n", escape_html(line))).collect();
             let points = if points.is_empty() { String::new() } else { list_html(points) };
             let open = if shape.is_unfolded { " open=\"open\"" } else { "" };

@@ -3,7 +3,7 @@
 use super::formatting::format_money;
 use novamind_base::formatting::{compact_number, dollars_and_cents, parse_number, percent, short_dollars};
 use novamind_course::{GoalStatus, LessonQuestion, LessonStatus};
-use novamind_record::trajectory::record::{LessonEvent, LessonNote};
+use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 
 /// Returns the name of a lesson event.
 pub fn event_name(event: LessonEvent) -> &'static str {
@@ -18,7 +18,7 @@ pub fn event_name(event: LessonEvent) -> &'static str {
 }
 
 /// Describes a `lesson` event of a trajectory without reading the lesson file.
-pub fn describe_note(note: &LessonNote) -> String {
+pub fn describe_note(note: &RecordedLessonEvent) -> String {
     let number = note.number.unwrap_or(1);
     let value = note.value.map(compact_number).unwrap_or_else(|| "none".to_owned());
     match note.event {

@@ -36,7 +36,7 @@ fn block_markdown(block: &Block) -> String {
         }),
         Block::Bars(bars) => bars_markdown(bars),
         Block::Chart(chart) => chart_markdown(chart),
-        Block::Folded { title, note, lines, points } => {
+        Block::Collapsible { title, note, lines, points } => {
             let mut parts = vec![format!("### {}", escape(title)), escape(note)];
             parts.extend(lines.iter().map(|line| escape(line)));
             if !points.is_empty() {

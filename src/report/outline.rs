@@ -136,7 +136,7 @@ fn ranking_blocks(report: &RunReport) -> Vec<Block> {
         name: place.name.clone(),
         value_text: describe_place(place),
         share: (place.cash / most).clamp(0.0, 1.0),
-        is_highlighted: place.owner == ResultOrigin::ThisRun,
+        is_highlighted: place.origin == ResultOrigin::ThisRun,
     };
     let text = match standing.rank {
         Some(_) => {
@@ -363,7 +363,7 @@ fn decision_blocks(report: &RunReport) -> Vec<Block> {
         if points.is_empty() {
             lines.push("No changes.".to_owned());
         }
-        blocks.push(Block::Folded { title, note, lines, points });
+        blocks.push(Block::Collapsible { title, note, lines, points });
     }
     blocks
 }

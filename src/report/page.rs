@@ -35,7 +35,7 @@ pub enum Block {
     /// A chart.
     Chart(Chart),
     /// A section that can be collapsed.
-    Folded {
+    Collapsible {
         /// Title of the section.
         title: String,
         /// Summary at the right end of the title line.

@@ -203,7 +203,7 @@ pub struct RankedResult {
     /// Cash at the end, dollars.
     pub cash: f64,
     /// Origin of the result.
-    pub owner: ResultOrigin,
+    pub origin: ResultOrigin,
     /// Last day of the run; `None` if it is not published.
     pub horizon_days: Option<u32>,
 }
@@ -229,7 +229,7 @@ pub struct Ranking {
 impl Ranking {
     /// Returns the best results, and the results directly above and below the run.
     pub fn top_and_neighbors(&self, best: usize, neighbors: usize) -> Vec<&RankedResult> {
-        let number = self.entries.iter().position(|place| place.owner == ResultOrigin::ThisRun);
+        let number = self.entries.iter().position(|place| place.origin == ResultOrigin::ThisRun);
         let wanted =
             |at: usize| at < best || number.is_some_and(|position| position.abs_diff(at) <= neighbors);
         self.entries.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
@@ -255,7 +255,7 @@ pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
     let place = |name: &str, cash: f64, whose: ResultOrigin, horizon_days: Option<u32>| RankedResult {
         name: name.to_owned(),
         cash,
-        owner: whose,
+        origin: whose,
         horizon_days,
     };
     let table = published_results().table_of(seen.generation);
@@ -344,7 +344,7 @@ mod tests {
         assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
         let ruined = rank_score(Some(0.0), &seen);
         assert_eq!(ruined.rank, Some(14), "four published agents also have no cash");
-        assert_eq!(ruined.entries.last().map(|place| place.owner), Some(ResultOrigin::ThisRun));
+        assert_eq!(ruined.entries.last().map(|place| place.origin), Some(ResultOrigin::ThisRun));
         assert_eq!(rank_score(None, &seen).rank, None);
         seen.seed = Some(7);
         assert_eq!(rank_score(Some(0.0), &seen).rank, Some(14), "a different seed stays comparable");
@@ -365,7 +365,7 @@ mod tests {
             let standing = rank_score(Some(2e6), &seen);
             assert_eq!(standing.rank.is_some(), why.is_none(), "{days}");
             assert_eq!(
-                standing.entries.iter().any(|place| place.owner == ResultOrigin::ThisRun),
+                standing.entries.iter().any(|place| place.origin == ResultOrigin::ThisRun),
                 why.is_none()
             );
             if let Some(why) = why {

@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn spillover_picture_has_no_spillover_at_small_influence() {
+    fn spillover_picture_shows_no_spillover_if_influence_is_small() {
         let Some(TermDrawing::Lines(term_lines)) = picture("spill-over", 0).drawing else {
             panic!("no lines")
         };

@@ -131,7 +131,7 @@ impl Session {
     pub fn create_with_progress(
         new: NewRun,
         configuration: &Configuration,
-        tell: &mut dyn FnMut(&DayReport<'_>),
+        progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
         let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.apply_to(new.clone()));
         let shipped = Configuration::bundled();
@@ -144,7 +144,7 @@ impl Session {
         let speaker = model.as_ref().map(ModelClient::new).transpose().map_err(model_voice_error)?;
         let (manifest, params) = build_manifest(&new, configuration)?;
         let manifest = Manifest { voice: model.map(|model| model.recorded_settings()), ..manifest };
-        let mut begun = Session::create_stored(manifest, params, &new, tell)?;
+        let mut begun = Session::create_stored(manifest, params, &new, progress)?;
         begun.set_model_client(speaker);
         Ok(begun)
     }
@@ -153,15 +153,15 @@ impl Session {
         manifest: Manifest,
         params: Params,
         new: &NewRun,
-        tell: &mut dyn FnMut(&DayReport<'_>),
+        progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
         match &new.storage {
-            Storage::Memory => Session::create_run(manifest, params, None, new, tell),
+            Storage::Memory => Session::create_run(manifest, params, None, new, progress),
             Storage::Runs(runs) => {
                 remove_stale_staging_folders(runs);
                 let folder = runs.join(&manifest.id);
                 create_folder(&folder)?;
-                let begun = Session::create_run(manifest, params, Some(folder.clone()), new, tell);
+                let begun = Session::create_run(manifest, params, Some(folder.clone()), new, progress);
                 if begun.is_err() {
                     let _ = std::fs::remove_dir_all(&folder);
                 }
@@ -185,7 +185,7 @@ impl Session {
         params: Params,
         folder: Option<PathBuf>,
         new: &NewRun,
-        tell: &mut dyn FnMut(&DayReport<'_>),
+        progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
         let params = Arc::new(params);
         if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
@@ -197,7 +197,7 @@ impl Session {
         let seal_key = new.seal_key.clone();
         let mut session = Session::with_recorder((manifest, params), folder, projector, recorder, seal_key);
         if let Some(entry) = &new.lesson {
-            session.start_lesson(entry, tell)?;
+            session.start_lesson(entry, progress)?;
         }
         Ok(session)
     }

@@ -420,8 +420,9 @@ impl Protocol {
                 format!("unknown kind of activity {kind}; the kinds are {known}"),
             ));
         }
-        const NEEDED: [&str; 5] = ["session", "clock", "limit", "answer", "question"];
-        if let Some(kind) = self.record.leave_out.iter().find(|kind| NEEDED.contains(&kind.as_str())) {
+        const REQUIRED_KINDS: [&str; 5] = ["session", "clock", "limit", "answer", "question"];
+        if let Some(kind) = self.record.leave_out.iter().find(|kind| REQUIRED_KINDS.contains(&kind.as_str()))
+        {
             return Err((
                 "record.leave_out",
                 format!("{kind} cannot be left out: times and answers depend on it"),

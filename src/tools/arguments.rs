@@ -170,8 +170,8 @@ impl SentNumber {
     /// Returns `value`, the sum of `parts`. The sum is written without a decimal point if no part has one, as in the
     /// released simulator.
     pub fn sum<'a>(value: f64, mut parts: impl Iterator<Item = &'a SentNumber>) -> SentNumber {
-        const EXACT: f64 = 9e15;
-        match parts.all(|part| !part.number.is_f64()) && value.abs() < EXACT {
+        const MAX_EXACT_INTEGER: f64 = 9e15;
+        match parts.all(|part| !part.number.is_f64()) && value.abs() < MAX_EXACT_INTEGER {
             true => SentNumber { value, number: Number::from(value as i64) },
             false => SentNumber::from_setting(value),
         }

@@ -111,12 +111,16 @@ fn entry_name(entry: &Value) -> Option<String> {
 
 /// Formats a small whole number as a word, and any other number in digits.
 fn number_word(value: f64) -> String {
-    const WORDS: [&str; 13] = [
+    const NUMBER_WORDS: [&str; 13] = [
         "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
         "twelve",
     ];
     let digits = format_decimal(value);
-    digits.parse::<usize>().ok().and_then(|whole| WORDS.get(whole)).map_or(digits, |word| (*word).to_owned())
+    digits
+        .parse::<usize>()
+        .ok()
+        .and_then(|whole| NUMBER_WORDS.get(whole))
+        .map_or(digits, |word| (*word).to_owned())
 }
 
 /// Formats a number with at most six decimals, without trailing zeros.

@@ -54,7 +54,7 @@ impl EnterpriseNames {
             HashSequence(mix_bits(self.seed ^ u64::from(customer).wrapping_mul(0x9E37_79B9_7F4A_7C15)));
         let words = NameWords::bundled();
         let second = format!("{}{}", draw.pick(&words.heads), draw.pick(&words.tails));
-        match draw.below(3) {
+        match draw.next_below(3) {
             0 => format!("{first} {second}"),
             1 => format!("{first} & {second}"),
             _ => format!("{second} & {first}"),
@@ -68,11 +68,11 @@ impl EnterpriseNames {
 
     /// Replaces `customer 16064` in a recorded text with the name and the number of the enterprise.
     pub fn insert_names(&self, text: &str) -> String {
-        const WORD: &str = "ustomer ";
+        const CUSTOMER_WORD: &str = "ustomer ";
         let mut output = String::with_capacity(text.len() + 16);
         let mut rest = text;
-        while let Some(at) = rest.find(WORD) {
-            let after = &rest[at + WORD.len()..];
+        while let Some(at) = rest.find(CUSTOMER_WORD) {
+            let after = &rest[at + CUSTOMER_WORD.len()..];
             let digits = after.len() - after.trim_start_matches(|sign: char| sign.is_ascii_digit()).len();
             let begins = rest[..at].ends_with(['C', 'c']);
             match after[..digits].parse() {
@@ -82,7 +82,7 @@ impl EnterpriseNames {
                     rest = &after[digits..];
                 }
                 _ => {
-                    output += &rest[..at + WORD.len()];
+                    output += &rest[..at + CUSTOMER_WORD.len()];
                     rest = after;
                 }
             }
@@ -101,13 +101,13 @@ fn name_from_address_word(word: &str) -> String {
 struct HashSequence(u64);
 
 impl HashSequence {
-    fn below(&mut self, count: usize) -> usize {
+    fn next_below(&mut self, count: usize) -> usize {
         self.0 = mix_bits(self.0.wrapping_add(0x9E37_79B9_7F4A_7C15));
         (self.0 % count.max(1) as u64) as usize
     }
 
     fn pick<'a>(&mut self, words: &'a [String]) -> &'a str {
-        let at = self.below(words.len());
+        let at = self.next_below(words.len());
         words.get(at).map_or("", String::as_str)
     }
 }

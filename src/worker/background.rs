@@ -15,7 +15,7 @@ pub fn answer_on_thread<T>(
     report: impl FnOnce(Result<T, Rejection>) -> Response + Send + 'static,
 ) {
     std::thread::spawn(move || {
-        let result = catch_defect(work).unwrap_or_else(Err);
+        let result = catch_panic(work).unwrap_or_else(Err);
         if let Some(result) = result.transpose() {
             let _ = news.send(Message::Response(report(result)));
         }
@@ -26,7 +26,7 @@ pub fn answer_on_thread<T>(
 ///
 /// # Errors
 /// `internal_error`: `work` has panicked. Values that `work` used may be inconsistent.
-pub(super) fn catch_defect<T>(work: impl FnOnce() -> T) -> Result<T, Rejection> {
+pub(super) fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Rejection> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let reason = panic_message(&*panic);
         let message =
@@ -86,7 +86,7 @@ mod tests {
     fn lock_cache_resets_after_a_panic() {
         let kept = Arc::new(Mutex::new(vec![1]));
         assert_eq!(*lock_cache(&kept), [1]);
-        let panicked = catch_defect(|| {
+        let panicked = catch_panic(|| {
             let mut guard = lock_cache(&kept);
             guard.push(2);
             panic!("half done")

@@ -21,9 +21,9 @@ pub mod posts;
 pub mod preferences;
 pub mod queries;
 pub mod question;
-pub mod readings;
 pub mod request;
 pub mod run_folders;
+pub mod screen_queries;
 mod study;
 #[cfg(any(test, feature = "test-kit"))]
 pub mod test_kit;

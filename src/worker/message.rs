@@ -22,11 +22,11 @@ pub enum Message {
     /// A response of a worker thread.
     Response(Response),
     /// An answer to a question of a page, or progress of the answer.
-    Arrived(Delivery),
+    Delivered(Delivery),
     /// A signal that ends, suspends or resumes the program.
     Signal(i32),
     /// The time after which the console wants to redraw has passed.
-    TimePassed,
+    RedrawDue,
 }
 
 /// A new position of the playback, or a problem.

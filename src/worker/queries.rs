@@ -4,10 +4,10 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::background::catch_defect;
+use super::background::catch_panic;
 use super::{Job, SessionThread, Workers};
 use crate::question::{Question, Reply};
-use crate::readings::Reading;
+use crate::screen_queries::Reading;
 use novamind_database::query::QueryLimits;
 use novamind_database::{Interrupt, QueryConnection, QueryResult, QueryTicket};
 use novamind_record::trajectory::record::QuerySource;
@@ -192,7 +192,7 @@ fn answer(
     jobs: &Sender<Job>,
 ) {
     let started = Instant::now();
-    let rows = match connection.as_ref().map(|reader| catch_defect(|| ask(reader, &question))) {
+    let rows = match connection.as_ref().map(|reader| catch_panic(|| ask(reader, &question))) {
         None => Err(Rejection::new("sql_error", "no run is open")),
         Some(Ok(rows)) => rows,
         Some(Err(defect)) => {
@@ -249,7 +249,7 @@ mod tests {
             let mut pending = Pending::default();
             let reply = pending.ask(query).reply::<Query>(news.clone()).expect("a query");
             let _ = thread.send(QueryJob::Ask(DatabaseQuestion::Query(sql.to_owned(), via, reply)));
-            let Ok(Message::Arrived(delivery)) = answers.recv() else { panic!("other news") };
+            let Ok(Message::Delivered(delivery)) = answers.recv() else { panic!("other news") };
             delivery.deliver();
             pending.try_take().expect("an answer").1
         };

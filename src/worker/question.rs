@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use super::background::catch_defect;
+use super::background::catch_panic;
 use super::{Job, SessionThread, Workers};
 use crate::message::{Delivery, Message};
 use novamind_database::QueryTicket;
@@ -184,7 +184,7 @@ impl<Q: Question> Reply<Q> {
         work: impl FnOnce(&Reply<Q>) -> Result<Option<Q::Answer>, Rejection> + Send + 'static,
     ) {
         std::thread::spawn(move || {
-            let found = catch_defect(|| work(&self)).unwrap_or_else(Err);
+            let found = catch_panic(|| work(&self)).unwrap_or_else(Err);
             if let Some(answer) = found.transpose() {
                 self.answer(answer);
             }
@@ -199,7 +199,7 @@ impl<Q: Question> Reply<Q> {
             }
         });
         // Ignore the error: the receiver may already have been dropped because the program is ending.
-        let _ = self.messages.send(Message::Arrived(Delivery { store: put, is_answer }));
+        let _ = self.messages.send(Message::Delivered(Delivery { store: put, is_answer }));
     }
 }
 
@@ -298,7 +298,8 @@ mod tests {
     /// Delivers all messages up to and including the next answer.
     fn deliver_until_answer(messages: &Receiver<Message>) {
         loop {
-            if let Message::Arrived(delivery) = messages.recv_timeout(RESPONSE_TIMEOUT).expect("a message") {
+            if let Message::Delivered(delivery) = messages.recv_timeout(RESPONSE_TIMEOUT).expect("a message")
+            {
                 let is_answer = delivery.is_answer;
                 delivery.deliver();
                 if is_answer {
@@ -335,7 +336,7 @@ mod tests {
         // An earlier answer is also dropped if the later question is asked after the answer was sent.
         workers.ask(&pending.ask(TestQuestion::Number(3)), false);
         let first = messages.iter().find_map(|message| match message {
-            Message::Arrived(delivery) if delivery.is_answer => Some(delivery),
+            Message::Delivered(delivery) if delivery.is_answer => Some(delivery),
             _ => None,
         });
         workers.ask(&pending.ask(TestQuestion::Number(4)), false);

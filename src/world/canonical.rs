@@ -42,7 +42,7 @@ impl Default for CanonicalHasher {
 impl CanonicalHasher {
     /// Appends bytes to the hashed sequence.
     #[inline]
-    pub fn bytes(&mut self, bytes: &[u8]) {
+    pub fn append_bytes(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
         if self.pending.len() >= self.chunk_bytes {
             self.hash_complete_chunks();
@@ -70,7 +70,7 @@ impl CanonicalHasher {
         for values in values.chunks(VALUES_PER_BATCH) {
             let places = &mut together[..values.len()];
             places.iter_mut().zip(values).for_each(|(place, value)| *place = bytes_of(*value));
-            self.bytes(places.as_flattened());
+            self.append_bytes(places.as_flattened());
         }
     }
 
@@ -122,7 +122,7 @@ macro_rules! canonical_numbers {
         impl Canonical for $number {
             #[inline]
             fn feed(&self, hasher: &mut CanonicalHasher) {
-                hasher.bytes(&self.to_le_bytes());
+                hasher.append_bytes(&self.to_le_bytes());
             }
 
             fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
@@ -136,7 +136,7 @@ canonical_numbers!(u8, u16, u32, u64, i64);
 impl Canonical for f64 {
     #[inline]
     fn feed(&self, hasher: &mut CanonicalHasher) {
-        hasher.bytes(&self.to_bits().to_le_bytes());
+        hasher.append_bytes(&self.to_bits().to_le_bytes());
     }
 
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
@@ -147,7 +147,7 @@ impl Canonical for f64 {
 impl Canonical for bool {
     #[inline]
     fn feed(&self, hasher: &mut CanonicalHasher) {
-        hasher.bytes(&[u8::from(*self)]);
+        hasher.append_bytes(&[u8::from(*self)]);
     }
 
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
@@ -158,7 +158,7 @@ impl Canonical for bool {
 impl Canonical for str {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         (self.len() as u64).feed(hasher);
-        hasher.bytes(self.as_bytes());
+        hasher.append_bytes(self.as_bytes());
     }
 }
 
@@ -281,7 +281,7 @@ macro_rules! canonical_codes {
         impl $crate::canonical::Canonical for $name {
             fn feed(&self, hasher: &mut $crate::canonical::CanonicalHasher) {
                 match self {
-                    $($name::$value)|* => hasher.bytes(&[*self as u8]),
+                    $($name::$value)|* => hasher.append_bytes(&[*self as u8]),
                 }
             }
         }
@@ -333,7 +333,7 @@ mod tests {
     fn hashing_in_chunks_matches_hashing_at_once() {
         let long: Vec<u8> = (0..200_000u32).map(|value| value as u8).collect();
         let mut piecewise = CanonicalHasher::default();
-        long.iter().for_each(|byte| piecewise.bytes(&[*byte]));
+        long.iter().for_each(|byte| piecewise.append_bytes(&[*byte]));
         assert_eq!(piecewise.finish(), blake3::hash(&long));
     }
 

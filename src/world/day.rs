@@ -16,8 +16,8 @@ use super::fixed_inputs::FixedInputs;
 use super::identifiers::{ByGroup, ByPlan, Group};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
+use super::market::social::author_selection::{self, BlockWeights};
 use super::market::social::opinions::OpinionContext;
-use super::market::social::post_lottery::{self, BlockWeights};
 use super::market::social::press;
 use super::market::{arrivals, competitors, economy, studies, surges, yields};
 use super::morning::Morning;
@@ -120,8 +120,9 @@ pub fn step_day_observed(
     // Subscribers open issues, update satisfaction, decide and pay; enterprises negotiate.
     let scene = OpinionContext { day: &today, chronicle: &market.social.chronicle };
     let mut felt = update_satisfaction(customers, &today, &scene, watch);
-    let crowd =
-        felt.post_weights.map(|voices| post_lottery::from_subscribers(voices, customers, &scene, streams));
+    let crowd = felt
+        .post_weights
+        .map(|voices| author_selection::from_subscribers(voices, customers, &scene, streams));
     issues::allocate_resolutions(&mut felt.calls, settings, customers, issue_desk, &today);
     let judgement = RenewalContext {
         day: &today,
@@ -208,13 +209,13 @@ fn update_satisfaction(
     scene: &OpinionContext<'_>,
     watch: &dyn DayObserver,
 ) -> SatisfactionRound {
-    let listening = post_lottery::is_posting_day(day.day(), day.params);
+    let listening = author_selection::is_posting_day(day.day(), day.params);
     let felt = customers.sweep(|group, number, block| {
         let calls = issues::find_issues(group, number, block, day);
         let before = listening.then(|| block.satisfaction.clone());
         watch.before_satisfaction(group, block, day);
         let mood = satisfaction::update_block(group, block, day);
-        let voices = before.map(|before| post_lottery::weigh_block(group, block, before, scene));
+        let voices = before.map(|before| author_selection::weigh_block(group, block, before, scene));
         (calls, (group, mood), voices)
     });
     let (calls, moods, voices): (Vec<_>, Vec<_>, Vec<_>) = felt.into_iter().collect();
@@ -312,7 +313,7 @@ pub fn closing_figures(world: &World) -> DayFigures {
 #[cfg(test)]
 mod extreme_tests;
 #[cfg(test)]
-mod wiring_tests;
+mod step_interaction_tests;
 
 #[cfg(test)]
 pub(crate) mod tests {

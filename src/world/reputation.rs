@@ -28,11 +28,11 @@ impl AddAssign for ReputationContribution {
 
 /// Reputation in each group, 0.001..=1 after the first change.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ReputationBook {
+pub struct Reputations {
     values: ByGroup<f64>,
 }
 
-canonical! { ReputationBook { values } }
+canonical! { Reputations { values } }
 
 /// The cause of a reputation change.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,10 +78,10 @@ pub struct ReputationWrite<'a> {
 /// A callback for reputation changes.
 pub type OnReputationWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
 
-impl ReputationBook {
+impl Reputations {
     /// Returns the reputations on day 0, which are equal for all groups.
-    pub fn initial(params: &Params) -> ReputationBook {
-        ReputationBook { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
+    pub fn initial(params: &Params) -> Reputations {
+        Reputations { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
     }
 
     /// Returns the reputation in a group.
@@ -189,7 +189,7 @@ pub fn event_damage(subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
 
 /// Applies today's contributions to all reputations, and the spillover of each change to the other known groups.
 pub fn apply_contributions(
-    book: &mut ReputationBook,
+    book: &mut Reputations,
     moods: &ByGroup<ReputationContribution>,
     is_known: impl Fn(Group) -> bool,
     params: &Params,
@@ -222,9 +222,9 @@ mod tests {
     }
 
     /// Returns the reputations after a day with the given `moods`: group, number of subscribers, satisfaction.
-    fn reputation_after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> ReputationBook {
+    fn reputation_after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> Reputations {
         let params = Params::bundled();
-        let mut book = ReputationBook::initial(&params);
+        let mut book = Reputations::initial(&params);
         let mut by_group = ByGroup::<ReputationContribution>::default();
         for &(id, count, satisfaction) in moods {
             book.set(group(id), start);
@@ -239,7 +239,7 @@ mod tests {
         book
     }
 
-    fn assert_reputations(book: &ReputationBook, expected: &[(&str, f64)]) {
+    fn assert_reputations(book: &Reputations, expected: &[(&str, f64)]) {
         for &(id, value) in expected {
             let actual = book.get(group(id));
             assert!((actual / value - 1.0).abs() < 1e-9, "{id}: got {actual}, expected {value}");
@@ -313,7 +313,7 @@ mod tests {
         ] {
             assert!((cancel_damage(satisfaction, count, u, reputation) / damage - 1.0).abs() < 1e-9);
         }
-        let mut book = ReputationBook::initial(&params);
+        let mut book = Reputations::initial(&params);
         book.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, reputation), &params);
         assert_reputations(&book, &[("S1", 0.499738398)]);
     }

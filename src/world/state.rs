@@ -105,7 +105,7 @@ pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
     let mut hasher = CanonicalHasher::default();
     for part in parts {
         part.part.feed(&mut hasher);
-        hasher.bytes(part.hash.as_bytes());
+        hasher.append_bytes(part.hash.as_bytes());
     }
     hasher.finish()
 }

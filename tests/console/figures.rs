@@ -340,7 +340,7 @@ fn shown_texts(runs: &Path) -> Vec<(String, String)> {
 }
 
 #[test]
-fn figures_with_one_name_have_one_value() {
+fn figures_with_the_same_name_have_the_same_value() {
     let mut places: BTreeMap<usize, usize> = BTreeMap::new();
     let mut wrong = Vec::new();
     for (policy, seed, days) in PLAYED_COMPANIES {

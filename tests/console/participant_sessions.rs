@@ -160,7 +160,7 @@ fn advance_week(console: &mut Console) {
 }
 
 #[test]
-fn participant_session_runs_from_label_to_thanks() {
+fn participant_session_runs_from_label_to_final_page() {
     let lab = StudyHome::new();
     let mut console = lab.open_console((100, 30));
     for wrong in ["'P9'", "'../x'"] {

@@ -7,7 +7,7 @@ use novamind::session::verify;
 use super::harness::Console;
 
 /// Sets initial prices, tiers, quotas and budgets in the forms.
-fn open_shop(console: &mut Console) {
+fn enter_initial_settings(console: &mut Console) {
     console.press("8 enter enter '12' down '25' down '55' enter ctrl-s");
     console.press("down enter enter '1' down '2' down '4' enter ctrl-s");
     console.press("down enter enter '60k' down '250k' down '1.2M' enter ctrl-s");
@@ -23,7 +23,7 @@ fn new_user_plays_two_weeks_and_resumes() {
     console.press("n enter");
     console.assert_shows("day 0/500");
     console.assert_shows("No plan has a price. No one");
-    open_shop(&mut console);
+    enter_initial_settings(&mut console);
     console.assert_shows("Tools ●11");
     console.press("c");
     for line in ["price A", "0 → 12", "quota C", "ads content_marketing S1", "0 → 750"] {
@@ -173,7 +173,7 @@ fn menu_explains_why_a_run_cannot_be_opened() {
 fn deleted_trajectory_stops_the_run_with_a_message() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    open_shop(&mut console);
+    enter_initial_settings(&mut console);
     let folder =
         std::fs::read_dir(runs.path()).expect("runs").next().expect("a run").expect("a folder").path();
     let confirmed = std::fs::read(folder.join("trajectory.jsonl")).expect("a trajectory");
@@ -196,7 +196,7 @@ fn deleted_trajectory_stops_the_run_with_a_message() {
 fn feed_publishes_a_post_after_one_confirmation() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    open_shop(&mut console);
+    enter_initial_settings(&mut console);
     console.advance_week();
     console.press("esc");
     console.assert_shows("5 Social ●");
@@ -259,7 +259,7 @@ fn named_query_is_run_charted_and_saved_as_a_copy() {
     let configuration = Configuration { folder: Some(folder.clone()), voice: None };
     let mut console = Console::start_with(configuration, runs.path(), (120, 40));
     console.press("n enter");
-    open_shop(&mut console);
+    enter_initial_settings(&mut console);
     console.advance_week();
     console.press("esc 9 ctrl-o 'cashweek' enter");
     console.assert_shows("Query · Cash by week");

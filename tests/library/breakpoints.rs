@@ -113,7 +113,7 @@ fn record_days(session: &mut Session) -> Vec<DayRecord> {
 /// the recorded days.
 type ReferenceCondition = fn(&[DayRecord], usize) -> bool;
 
-fn churn_7(days: &[DayRecord], day: usize) -> Option<f64> {
+fn churn_over_7_days(days: &[DayRecord], day: usize) -> Option<f64> {
     let (last, s1) = (day - 1, group("S1"));
     let beginning = last.checked_sub(7)?;
     let left: u32 = days[beginning + 1..=last].iter().map(|seen| seen.left[s1]).sum();
@@ -121,14 +121,14 @@ fn churn_7(days: &[DayRecord], day: usize) -> Option<f64> {
         .then(|| f64::from(left) / f64::from(days[beginning].subscribers[s1]))
 }
 
-fn leads_7(days: &[DayRecord], day: usize) -> Option<u32> {
+fn leads_over_7_days(days: &[DayRecord], day: usize) -> Option<u32> {
     let first = day.checked_sub(7)?;
     Some(days[first..day].iter().map(|seen| seen.leads[group("S2")]).sum())
 }
 
 const CONDITIONS: [(&str, ReferenceCondition); 12] = [
-    ("churn(S1) > 0.05 over 7", |days, day| churn_7(days, day).is_some_and(|churn| churn > 0.05)),
-    ("churn(S1) over 7 > 5%", |days, day| churn_7(days, day).is_some_and(|churn| churn > 0.05)),
+    ("churn(S1) > 0.05 over 7", |days, day| churn_over_7_days(days, day).is_some_and(|churn| churn > 0.05)),
+    ("churn(S1) over 7 > 5%", |days, day| churn_over_7_days(days, day).is_some_and(|churn| churn > 0.05)),
     ("reputation(S3) falls", |days, day| {
         day > 1 && days[day - 1].reputation[group("S3")] < days[day - 2].reputation[group("S3")]
     }),
@@ -139,7 +139,9 @@ const CONDITIONS: [(&str, ReferenceCondition); 12] = [
     ("subscribers(S1) >= 200", |days, day| days[day - 1].subscribers[group("S1")] >= 200),
     ("satisfaction(S1) < 0.1", |days, day| days[day - 1].satisfaction[group("S1")] < 0.1),
     ("leads(S2) rises over 7", |days, day| {
-        leads_7(days, day).zip(leads_7(days, day - 1)).is_some_and(|(now, before)| now > before)
+        leads_over_7_days(days, day)
+            .zip(leads_over_7_days(days, day - 1))
+            .is_some_and(|(now, before)| now > before)
     }),
     ("overload > 0", |days, day| days[day - 1].overload > 0.0),
     ("conversion(S1) <= 0.3 over 14", |days, day| {
@@ -194,7 +196,8 @@ fn breakpoints_match_a_full_scan() {
             assert_eq!(judged.day, stopping.day());
             stops.push((judged.day, breakpoint.condition.to_string()));
             if breakpoint.condition.to_string() == "churn(S1) > 0.05 over 7" {
-                let [now, before] = [judged.day, judged.day - 1].map(|day| churn_7(&days, day as usize));
+                let [now, before] =
+                    [judged.day, judged.day - 1].map(|day| churn_over_7_days(&days, day as usize));
                 assert_eq!((judged.value, judged.before), (now, before));
             }
         }
@@ -346,14 +349,14 @@ fn group_targets(groups: &[&str]) -> Vec<WriteTarget> {
     groups.iter().flat_map(of).collect()
 }
 
-fn assert_seen(causes: &BTreeMap<String, u32>, expected: &[&str]) {
+fn assert_causes_occurred(causes: &BTreeMap<String, u32>, expected: &[&str]) {
     for cause in expected {
         assert!(causes.contains_key(*cause), "{cause}: {causes:?}");
     }
 }
 
 #[test]
-fn writers_sum_to_the_change_exactly() {
+fn writes_sum_to_the_change_exactly() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_with_overrides(folder.path(), Mode::Debug, DAYS, 5_000_000.0);
     let spend =
@@ -385,11 +388,11 @@ fn writers_sum_to_the_change_exactly() {
         "Cancellations(Quality)",
         "Signups(ContentMarketing)",
     ];
-    assert_seen(&causes, &expected);
+    assert_causes_occurred(&causes, &expected);
 }
 
 #[test]
-fn writers_cover_signed_and_lost_enterprises() {
+fn writes_cover_signed_and_lost_enterprises() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = debug_run_with_offers(folder.path(), 6);
     // The player does not reply to enterprises from this day on.
@@ -405,7 +408,7 @@ fn writers_cover_signed_and_lost_enterprises() {
     let ended = query_column(&mut session, &sql("end_day"));
     let days: Vec<u32> = began.iter().take(2).chain(ended.iter().take(3)).map(|day| *day as u32).collect();
     let causes = check_write_chain(&mut session, &group_targets(&["E1", "E2", "E3"]), &days, &|_, _| None);
-    assert_seen(&causes, &["Reputation(LostEnterprise)", "FirstDeals"]);
+    assert_causes_occurred(&causes, &["Reputation(LostEnterprise)", "FirstDeals"]);
 }
 
 fn record_days_up_to(session: &mut Session, day: u32) -> Vec<DayRecord> {
@@ -513,7 +516,7 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
 }
 
 #[test]
-fn in_memory_run_supports_breakpoints_if_fully_watched() {
+fn in_memory_run_supports_breakpoints_if_every_day_was_observed() {
     let new = NewRun { seed: Some(7), days: Some(40), mode: Mode::Debug, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     apply_opening_decisions(&mut session);

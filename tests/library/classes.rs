@@ -90,7 +90,7 @@ fn lesson() -> HandoutSource {
 }
 
 /// Forges lines of a run. Removes the database and the snapshot, which store the position in the original trajectory.
-fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
+fn forge_run(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
     forge_lines(folder, change);
     let kept = ["run.toml", "trajectory.jsonl", "lesson.toml", "lesson.md"];
     for entry in fs::read_dir(folder).expect("a folder").flatten() {
@@ -141,7 +141,7 @@ fn class_of_thirty_is_collected_completely() {
                         "\"event\":\"hint\"",
                     ),
                     // Improves the result of a goal, with recomputed checksums and hash chain.
-                    "S06" => forge_all(&folder, |_, line| {
+                    "S06" => forge_run(&folder, |_, line| {
                         if line["event"] == "goal" {
                             line["value"] = json!(99_999.0);
                             line["met"] = json!(true);
@@ -317,7 +317,7 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
 
     // A handout with an easier lesson and a new seal: the runs have a different lesson digest.
     let easier = Session::open(&path, Access::Read, false).expect("it opens").manifest().id.clone();
-    forge_all(&path, |at, line| {
+    forge_run(&path, |at, line| {
         if at == 0 {
             line["lesson"]["digest"] = json!("0".repeat(64));
         }
@@ -325,7 +325,7 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     let label = "S02".to_owned();
     let other = school.collect(std::slice::from_ref(&path)).findings;
     assert!(other.contains(&ClassFinding::OtherLesson { label, run: easier }), "{other:?}");
-    forge_all(&path, |at, line| {
+    forge_run(&path, |at, line| {
         if at == 0 {
             line["lesson"]["digest"] = json!(school.class.lesson.as_ref().expect("a lesson").digest);
             line["lesson"]["part"] = json!(0);
@@ -335,7 +335,7 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     assert!(matches!(&other[..], [ClassFinding::Missing { .. }, ClassFinding::Altered { .. }]), "{other:?}");
 
     // The run belongs to the handout of another student, and its first line is changed to the player's label.
-    forge_all(&folder, |at, line| {
+    forge_run(&folder, |at, line| {
         if at == 0 {
             line["participant"] = json!("S01");
         }

@@ -22,7 +22,7 @@ fn lesson() -> Arc<Lesson> {
     Arc::new(Lesson::from_file(&path).expect("a lesson"))
 }
 
-fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
+fn lesson_judged_by_revenue(folder: &Path) -> Arc<Lesson> {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons");
     let plan = std::fs::read_to_string(from.join("two-weeks.toml")).expect("a plan");
     let (old, new) = ("bank\"\nfigure = \"cash\"", "bank\"\nfigure = \"recurring revenue\"");
@@ -34,10 +34,10 @@ fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
 
 /// Starts the lesson for a student, with a seed that differs from the seed of the lesson.
 fn start_student_lesson(folder: &Path) -> Session {
-    start_lesson_of_plan(lesson(), folder)
+    start_lesson_from_plan(lesson(), folder)
 }
 
-fn start_lesson_of_plan(lesson: Arc<Lesson>, folder: &Path) -> Session {
+fn start_lesson_from_plan(lesson: Arc<Lesson>, folder: &Path) -> Session {
     let entry = LessonOptions { lesson, part: 0, is_judged: true };
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { mode: Mode::Lesson, seed: Some(3), lesson: Some(entry), storage, ..NewRun::default() };
@@ -127,7 +127,7 @@ fn debrief_recognizes_the_reference_play() {
 fn debrief_uses_the_figure_of_the_goal() {
     let folder = tempfile::tempdir().expect("a folder");
     let session = finish_lesson(
-        start_lesson_of_plan(judged_by_revenue(folder.path()), &folder.path().join("runs")),
+        start_lesson_from_plan(lesson_judged_by_revenue(folder.path()), &folder.path().join("runs")),
         30,
         0,
     );

@@ -126,7 +126,7 @@ fn check_forged_price_is_detected(place: &Path) {
 }
 
 #[test]
-fn check_turn_rows() {
+fn turn_rows_are_consistent() {
     let mut session = create_run(Storage::Memory);
     (0..16).for_each(|_| advance_week(&mut session));
     let run = &mut session;
@@ -209,7 +209,7 @@ fn check_turn_rows() {
 }
 
 #[test]
-fn check_deal_rows() {
+fn deal_rows_match_the_session() {
     let mut session = create_run(Storage::Memory);
     (0..16).for_each(|_| advance_week(&mut session));
     let seen = session.company().observe();
@@ -280,7 +280,7 @@ fn check_deal_rows() {
 }
 
 #[test]
-fn check_week_counts() {
+fn week_figures_match_the_turns() {
     let mut session = create_run(Storage::Memory);
     (0..12).for_each(|_| advance_week(&mut session));
     let seen = session.company().observe();
@@ -334,7 +334,7 @@ fn check_plan_request_text(run: &mut Session, thread: &ThreadContext) {
 
 /// Checks the rows of subscribers that ask for a different plan: they contain the plan before a price is named.
 #[test]
-fn check_plan_request_rows() {
+fn plan_request_rows_contain_the_plan_before_a_price_is_named() {
     let mut session = create_run(Storage::Memory);
     let mut wishes = 0;
     for _ in 0..20 {

@@ -135,7 +135,7 @@ fn reused_or_invalid_request_ids_are_rejected() {
 }
 
 #[test]
-fn retry_answers_after_an_interrupted_week() {
+fn retry_returns_the_response_after_an_interrupted_week() {
     let place = temporary_runs_folder();
     let mut session = create_run(place.path(), 7, 28);
     let folder = session.folder().expect("a folder").to_owned();

@@ -32,7 +32,7 @@ fn fund_two_channels(session: &mut Session) {
 }
 
 /// Returns a company with enterprise leads that never receive a reply.
-fn open_for_companies() -> Session {
+fn company_with_enterprise_leads() -> Session {
     let new =
         NewRun { seed: Some(7), days: Some(140), cash: Some(20e6), mode: Mode::Debug, ..NewRun::default() };
     let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
@@ -107,7 +107,7 @@ fn tables_contain_only_the_expected_rows_on_day_0() {
 
 #[test]
 fn customers_match_subscriptions() {
-    let mut session = open_for_companies();
+    let mut session = company_with_enterprise_leads();
     advance_days(&mut session, 70);
     let leads = query_number(&mut session, "SELECT count(*) FROM customers WHERE customer_id > 1");
     assert!(leads > 1000.0);
@@ -215,7 +215,7 @@ fn usage_service_and_settings_have_a_row_per_day() {
 }
 
 #[test]
-fn targeted_settings_keep_the_whole_family_after_every_call() {
+fn targeted_settings_rows_contain_all_targets_after_every_call() {
     let mut session = create_run(&[]);
     call_tool(&mut session, "set_targeted_ops_spend", json!({"E1": 30}));
     call_tool(
@@ -524,7 +524,7 @@ fn issue_rows_match_the_facts() {
 
 #[test]
 fn inbox_rows_match_enterprise_leads() {
-    let mut session = open_for_companies();
+    let mut session = company_with_enterprise_leads();
     advance_days(&mut session, 60);
     let leads = query_number(
         &mut session,

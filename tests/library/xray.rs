@@ -111,7 +111,7 @@ fn inspections_are_recorded_without_changing_the_state() {
 }
 
 #[test]
-fn lead_equation_yields_the_expectation_of_the_draw() {
+fn lead_equation_equals_the_mean_of_the_lead_draw() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 60);
     apply_opening_decisions(&mut session);

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use crate::interfaces::{CALLS, last_state_hash, plain_mode_hash, predictions};
+use crate::interfaces::{CALLS, last_state_hash, plain_mode_state_hash, predictions};
 use crate::support::home::{Home, ProgramOutput, run_with_input};
 
 /// Folders of a user, whose servers are killed at the end of the test.
@@ -108,7 +108,7 @@ fn shell_agent_reaches_the_same_state() {
     assert!(!is_marked());
     assert_eq!(shell.run_json(&["stop"])["stopped"], false);
     assert_eq!(shell.announcement(), None);
-    assert_eq!(last_state_hash(&shell.home), plain_mode_hash());
+    assert_eq!(last_state_hash(&shell.home), plain_mode_state_hash());
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn stale_announcement_is_ignored() {
 }
 
 #[test]
-fn finished_run_has_its_own_exit_code() {
+fn finished_run_has_a_separate_exit_code() {
     let shell = AgentShell::new();
     shell.run_json(&["new", "--seed", "7", "--days", "7", "--mode", "sandbox"]);
     shell.advance_week(7);

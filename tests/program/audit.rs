@@ -371,7 +371,7 @@ fn audit_finds_hidden_state_views_of_a_seed_with_unfinished_sessions() {
 }
 
 /// Returns the rows of a table by column names.
-fn rows_of(path: &Path) -> Vec<BTreeMap<String, String>> {
+fn read_rows(path: &Path) -> Vec<BTreeMap<String, String>> {
     let mut table = csv::Reader::from_path(path).expect("a table");
     let rows = table.deserialize().collect::<Result<Vec<_>, _>>();
     rows.expect("rows")
@@ -405,7 +405,7 @@ fn audit_counts_match_the_tables() {
     assert!(collected.stdout.contains("3 runs verified"), "{}{}", collected.stdout, collected.stderr);
     let program_output = study.home.run(&["study", "audit", "--json", &study.folder(), &one, &two]);
     let audit: Value = serde_json::from_str(&program_output.stdout).expect("JSON");
-    let table = rows_of(&Path::new(&out).join("runs.csv"));
+    let table = read_rows(&Path::new(&out).join("runs.csv"));
     let same = [
         ("weeks", "weeks"),
         ("sittings", "sittings"),
@@ -448,7 +448,7 @@ fn audit_finds_damaged_lines_after_the_end() {
 
 #[cfg(unix)]
 #[test]
-fn copies_and_pipes_do_not_confuse_the_audit() {
+fn audit_counts_copies_once_and_does_not_block_on_pipes() {
     let study = Study::new();
     study.play_session("one", &format!("P01\nyes\n{}", WEEKS[0]));
     let run = study.only_run("one", "P01");

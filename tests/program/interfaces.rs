@@ -105,7 +105,7 @@ pub fn last_state_hash(home: &Home) -> String {
     last["state_hash"].as_str().expect("a hash").to_owned()
 }
 
-pub fn plain_mode_hash() -> String {
+pub fn plain_mode_state_hash() -> String {
     let home = Home::new();
     let mut lines: String = CALLS.iter().map(|(tool, args)| format!("{tool} {args}\n")).collect();
     for _ in 0..2 {
@@ -218,7 +218,7 @@ fn http_client_reaches_the_same_state() {
     assert_eq!(server.get("/tables").as_array().map(Vec::len), Some(19));
     assert!(server.get("/openapi.json")["components"]["schemas"]["set_prices"].is_object());
     assert_eq!(server.stop(), 0);
-    assert_eq!(last_state_hash(&home), plain_mode_hash());
+    assert_eq!(last_state_hash(&home), plain_mode_state_hash());
 }
 
 #[test]
@@ -446,7 +446,7 @@ fn mcp_client_lists_tools_and_plays() {
     drop(to);
     assert!(child.wait().expect("it ends").success());
     assert!(!listed() && !home.only_run().join("server.json").exists());
-    assert_eq!(last_state_hash(&home), plain_mode_hash());
+    assert_eq!(last_state_hash(&home), plain_mode_state_hash());
 }
 
 #[test]
@@ -484,7 +484,7 @@ assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
     #[cfg(unix)]
     {
         assert_eq!(server.stop(), 0);
-        assert_eq!(last_state_hash(&home), plain_mode_hash());
+        assert_eq!(last_state_hash(&home), plain_mode_state_hash());
     }
 }
 

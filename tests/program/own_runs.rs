@@ -178,7 +178,7 @@ fn comparison_of_many_runs_fits_the_line_width() {
 
 /// Returns the commands in a section of the page with their documented output: the first two cells of the table rows
 /// after each command.
-fn documented_claims(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
+fn documented_outputs(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let page = include_str!("../../docs/experiments.md");
     let (_, from) = page.split_once(&format!("\n## {section}\n")).expect(section);
     let cells = |line: &'static str| -> Option<(&'static str, &'static str)> {
@@ -193,9 +193,9 @@ fn documented_claims(section: &str) -> BTreeMap<&'static str, Vec<&'static str>>
     claims
 }
 
-fn check_claims(section: &str) {
+fn check_documented_outputs(section: &str) {
     let home = Home::new();
-    for (command, claims) in documented_claims(section) {
+    for (command, claims) in documented_outputs(section) {
         let program_output = home.run(&command.split(' ').collect::<Vec<_>>());
         assert_eq!(program_output.exit_code, 0, "{command}: {}", program_output.stderr);
         for says in claims {
@@ -210,11 +210,11 @@ fn check_claims(section: &str) {
 
 #[test]
 fn documented_experiment_figures_match_their_commands() {
-    check_claims("Figures that are checked");
+    check_documented_outputs("Figures that are checked");
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
 fn documented_figures_of_slow_commands_match() {
-    check_claims("Figures that take minutes");
+    check_documented_outputs("Figures that take minutes");
 }

@@ -237,7 +237,7 @@ fn termination_at_the_prompt_exits_immediately_and_saves_the_run() {
 }
 
 #[test]
-fn market_and_engine_tools_are_commands() {
+fn research_script_and_table_tools_are_commands() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "market.research_market()\nresearch_group S1\nresearch_group(\"S1\", 3)\nget_market_overview\nget_group_insights E1\n\
                  register_daily_calculation name=money code=\"SELECT sum(amount) AS cash FROM ledger\"\n\

@@ -74,7 +74,7 @@ fn recorded_answers(run: &std::path::Path) -> Vec<String> {
 }
 
 #[test]
-fn participant_session_runs_from_label_to_thanks() {
+fn participant_session_runs_from_label_to_final_page() {
     play_participant_session("default");
 }
 

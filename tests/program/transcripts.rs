@@ -32,10 +32,10 @@ fn played_run_with(home: &Home, options: &[&str]) -> (String, String) {
     let program_output = home.play(options, PLAY);
     assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let folder = home.only_run();
-    (run_id(&folder), last_hash(&folder))
+    (run_id(&folder), last_state_hash(&folder))
 }
 
-fn last_hash(folder: &Path) -> String {
+fn last_state_hash(folder: &Path) -> String {
     let text = fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
     let mut lines = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
     let last = lines.rfind(|line| line["kind"] == "week").expect("a week");
@@ -90,7 +90,7 @@ fn check_exported_script(options: &[&str]) {
     let other = Home::new();
     let output = other.play(&[&["--strict"], &*options].concat(), &script);
     assert_eq!(output.exit_code, 0, "{}{}", output.stdout, output.stderr);
-    assert_eq!(last_hash(&other.only_run()), hash);
+    assert_eq!(last_state_hash(&other.only_run()), hash);
     let again = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
     again.assert_fails(1, &["play.txt already exists"]);
 }
@@ -249,7 +249,10 @@ fn score_is_consistent_everywhere() {
         };
         seen.push(shown["ended"].clone());
         let folder = home.runs().join(shown["id"].as_str().expect("a name"));
-        assert_eq!((&shown["score"], &shown["state_hash"]), (&json!(score), &json!(last_hash(&folder))));
+        assert_eq!(
+            (&shown["score"], &shown["state_hash"]),
+            (&json!(score), &json!(last_state_hash(&folder)))
+        );
         let sample = log["samples"][0]["scores"]["cash"]["value"].clone();
         let result = log["results"]["scores"][0]["metrics"]["value"]["value"].clone();
         assert_eq!((&log["status"], &sample, &result), (&json!(status), &json!(score), &json!(score)));
@@ -313,7 +316,7 @@ fn imported_atif_trajectory_reaches_the_same_state() {
     assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
     assert!(program_output.stdout.contains(&hash), "{}", program_output.stdout);
     let folder = other.only_run();
-    assert_eq!(last_hash(&folder), hash);
+    assert_eq!(last_state_hash(&folder), hash);
     let manifest = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
     assert!(
         manifest.contains("participant = \"P01\"") && manifest.contains("mode = \"sandbox\""),

@@ -69,7 +69,7 @@ impl<'a> ConsoleParticipant<'a> {
             self.console.wait_for_jobs();
             let step = self.console.app.time_until_wake().map_or(left, |due| due.min(left));
             self.clock.advance(step);
-            self.console.app.handle_message(Message::TimePassed);
+            self.console.app.handle_message(Message::RedrawDue);
             self.console.wait_until_idle().expect("the console settles");
             left -= step;
         }
@@ -147,7 +147,7 @@ impl<'a> ConsoleParticipant<'a> {
         self.diary.add_answer(study_question, value, for_ms);
     }
 
-    pub fn go(&mut self, key: &str, screen: &'static str) {
+    pub fn show_screen(&mut self, key: &str, screen: &'static str) {
         self.press_unrecorded(key);
         self.close_view();
         self.current_view = (screen, self.current_view.0, self.clock.time_ns());

@@ -21,9 +21,9 @@ use support::python::recompute_measures;
 #[test]
 fn tables_match_twelve_scripted_participants() {
     let lab = StudyLab::new();
-    let mut diaries = scripts::first_machine(&lab);
-    diaries.extend(scripts::second_machine(&lab));
-    diaries.extend(scripts::third_machine(&lab));
+    let mut diaries = scripts::play_first_machine(&lab);
+    diaries.extend(scripts::play_second_machine(&lab));
+    diaries.extend(scripts::play_third_machine(&lab));
     let program_output = lab.collect();
     // Two participants have no session, which `collect` reports.
     let notes = [

@@ -8,7 +8,7 @@ use crate::lab::StudyLab;
 use crate::plain::PlainParticipant;
 
 /// Plays the scripts of the first machine: a complete session, a pause, a time limit, and absences.
-pub fn first_machine(lab: &StudyLab) -> Vec<Diary> {
+pub fn play_first_machine(lab: &StudyLab) -> Vec<Diary> {
     let clock = ScriptedClock::start(parse_nanoseconds("2026-03-02T09:00:00Z"));
     vec![
         play_without_breaks(lab, &clock),
@@ -25,20 +25,20 @@ fn play_without_breaks(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     player.start_run();
     player.answer(BEFORE, "6 enter", "6", 5);
     player.wait(20);
-    player.go("2", "cash");
+    player.show_screen("2", "cash");
     player.wait(7);
     player.look_up("i", "cash-change", 3);
-    player.go("3", "customers");
+    player.show_screen("3", "customers");
     player.select("enter", "group", "S1");
     player.wait(2);
-    player.go("9", "sql");
+    player.show_screen("9", "sql");
     player.query("SELECT count(*) FROM ledger", "");
     player.wait(9);
-    player.go("0", "journal");
+    player.show_screen("0", "journal");
     player.keep_notes("ads for S1", 3);
     player.play_week("wait", 4, 6);
     player.report(8);
-    player.go("8", "tools");
+    player.show_screen("8", "tools");
     player.set_price("12");
     finish_console_session(player)
 }
@@ -84,7 +84,7 @@ fn play_with_absences(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     player.idle(200);
     player.wait(5);
     player.lose_focus(40);
-    player.go("4", "product");
+    player.show_screen("4", "product");
     player.wait(6);
     player.suspend(100);
     player.wait(7);
@@ -112,7 +112,7 @@ fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
 }
 
 /// Plays the scripts of the second machine: participants decline, withdraw, mistype the label, and lose the terminal.
-pub fn second_machine(lab: &StudyLab) -> Vec<Diary> {
+pub fn play_second_machine(lab: &StudyLab) -> Vec<Diary> {
     let clock = ScriptedClock::start(parse_nanoseconds("2026-03-03T09:00:00Z"));
     vec![
         ConsoleParticipant::arrive(lab, "m2", "P05", &clock).decline(15),
@@ -138,9 +138,9 @@ fn play_with_mistakes(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     player.agree(&["P99", "../x"], 20);
     player.start_run();
     player.answer(BEFORE, "3 enter", "3", 4);
-    player.go("9", "sql");
+    player.show_screen("9", "sql");
     player.query("SELECT nothing FROM ledger", "sql_error");
-    player.go("8", "tools");
+    player.show_screen("8", "tools");
     player.set_price("12");
     player.set_price_again("15");
     player.undo();
@@ -162,7 +162,7 @@ fn play_with_hang_up(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
 
 /// Plays the scripts of the third machine in plain mode: a pause, a killed program, a closed terminal, and a session
 /// in two parts.
-pub fn third_machine(lab: &StudyLab) -> Vec<Diary> {
+pub fn play_third_machine(lab: &StudyLab) -> Vec<Diary> {
     vec![
         play_in_plain_mode(lab),
         play_with_kill(lab),

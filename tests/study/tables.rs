@@ -20,7 +20,7 @@ fn read_table(folder: &Path, table: &str) -> Vec<Row> {
     reader.records().map(|record| row(record.expect("a row"))).collect()
 }
 
-fn rows_of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
+fn rows_with_label<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
     rows.iter().filter(|row| row["participant"] == label).collect()
 }
 
@@ -33,7 +33,7 @@ pub fn compare_tables(lab: &StudyLab, diaries: &[Diary]) {
     for diary in diaries {
         let tables = [&runs, &weeks, &events, &queries, &answers, &notes, &forecasts];
         let [run, weeks, events, queries, answers, notes, forecasts] =
-            tables.map(|rows| rows_of(rows, diary.label));
+            tables.map(|rows| rows_with_label(rows, diary.label));
         if diary.erased {
             assert!(run.is_empty() && events.is_empty() && answers.is_empty(), "{}", diary.label);
             continue;

@@ -369,7 +369,7 @@ fn every_mechanism_names_its_code() {
 
 /// Documents and comments must not refer to numbered chapters of texts outside the repository.
 #[test]
-fn nothing_refers_to_external_chapters() {
+fn no_file_refers_to_numbered_chapters() {
     let numbered = |line: &str| {
         let after =
             |(_, rest): (&str, &str)| rest.trim_start().starts_with(|sign: char| sign.is_ascii_digit());

@@ -110,14 +110,14 @@ fn parse_value(tool: &str, name: &str, text: String) -> Value {
 mod tests {
     use super::*;
 
-    fn words(line: &str) -> Vec<String> {
+    fn split_words(line: &str) -> Vec<String> {
         line.split('|').map(str::to_owned).collect()
     }
 
     #[test]
     fn parse_tool_arguments_accepts_an_object_or_pairs() {
         let read = |tool: &str, line: &str| {
-            parse_tool_arguments(tool, &words(line)).map_err(|failure| failure.to_string())
+            parse_tool_arguments(tool, &split_words(line)).map_err(|failure| failure.to_string())
         };
         assert_eq!(read("set_prices", "--A|14|--B=20.5"), Ok(json!({ "A": 14, "B": 20.5 })));
         assert_eq!(read("set_prices", r#"{"A": null}"#), Ok(json!({ "A": null })));
@@ -130,10 +130,11 @@ mod tests {
 
     #[test]
     fn parse_next_week_accepts_an_object_or_thirteen_words() {
-        let filed = parse_next_week(&words("on|9|8|10|9|8|10|9|8|10|-1e6|-2000000|0")).expect("a filing");
+        let filed =
+            parse_next_week(&split_words("on|9|8|10|9|8|10|9|8|10|-1e6|-2000000|0")).expect("a filing");
         assert_eq!(filed["predictions"]["cash_26wk"], json!({ "point": -1e6, "lower": -2e6, "upper": 0.0 }));
         assert_eq!(filed["rationale"], "on");
-        assert!(parse_next_week(&words("on|1|2")).is_err());
-        assert!(parse_next_week(&words("on|9|8|10|9|8|10|9|8|10|9|x|10")).is_err());
+        assert!(parse_next_week(&split_words("on|1|2")).is_err());
+        assert!(parse_next_week(&split_words("on|9|8|10|9|8|10|9|8|10|9|x|10")).is_err());
     }
 }

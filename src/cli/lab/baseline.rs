@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::experiments::{PlayOptions, run_experiment, run_experiment_with_known};
+use super::experiments::{PlayOptions, run_experiment, run_experiment_with_known_results};
 use super::output::OutputOptions;
 use crate::cli::run::{SeedRange, parse_seeds};
 use crate::cli::{Context, Failure};
@@ -64,17 +64,23 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
     }
     // Results that were just computed are used even with --fresh.
     let play = PlayOptions { fresh: false, ..options.play.clone() };
-    run_experiment_with_known("baseline", &all, &play, context, |prepared: &mut PreparedExperiment<'_>| {
-        for (at, point) in points.iter().enumerate() {
-            let leader = &points[leaders[at]];
-            let runs = leading.iter().position(|place| *place == leaders[at]);
-            for run in runs.into_iter().flat_map(|place| &known.by_arm[place]) {
-                if is_shared_run(&leader.policy, &point.policy, starts[at], run) {
-                    prepared.add_result(at, run);
+    run_experiment_with_known_results(
+        "baseline",
+        &all,
+        &play,
+        context,
+        |prepared: &mut PreparedExperiment<'_>| {
+            for (at, point) in points.iter().enumerate() {
+                let leader = &points[leaders[at]];
+                let runs = leading.iter().position(|place| *place == leaders[at]);
+                for run in runs.into_iter().flat_map(|place| &known.by_arm[place]) {
+                    if is_shared_run(&leader.policy, &point.policy, starts[at], run) {
+                        prepared.add_result(at, run);
+                    }
                 }
             }
-        }
-    })
+        },
+    )
 }
 
 fn start_cash(grid_point: &GridPoint, options: &Options, context: &Context) -> Result<f64, Failure> {

@@ -34,7 +34,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         return options.output.show(&all_distributions_report(&luck, options.draws));
     };
     let world_draw = find_distribution(name)?;
-    let member = find_member(world_draw, options.of.as_deref(), &luck)?;
+    let member = find_group_or_tier(world_draw, options.of.as_deref(), &luck)?;
     options.output.show(&distribution_report(world_draw, (member.0, &member.1), &luck, options.draws))
 }
 
@@ -48,7 +48,7 @@ fn find_distribution(name: &str) -> Result<&'static WorldDraw, Failure> {
     })
 }
 
-fn find_member(
+fn find_group_or_tier(
     world_draw: &WorldDraw,
     wanted: Option<&str>,
     luck: &DrawContext,

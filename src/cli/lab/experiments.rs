@@ -34,14 +34,14 @@ pub fn run_experiment(
     options: &PlayOptions,
     context: &Context,
 ) -> Result<ExperimentResults, Failure> {
-    run_experiment_with_known(command, experiment, options, context, |_| ())
+    run_experiment_with_known_results(command, experiment, options, context, |_| ())
 }
 
 /// Conducts an experiment after adding results that are already known.
 ///
 /// # Errors
 /// As [`run_experiment`].
-pub fn run_experiment_with_known(
+pub fn run_experiment_with_known_results(
     command: &str,
     experiment: &Experiment,
     options: &PlayOptions,

@@ -56,7 +56,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         .map_err(|error| Failure::unreadable(error.to_string()))?;
     let runs = plan.experiment.arms.len() * plan.experiment.seeds.len();
     check_output_paths(options)?;
-    warn(&equal_arm_warnings(&plan, &context.configuration)?);
+    print_warnings(&equal_arm_warnings(&plan, &context.configuration)?);
     if options.check {
         return print(&format!(
             "{}: {}, {}\n",
@@ -82,7 +82,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let kept = "the finished runs are saved; repeat the command to continue";
     match (&options.out, options.shard) {
         (None, _) if options.output.prints_rows() => {
-            warn(&equal_outcome_warnings(&plan, &results));
+            print_warnings(&equal_outcome_warnings(&plan, &results));
             print(&text)
         }
         (None, _) => options.output.show(&study_summary(&plan, &results)),
@@ -103,7 +103,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-fn warn(warnings: &[String]) {
+fn print_warnings(warnings: &[String]) {
     warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
 }
 

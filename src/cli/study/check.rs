@@ -30,8 +30,8 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
     ];
     let removed = study.protocol.removed_settings().into_iter();
     points.extend(removed.map(|words| CheckItem::new("settings", CheckOutcome::Note(words))));
-    points.extend(design::design_checks(&study, &context.configuration));
-    text.extend(points.iter().map(CheckItem::line));
+    points.extend(design::check_design(&study, &context.configuration));
+    text.extend(points.iter().map(CheckItem::report_line));
     print(&text)?;
     report_failures(&points)
 }

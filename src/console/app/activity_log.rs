@@ -269,7 +269,7 @@ impl App {
         self.save_drafts_if_due(now);
     }
 
-    /// Returns the time until [`novamind_worker::message::Message::TimePassed`] is due, or `None` if nothing depends
+    /// Returns the time until [`novamind_worker::message::Message::RedrawDue`] is due, or `None` if nothing depends
     /// on the time.
     pub fn time_until_wake(&self) -> Option<Duration> {
         if !self.is_played() || self.stopwatch.is_paused() {

@@ -84,7 +84,7 @@ impl App {
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
                 if let Stage::Run(run) = &mut self.stage {
-                    run.requested_readings.remove(&reading);
+                    run.requested_queries.remove(&reading);
                 }
                 self.request_screen_data();
             }

@@ -97,7 +97,7 @@ impl App {
         let company = run.with_hidden_values(run.company.clone());
         if !Arc::ptr_eq(&company, &run.company) {
             run.company = company;
-            self.refresh_readings();
+            self.refresh_queries();
         }
     }
 }

@@ -92,7 +92,7 @@ mod tests {
     use novamind_worker::page_questions::CurveQuestion;
     use novamind_worker::queries::Query;
     use novamind_worker::question::Question;
-    use novamind_worker::readings::Reading;
+    use novamind_worker::screen_queries::Reading;
 
     /// Returns a console with an open run and no worker. The test answers the questions.
     fn console_with_open_run() -> App {

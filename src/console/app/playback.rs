@@ -201,7 +201,7 @@ impl App {
     /// Requests the next week once all data of the screen has arrived.
     pub(super) fn request_next_week(&mut self) {
         let waits = self.busy.is_some()
-            || self.run().is_some_and(|run| run.requested_readings.values().any(Pending::is_waiting));
+            || self.run().is_some_and(|run| run.requested_queries.values().any(Pending::is_waiting));
         let Some(viewer) = self.playback_mut() else { return };
         if viewer.playing && !viewer.has_requested_week && !waits {
             viewer.has_requested_week = true;

@@ -186,20 +186,20 @@ impl App {
             }
         }
         self.record_dialog_step();
-        self.take_readings();
+        self.apply_query_results();
         self.set_hidden_values();
     }
 
     /// Passes query results to the screens. Playback may request its next week when a screen has all its data.
-    fn take_readings(&mut self) {
+    fn apply_query_results(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        let answers: Vec<_> = run.requested_readings.values_mut().filter_map(Pending::try_take).collect();
+        let answers: Vec<_> = run.requested_queries.values_mut().filter_map(Pending::try_take).collect();
         for (reading, answer) in answers {
             match answer {
                 Ok(rows) => self.update_screens(|screens, _, context| {
                     for id in ScreenId::ALL {
                         let screen = screens.get_mut(id);
-                        if screen.readings().contains(&reading) {
+                        if screen.screen_queries().contains(&reading) {
                             screen.apply_rows(reading, &rows, context);
                         }
                     }
@@ -249,8 +249,8 @@ impl App {
             selected: None,
             screens: Screens::default(),
             next_week: NextWeekDialog::default(),
-            story: None,
-            requested_readings: BTreeMap::new(),
+            run_report: None,
+            requested_queries: BTreeMap::new(),
             tour,
             playback: viewer,
             lesson: LessonState::default(),
@@ -264,7 +264,7 @@ impl App {
         self.reset_drafts();
         self.time_limit = super::time_limits::TimeLimitState::default();
         self.attach_to_run();
-        self.refresh_readings();
+        self.refresh_queries();
         // In a study, the participant answers the final questions first.
         if over && !self.has_participant() {
             self.show_final_page();
@@ -278,7 +278,7 @@ impl App {
             return;
         }
         let Stage::Run(run) = &self.stage else { return };
-        let report = run.story.clone();
+        let report = run.run_report.clone();
         if report.is_none() {
             self.execute_effects(vec![Effect::Request(Request::BuildRunReport)]);
         }
@@ -289,7 +289,7 @@ impl App {
 
     fn set_run_report(&mut self, report: &Arc<RunReport>) {
         if let Stage::Run(run) = &mut self.stage {
-            run.story = Some(report.clone());
+            run.run_report = Some(report.clone());
         }
         for layer in self.layers.iter_mut() {
             if let Layer::Dialog(dialog) = layer {
@@ -301,21 +301,21 @@ impl App {
     pub(super) fn update_company(&mut self, company: Arc<DisplayedCompany>) {
         if let Stage::Run(run) = &mut self.stage {
             run.set_company(company);
-            run.requested_readings.clear();
+            run.requested_queries.clear();
         }
-        self.refresh_readings();
+        self.refresh_queries();
     }
 
     fn handle_database_complete(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             run.database_error = None;
-            run.requested_readings.clear();
+            run.requested_queries.clear();
         }
         self.show_status("the database is up to date again");
         self.request_screen_data();
     }
 
-    pub(super) fn refresh_readings(&mut self) {
+    pub(super) fn refresh_queries(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             let company = run.company.clone();
             let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };

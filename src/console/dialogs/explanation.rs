@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::{Dialog, DialogResponse, term_picture};
+use super::{Dialog, DialogResponse, glossary_picture};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
@@ -228,8 +228,8 @@ impl Dialog for ExplainDialog {
         let for_text = (text.len() as u16).min(room.saturating_sub(least));
         let for_links = (links + u16::from(links > 0)).min(room - for_text);
         // The chart of the term is drawn in the remaining rows.
-        let for_picture = match (room - for_text - for_links).min(term_picture::MAX_ROWS) {
-            rows if rows >= term_picture::MIN_ROWS && term_picture::has_picture(&page.term) => rows,
+        let for_picture = match (room - for_text - for_links).min(glossary_picture::MAX_ROWS) {
+            rows if rows >= glossary_picture::MIN_ROWS && glossary_picture::has_picture(&page.term) => rows,
             _ => 0,
         };
         let dialog_area = centered_rect(area, width, for_text + for_picture + for_links + 2);
@@ -246,7 +246,7 @@ impl Dialog for ExplainDialog {
         }
         let picture =
             Rect { y: above.bottom(), height: for_picture.min(inside.height - above.height), ..inside };
-        term_picture::draw(canvas, picture, &page.term, context.company);
+        glossary_picture::draw(canvas, picture, &page.term, context.company);
         let below = Rect { y: picture.bottom(), height: inside.bottom() - picture.bottom(), ..inside };
         self.draw_links(canvas, below, context);
         canvas.draw_pane_keys(dialog_area, &self.key_hints(context));

@@ -65,7 +65,7 @@ fn open_replay(company: &DisplayedCompany, goal: SeekTarget) -> DialogResponse {
 /// The page at the end of a run.
 pub struct FinalPage {
     /// The run report, or `None` while the ledger is being read.
-    story: Option<Arc<RunReport>>,
+    run_report: Option<Arc<RunReport>>,
     /// Whether the page is followed by the next page of a study.
     is_study: bool,
 }
@@ -73,7 +73,7 @@ pub struct FinalPage {
 impl FinalPage {
     /// Opens the final page of a finished run.
     pub fn new(report: Option<Arc<RunReport>>) -> FinalPage {
-        FinalPage { story: report, is_study: false }
+        FinalPage { run_report: report, is_study: false }
     }
 
     /// Returns the page for a participant, followed by the next page of a study.
@@ -117,7 +117,7 @@ impl Dialog for FinalPage {
     }
 
     fn set_run_report(&mut self, report: &Arc<RunReport>) {
-        self.story = Some(report.clone());
+        self.run_report = Some(report.clone());
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
@@ -163,7 +163,7 @@ impl FinalPage {
     }
 
     fn write_card(&self) -> DialogResponse {
-        let Some(report) = &self.story else {
+        let Some(report) = &self.run_report else {
             return DialogResponse::stay_with(vec![Effect::ShowError(
                 "the ledger is still being read".to_owned(),
             )]);
@@ -195,7 +195,7 @@ impl FinalPage {
         if published {
             parts.push(ranking_lines(canvas, &standing, width, best, roomy));
         }
-        parts.push(match &self.story {
+        parts.push(match &self.run_report {
             Some(report) => {
                 let shares = published_targeted_shares(company.observation.generation).filter(|_| published);
                 measure_lines(canvas, &report.measures, width, roomy, shares)
@@ -227,7 +227,7 @@ impl FinalPage {
         width: u16,
         roomy: bool,
     ) -> Option<Vec<TextLine<'a>>> {
-        let bankruptcy = self.story.as_ref()?.bankruptcy.as_ref()?;
+        let bankruptcy = self.run_report.as_ref()?.bankruptcy.as_ref()?;
         let texts = wrap(&bankruptcy.turning_points.join(" "), width as usize);
         let mut lines: Vec<TextLine<'a>> =
             texts.into_iter().map(|line| TextLine::from(canvas.span(line, Role::Text))).collect();
@@ -253,7 +253,7 @@ impl FinalPage {
 
     /// Draws the cash curve, and the highlights of the run below the curve.
     fn draw_curve_and_highlights(&self, canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany) {
-        let highlights = self.story.as_ref().map_or(&[][..], |report| report.highlights.as_slice());
+        let highlights = self.run_report.as_ref().map_or(&[][..], |report| report.highlights.as_slice());
         let list = (highlights.len() as u16 + 2).min(area.height / 2);
         let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(list)]).areas(area);
         draw_cash(canvas, above, company);
@@ -307,7 +307,7 @@ fn ranking_lines<'a>(
         .map(|line| TextLine::from(canvas.span(line, Role::Header)))
         .collect();
     for place in standing.top_and_neighbors(best, 1) {
-        let is_this_run = place.owner == ResultOrigin::ThisRun;
+        let is_this_run = place.origin == ResultOrigin::ThisRun;
         let role = if is_this_run { Role::Good } else { Role::Text };
         let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![

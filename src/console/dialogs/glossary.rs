@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Dialog, DialogResponse, term_picture};
+use super::{Dialog, DialogResponse, glossary_picture};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -24,7 +24,7 @@ pub struct GlossaryDialog {
 
 const TEXT_ROWS: u16 = 6;
 /// Additional rows if the term has a picture: a separator line and the picture.
-const PICTURE_ROWS: u16 = 1 + term_picture::MAX_ROWS;
+const PICTURE_ROWS: u16 = 1 + glossary_picture::MAX_ROWS;
 
 impl GlossaryDialog {
     /// Lists all terms by topic, with the parameters of the run.
@@ -130,7 +130,7 @@ impl Dialog for GlossaryDialog {
         };
         let inside = canvas.draw_pane_frame(dialog_area, "Glossary", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let has_picture = self.selected().is_some_and(|term| term_picture::has_picture(&term.id));
+        let has_picture = self.selected().is_some_and(|term| glossary_picture::has_picture(&term.id));
         let for_text = match inside.height {
             height if has_picture && height >= 2 * PICTURE_ROWS => PICTURE_ROWS,
             height if height >= 2 * TEXT_ROWS => TEXT_ROWS,
@@ -161,15 +161,16 @@ impl GlossaryDialog {
         let text = format!("{} {}", term.text, self.numbers.substitute(&term.more));
         let rest = Rect { y: area.y + 1, height: area.height - 1, ..area };
         // The picture is drawn next to the text if half of the width remains.
-        let has_picture = term_picture::has_picture(&term.id) && area.width >= 2 * term_picture::SIDE_COLUMNS;
-        let taken = if has_picture { term_picture::SIDE_COLUMNS } else { 0 };
+        let has_picture =
+            glossary_picture::has_picture(&term.id) && area.width >= 2 * glossary_picture::SIDE_COLUMNS;
+        let taken = if has_picture { glossary_picture::SIDE_COLUMNS } else { 0 };
         let words = Rect { width: area.width - taken, ..rest };
         for (row, line) in
             row_rects(words).zip(wrap(text.trim(), words.width.saturating_sub(taken.min(1)) as usize))
         {
             canvas.draw_text(row, &line, Role::Text);
         }
-        term_picture::draw(
+        glossary_picture::draw(
             canvas,
             Rect { x: words.right(), width: taken, ..rest },
             &term.id,

@@ -8,6 +8,7 @@ pub mod debrief;
 pub mod explanation;
 pub mod final_page;
 pub mod glossary;
+mod glossary_picture;
 pub mod help;
 pub mod lesson;
 pub mod next_week;
@@ -19,7 +20,6 @@ pub mod retry_step;
 pub mod seek_week;
 pub mod source_rows;
 pub mod take_over;
-mod term_picture;
 pub mod text_dialog;
 pub mod week_report;
 

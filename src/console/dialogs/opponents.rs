@@ -75,14 +75,14 @@ impl Dialog for OpponentsPage {
             wrap(&text, width).into_iter().map(|line| TextLine::from(canvas.span(line, role))).collect();
         if let Some(Ok(opponents)) = &self.result {
             lines.push(TextLine::default());
-            lines.extend(ranked(canvas, context.company, opponents, width));
+            lines.extend(rank_results(canvas, context.company, opponents, width));
         }
         canvas.draw_lines(inside, &lines);
     }
 }
 
 /// Ranks the policies, and the run if the run has a score.
-fn ranked<'a>(
+fn rank_results<'a>(
     canvas: &Canvas<'_>,
     company: &DisplayedCompany,
     opponents: &OpponentResults,

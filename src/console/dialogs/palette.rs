@@ -101,7 +101,7 @@ impl CommandPalette {
     /// Opens the palette with all entries that are available in the current state.
     pub fn new(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrary) -> CommandPalette {
         let mut palette = CommandPalette {
-            entries: entries(keys, company, library),
+            entries: all_entries(keys, company, library),
             recent: recent_tools(company),
             field: TextField::default(),
             matches: Vec::new(),
@@ -230,7 +230,7 @@ fn is_outside_lesson(effect: &Effect, company: &DisplayedCompany) -> bool {
     }
 }
 
-fn entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrary) -> Vec<PaletteEntry> {
+fn all_entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrary) -> Vec<PaletteEntry> {
     let everywhere =
         |scope: Scope| scope == Scope::Global || (scope == Scope::Playback && company.is_playback);
     let hidden = |action: Action| match action {

@@ -38,7 +38,7 @@ impl SourceRowsDialog {
         (SourceRowsDialog { title, sql, asked: pending, answer: None, table: Table::default() }, ask)
     }
 
-    fn note(&self) -> String {
+    fn border_note(&self) -> String {
         match &self.answer {
             None => String::new(),
             Some(Err(_)) => "rejected".to_owned(),
@@ -120,7 +120,7 @@ impl Dialog for SourceRowsDialog {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).min(140), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
-        let inside = canvas.draw_pane_frame(dialog_area, &self.title, &self.note(), true);
+        let inside = canvas.draw_pane_frame(dialog_area, &self.title, &self.border_note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let query = wrap(&self.sql, inside.width as usize);
         let used = query.len().min(MAX_QUERY_LINES).min(inside.height as usize / 3);

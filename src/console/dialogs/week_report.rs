@@ -9,8 +9,8 @@ use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
+use crate::screens::overview::action_items::item_screen;
 use crate::screens::overview::figures::{self, METRICS};
-use crate::screens::overview::needs::item_screen;
 use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
 use novamind_report::WeekReport;
@@ -26,7 +26,7 @@ use novamind_worker::company::DisplayedCompany;
 const MAX_PAGE_WIDTH: u16 = 116;
 /// Minimum width for comments next to the figures. In narrower windows, comments are below the figures.
 const MIN_WIDTH_FOR_SIDE_TEXT: u16 = 100;
-const MOVES_SECTION: usize = 2;
+const CHANGES_SECTION: usize = 2;
 
 /// The dialog that reports the last week.
 pub struct WeekReportDialog {
@@ -57,7 +57,7 @@ impl WeekReportDialog {
     }
 }
 
-type Section<'a> = Vec<Line<'a>>;
+type SectionLines<'a> = Vec<Line<'a>>;
 
 impl Dialog for WeekReportDialog {
     fn record_name(&self) -> String {
@@ -155,14 +155,14 @@ impl WeekReportDialog {
         let coming =
             next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, context);
         let taken = coming.len() + usize::from(!notices.is_empty());
-        let (moves, starts) = self.moves_section(canvas, week_report, width, room.saturating_sub(taken));
+        let (moves, starts) = self.changes_section(canvas, week_report, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
-        let parts: [Section<'a>; 5] = [
+        let parts: [SectionLines<'a>; 5] = [
             head,
             decided,
             match moves.is_empty() {
                 true => Vec::new(),
-                false => with_heading(canvas, &moves_heading(week_report), moves),
+                false => with_heading(canvas, &changes_heading(week_report), moves),
             },
             news.into_iter().chain(notices_section(canvas, context.company, width, left.min(8))).collect(),
             with_heading(canvas, "Action needed", coming),
@@ -172,7 +172,7 @@ impl WeekReportDialog {
             if at > 0 && airy {
                 lines.push(Line::default());
             }
-            if at == MOVES_SECTION {
+            if at == CHANGES_SECTION {
                 // The heading is not selectable.
                 places.extend(starts.iter().map(|start| lines.len() + 1 + start));
             }
@@ -196,7 +196,7 @@ impl WeekReportDialog {
         week_report: &WeekReport,
         width: u16,
         forecasts: usize,
-    ) -> Section<'a> {
+    ) -> SectionLines<'a> {
         let change = week_report.week.cash_change;
         let role = if change < 0.0 { Role::Bad } else { Role::Good };
         let mut lines = vec![Line::from(vec![
@@ -241,19 +241,19 @@ impl WeekReportDialog {
     }
 
     /// Returns the lines of the most unusual changes that fit, and the first line of each change.
-    fn moves_section<'a>(
+    fn changes_section<'a>(
         &self,
         canvas: &Canvas<'_>,
         week_report: &WeekReport,
         width: u16,
         room: usize,
-    ) -> (Section<'a>, Vec<usize>) {
+    ) -> (SectionLines<'a>, Vec<usize>) {
         if week_report.moved_figures.is_empty() {
             return (vec![Line::from(canvas.span("  none", Role::Dim))], Vec::new());
         }
         let (mut lines, mut starts) = (Vec::new(), Vec::new());
         for (at, moved_figure) in week_report.moved_figures.iter().enumerate() {
-            let of_one = move_lines(canvas, moved_figure, width, self.name_role(at + 1, Role::Text));
+            let of_one = change_lines(canvas, moved_figure, width, self.name_role(at + 1, Role::Text));
             if lines.len() + of_one.len() > room {
                 break;
             }
@@ -265,20 +265,25 @@ impl WeekReportDialog {
 }
 
 /// Returns the heading of the changes. The heading names the reference period if the two weeks differ in length.
-fn moves_heading(week_report: &WeekReport) -> String {
+fn changes_heading(week_report: &WeekReport) -> String {
     match &week_report.short_week_note {
         Some(short) => format!("Most unusual changes · a week {short}"),
         None => "Most unusual changes".to_owned(),
     }
 }
 
-fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> Section<'a> {
+fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: SectionLines<'a>) -> SectionLines<'a> {
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
 /// Describes a due forecast and the actual value in one or two lines. `of_limit` means that the program submitted the
 /// forecast at the time limit.
-fn forecast_lines<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Section<'a> {
+fn forecast_lines<'a>(
+    canvas: &Canvas<'_>,
+    due: &ScoredForecast,
+    of_limit: bool,
+    width: u16,
+) -> SectionLines<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
     let who = match (of_limit, width) {
@@ -318,7 +323,7 @@ fn decisions_section<'a>(
     week_report: &WeekReport,
     width: u16,
     most: usize,
-) -> Section<'a> {
+) -> SectionLines<'a> {
     let lines = |pieces: &[String]| join_into_lines(pieces, (width as usize).saturating_sub(9));
     let mut shown = week_report.decisions.len();
     let mut found = lines(&week_report.decisions);
@@ -338,7 +343,12 @@ fn decisions_section<'a>(
 }
 
 /// Formats a change in one or two lines.
-fn move_lines<'a>(canvas: &Canvas<'_>, moved_figure: &MovedFigure, width: u16, name: Role) -> Section<'a> {
+fn change_lines<'a>(
+    canvas: &Canvas<'_>,
+    moved_figure: &MovedFigure,
+    width: u16,
+    name: Role,
+) -> SectionLines<'a> {
     let role = match moved_figure.is_favorable {
         Some(true) => Role::Good,
         Some(false) => Role::Bad,
@@ -381,7 +391,7 @@ fn news_section<'a>(
     week_report: &WeekReport,
     width: u16,
     context: &ScreenContext<'_>,
-) -> Section<'a> {
+) -> SectionLines<'a> {
     let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
         (week_report.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
         (week_report.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
@@ -430,7 +440,7 @@ fn notices_section<'a>(
     company: &DisplayedCompany,
     width: u16,
     room: usize,
-) -> Section<'a> {
+) -> SectionLines<'a> {
     let mut distinct_notices: Vec<(u32, String, u32)> = Vec::new();
     for (day, text) in company.notices.iter().rev() {
         match distinct_notices.iter().position(|(_, known, _)| known == text) {
@@ -460,7 +470,7 @@ fn next_steps_section<'a>(
     width: u16,
     roomy: bool,
     context: &ScreenContext<'_>,
-) -> Section<'a> {
+) -> SectionLines<'a> {
     if needs.is_empty() && !context.company.is_running() {
         let (page, others) = (
             context.keys.label(Action::NextWeek).unwrap_or_default(),

@@ -13,7 +13,7 @@ use super::effect::Effect;
 use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
 use novamind_worker::message::Response;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Declares the module of each screen and the struct that holds all screens.
 macro_rules! screens {
@@ -66,7 +66,7 @@ screens! {
 /// The state of a screen, which receives worker responses and query results.
 pub trait ScreenState {
     /// Returns the queries whose results the screen needs from the database.
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[]
     }
 
@@ -111,7 +111,7 @@ pub trait ScreenState {
     }
 
     /// Returns the number of levels that esc closes on this screen, without the levels that every pane has.
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         0
     }
 

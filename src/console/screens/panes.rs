@@ -259,7 +259,7 @@ impl<S: PaneScreen> Screen for S {
 
     fn escape_depth(&self) -> usize {
         let filtered = active_pane(self).table(self).is_some_and(Table::is_filtered);
-        usize::from(self.overlay().is_some()) + usize::from(filtered) + self.own_escape_depth()
+        usize::from(self.overlay().is_some()) + usize::from(filtered) + self.screen_escape_depth()
     }
 
     fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {

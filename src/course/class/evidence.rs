@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use novamind_record::error::RunError;
 use novamind_record::figures::WeekFigure;
 use novamind_record::lesson::{GuessForm, Lesson, LessonProgress, Measurement};
-use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
+use novamind_record::trajectory::record::{Activity, LessonEvent, RecordedLessonEvent};
 use novamind_record::trajectory::{Line, Record};
 use novamind_session::{Integrity, SealKey, Session, measure, read_origin, setting_values};
 
@@ -122,7 +122,7 @@ impl EvidenceCollector {
 
     /// Describes how the recorded result of a goal or a guess differs from the re-simulated result. Returns `None` if
     /// both results match.
-    fn describe_mismatch(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
+    fn describe_mismatch(&self, session: &mut Session, note: &RecordedLessonEvent) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
         let lesson_step = standing.step(step)?;
@@ -187,7 +187,7 @@ pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgre
 }
 
 fn step_evidence(standing: &LessonProgress, step: usize) -> StepEvidence {
-    let goal = |note: &&LessonNote| GoalEvidence { value: note.value, met: note.met == Some(true) };
+    let goal = |note: &&RecordedLessonEvent| GoalEvidence { value: note.value, met: note.met == Some(true) };
     StepEvidence {
         guess: standing.guess(step),
         outcome: standing.outcome(step).and_then(|note| note.value),

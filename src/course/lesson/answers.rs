@@ -2,7 +2,7 @@
 
 use super::runs::require_lesson;
 use novamind_record::lesson::{LessonProgress, Measurement};
-use novamind_record::trajectory::record::{LessonEvent, LessonNote};
+use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 use novamind_session::{Session, lesson_step, measure};
 use novamind_tools::Rejection;
 
@@ -25,8 +25,8 @@ pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> 
         };
         return Err(Rejection::for_field("guess", "guess_not_possible", message));
     }
-    let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
-    session.record_lesson_event(LessonNote { value: Some(value), ..about })
+    let about = RecordedLessonEvent::new(LessonEvent::Guess, step as u32 + 1);
+    session.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })
 }
 
 /// Returns the next hint of the current step and records that the student used it.
@@ -38,8 +38,8 @@ pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
     let Some((step, given, text)) = next_hint(session) else {
         return Err(Rejection::new("no_hint", "this step has no further hint"));
     };
-    let about = LessonNote::new(LessonEvent::Hint, step as u32 + 1);
-    session.record_lesson_event(LessonNote { number: Some(given as u32 + 1), ..about })?;
+    let about = RecordedLessonEvent::new(LessonEvent::Hint, step as u32 + 1);
+    session.record_lesson_event(RecordedLessonEvent { number: Some(given as u32 + 1), ..about })?;
     Ok(text)
 }
 

@@ -296,7 +296,7 @@ impl FinishedPart {
             bad_play: curve(bad, &plan.bad),
             judged_by,
             comparison,
-            steps: self.steps(),
+            steps: self.step_results(),
             pitfalls: triggered_pitfalls(&self.standing),
             text: is_last.then(|| self.standing.lesson.fill_figures(&self.standing.lesson.debrief)),
         }
@@ -406,7 +406,7 @@ impl FinishedPart {
         calls
     }
 
-    fn steps(&self) -> Vec<DebriefStep> {
+    fn step_results(&self) -> Vec<DebriefStep> {
         let standing = &self.standing;
         let begun = (0..standing.current_part().steps.len()).filter(|step| standing.has_started(*step));
         begun.filter_map(|step| step_result(standing, step)).collect()

@@ -6,7 +6,7 @@ use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::HandoutOptions;
 use novamind_record::trajectory::Trajectory;
-use novamind_record::trajectory::record::{LessonEvent, LessonNote};
+use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 use novamind_session::{LessonOptions, NewRun, Session, Storage, create_lesson_branch};
 use novamind_tools::Rejection;
 
@@ -33,8 +33,8 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
     let mut again = create_lesson_branch(folder, session.manifest(), &trajectory, begun)?;
     // The first guess counts: the student has seen the outcome.
     if let Some(value) = standing.guess(step) {
-        let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
-        again.record_lesson_event(LessonNote { value: Some(value), ..about })?;
+        let about = RecordedLessonEvent::new(LessonEvent::Guess, step as u32 + 1);
+        again.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })?;
     }
     Ok(again)
 }

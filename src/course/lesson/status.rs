@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::debrief::{DebriefStep, step_result};
 
 use novamind_record::lesson::{GoalBound, GuessForm, LessonGoal, LessonProgress, OutcomeTiming};
-use novamind_record::trajectory::record::LessonNote;
+use novamind_record::trajectory::record::RecordedLessonEvent;
 use novamind_session::{Session, lesson_step, measure, weeks_passed};
 use novamind_tools::ToolId;
 
@@ -166,7 +166,7 @@ impl GoalStatus {
     pub(super) fn new(
         standing: &LessonProgress,
         goal: &LessonGoal,
-        judged: Option<&LessonNote>,
+        judged: Option<&RecordedLessonEvent>,
     ) -> GoalStatus {
         let of_good_play = match goal.bound {
             GoalBound::RelativeToReferencePlay(share) => Some(share),
@@ -202,7 +202,7 @@ pub(super) fn step_question(standing: &LessonProgress, step: usize) -> Option<Le
 }
 
 pub(super) fn triggered_pitfalls(standing: &LessonProgress) -> Vec<(u32, String)> {
-    let triggered = |(day, note): &(u32, LessonNote)| {
+    let triggered = |(day, note): &(u32, RecordedLessonEvent)| {
         let name = note.name.as_deref()?;
         let pitfall = standing.lesson.plan.pitfalls.iter().find(|pitfall| pitfall.name == name)?;
         Some((*day, standing.lesson.fill_figures(&pitfall.say)))

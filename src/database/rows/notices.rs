@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rusqlite::{Transaction, params};
 
 use super::ProjectionEntry;
-use crate::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_index};
+use crate::notices::{Inbox, LEAD_LOST_INDEX, NoticeDay, RepeatedLoss, type_index};
 use crate::packing::PackedRows;
 use novamind_world::events::{Facts, LossCause};
 
@@ -54,7 +54,7 @@ impl NoticeWriter {
             match (RepeatedLoss::from_notice(notice), repeats) {
                 (None, _) => day.push(type_index(notice), words),
                 (Some(_), Some(_)) => {}
-                (Some(loss), None) => day.push(LEAD_LOST, &loss.text()),
+                (Some(loss), None) => day.push(LEAD_LOST_INDEX, &loss.text()),
             }
         }
         if is_day {

@@ -160,7 +160,7 @@ fn group_contribution_equals_branch_difference() {
 }
 
 #[test]
-fn group_cancellations_add_up_per_cause() {
+fn group_contributions_add_up_to_the_company_contributions() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_weeks(runs.path(), Mode::Sandbox, 3, Some(("set_prices", json!({"A": 24, "B": 50}))));
     let mut causes = open_causes(&session);

@@ -74,7 +74,7 @@ impl Inspector<'_> {
         day: u32,
         read: impl Fn(&GroupDayEnd) -> T,
     ) -> Result<Vec<T>, Rejection> {
-        let diary = self.all_hidden_days(permit, self.cache.hidden_days.keeps_threads())?;
+        let diary = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
         let evening = |day| diary.with_day(day, |seen| read(&seen.groups[group]));
         Ok((first..=day).filter_map(evening).collect())

@@ -123,7 +123,7 @@ impl HiddenDayRecorder {
     }
 
     /// Returns whether the recorder records threads.
-    pub(crate) fn keeps_threads(&self) -> bool {
+    pub(crate) fn records_threads(&self) -> bool {
         self.keeps_threads
     }
 

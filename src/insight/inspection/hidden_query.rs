@@ -34,7 +34,7 @@ impl Inspector<'_> {
         let named = tables.connection().hidden_tables_in(sql);
         // All tables are filled from one recorder, so the days are simulated only once.
         let keeps_threads =
-            self.cache.hidden_days.keeps_threads() || named.iter().any(|table| table.name == THREADS_TABLE);
+            self.cache.hidden_days.records_threads() || named.iter().any(|table| table.name == THREADS_TABLE);
         for table in named {
             match table.name.as_str() {
                 CUSTOMERS_TABLE => self.fill_customers(&permit, &mut tables, ticket, table)?,
@@ -65,7 +65,7 @@ impl Inspector<'_> {
             Some(tables) => Ok(tables),
             None => {
                 let tables = HiddenTables::new(InspectionPermit::open_hidden_tables(self.run)?, database);
-                if self.cache.hidden_days.keeps_threads() {
+                if self.cache.hidden_days.records_threads() {
                     // The threads of the cached days were moved to tables that no longer exist.
                     self.cache.replay = None;
                 }

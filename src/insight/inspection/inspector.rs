@@ -53,7 +53,7 @@ impl Inspector<'_> {
         permit: &InspectionPermit,
         days: impl IntoIterator<Item = u32>,
     ) -> Result<Vec<HiddenDay>, Rejection> {
-        let diary = self.all_hidden_days(permit, self.cache.hidden_days.keeps_threads())?;
+        let diary = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
         Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
     }
 
@@ -77,7 +77,7 @@ impl Inspector<'_> {
         with_threads: bool,
     ) -> Result<Arc<HiddenDayRecorder>, Rejection> {
         let kept =
-            self.cache.replay.take().filter(|_| self.cache.hidden_days.keeps_threads() == with_threads);
+            self.cache.replay.take().filter(|_| self.cache.hidden_days.records_threads() == with_threads);
         let mut shadow = match kept {
             Some(shadow) => shadow,
             None => {

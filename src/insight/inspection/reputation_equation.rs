@@ -6,7 +6,7 @@ use novamind_world::identifiers::{ByGroup, Group};
 use novamind_world::market::Market;
 use novamind_world::params::Params;
 use novamind_world::reputation::{
-    ReputationBook, ReputationCause, ReputationContribution, ReputationWrite, SpilloverEffect, daily_change,
+    ReputationCause, ReputationContribution, ReputationWrite, Reputations, SpilloverEffect, daily_change,
     daily_change_before_threshold, spillover_effect,
 };
 
@@ -60,7 +60,7 @@ pub(crate) struct ReputationDay {
 }
 
 impl ReputationDay {
-    pub(crate) fn at_start_of_day(book: &ReputationBook) -> ReputationDay {
+    pub(crate) fn at_start_of_day(book: &Reputations) -> ReputationDay {
         ReputationDay { before: ByGroup::from_fn(|group| book.get(group)), ..ReputationDay::default() }
     }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use serde_json::json;
 
-use super::decision_edit::{BranchStart, DecisionEdit, build_edits, follow_usage_with_capacity};
+use super::decision_edit::{BranchStart, DecisionEdit, add_usage_based_capacity, build_edits};
 use super::lesson_restrictions::check_tools_unlocked;
 use crate::counterfactual::customer_renumbering::{RenumberedCall, add_branch_number_note};
 use crate::counterfactual::edits::{Edits, UsageBasedCapacity};
@@ -31,7 +31,7 @@ pub struct AdoptedBranch {
 /// at the end of a week.
 ///
 /// # Errors
-/// Same errors as [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. After an error, or if the
+/// Same errors as [`Session::create_branch`], and `line_unknown`, `week_unknown` for an edit. After an error, or if the
 /// program ends during the simulation, no branch is created.
 pub fn create_branch_with_decisions(
     run: &Session,
@@ -69,7 +69,7 @@ pub fn create_branch_with_decisions(
     if is_moved && !decided.is_empty() && edits.capacity_rule.is_none() {
         // The branch is not a lesson, so this rule replaces the automatic capacity changes of the lesson.
         let followed = UsageBasedCapacity { rule: UsageCapacityRule::StepByStep, from_day: from };
-        follow_usage_with_capacity(followed, &mut edits, &known);
+        add_usage_based_capacity(followed, &mut edits, &known);
     }
     let mut adopted =
         BranchAdoption { session, rejected: Vec::new(), recorded_numbers: run.company().customer_numbers() };

@@ -157,7 +157,7 @@ impl DecisionEdit {
             DecisionEdit::CapacityFollowsUsage => {
                 let followed =
                     UsageBasedCapacity { rule: UsageCapacityRule::BusiestDay, from_day: opening.day };
-                follow_usage_with_capacity(followed, edits, moves);
+                add_usage_based_capacity(followed, edits, moves);
             }
         }
         Ok(())
@@ -172,7 +172,7 @@ fn recorded_calls(moves: &[RecordedStep]) -> impl Iterator<Item = &RecordedCall>
 }
 
 /// Adds a rule that adjusts the capacity to usage, and omits calls that set the capacity.
-pub(super) fn follow_usage_with_capacity(
+pub(super) fn add_usage_based_capacity(
     followed: UsageBasedCapacity,
     edits: &mut Edits,
     moves: &[RecordedStep],

@@ -74,7 +74,7 @@ impl Futures {
         let week = self.days.iter().position(|number| *number == day);
         let value = |weeks: &Vec<FigureValues>| match (week, weeks.last()) {
             (Some(at), _) if at < weeks.len() => weeks[at][figure as usize],
-            (Some(_), Some(last)) => value_after_end(figure, last),
+            (Some(_), Some(last)) => value_after_bankruptcy(figure, last),
             _ => f64::NAN,
         };
         self.branches.get(branch).into_iter().flatten().map(value).collect()
@@ -82,7 +82,7 @@ impl Futures {
 }
 
 /// Returns the value of a figure after a bankruptcy: unchanged cash, 0 for counts, NaN for churn and satisfaction.
-fn value_after_end(figure: BranchFigure, last: &FigureValues) -> f64 {
+fn value_after_bankruptcy(figure: BranchFigure, last: &FigureValues) -> f64 {
     match figure {
         BranchFigure::Cash => last[figure as usize],
         BranchFigure::Churn | BranchFigure::Satisfaction => f64::NAN,

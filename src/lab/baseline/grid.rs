@@ -117,7 +117,7 @@ impl PolicyGrid {
             let span = axis.span();
             let axis = axis.into_inner();
             let column = column_name(&axis.name);
-            if !is_label(&axis.name)
+            if !is_valid_label_part(&axis.name)
                 || column.is_empty()
                 || RESERVED_COLUMNS.contains(&column.as_str())
                 || axes.iter().any(|(name, _)| column_name(name) == column)
@@ -173,7 +173,7 @@ const RESERVED_COLUMNS: [&str; 13] = [
 ];
 
 /// Returns whether a name can be part of a label without ambiguity.
-fn is_label(name: &str) -> bool {
+fn is_valid_label_part(name: &str) -> bool {
     !name.trim().is_empty()
         && !name.contains(LEVEL_SEPARATOR)
         && !name.chars().any(|letter| letter.is_control() || ['\u{2028}', '\u{2029}'].contains(&letter))
@@ -207,7 +207,7 @@ impl GridReader<'_> {
                 let problem = format!("axis {axis} has two levels named {name}");
                 return Err(self.error_at(Some(span), &problem));
             }
-            if !is_label(&name) {
+            if !is_valid_label_part(&name) {
                 return Err(
                     self.error_at(Some(span), &format!("axis {axis}: the name of a level {LABEL_RULE}"))
                 );

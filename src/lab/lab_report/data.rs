@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{CellValue, Column, ColumnKind, Graph, LabReport, LabTable};
 use novamind_base::formatting::json_number;
-use novamind_base::statistics::{CONFIDENCE_LEVEL, Interval, RESAMPLES};
+use novamind_base::statistics::{CONFIDENCE_LEVEL, Interval, RESAMPLE_COUNT};
 
 impl LabReport {
     /// Returns the table with the given name, or `None` if the report has no table with this name.
@@ -23,7 +23,7 @@ impl LabReport {
         let is_interval = |column: &Column| matches!(column.kind, ColumnKind::Interval(_));
         if self.tables.iter().flat_map(|table| &table.columns).any(is_interval) {
             object["intervals"] =
-                json!({ "kind": "bootstrap", "level": CONFIDENCE_LEVEL, "resamples": RESAMPLES });
+                json!({ "kind": "bootstrap", "level": CONFIDENCE_LEVEL, "resamples": RESAMPLE_COUNT });
         }
         object["notes"] = json!(self.notes);
         object

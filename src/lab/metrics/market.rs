@@ -49,7 +49,7 @@ impl MetricsDay<'_> {
         }
     }
 
-    pub(super) fn push_notices(&self, list: &mut Vec<DailyValue>) {
+    pub(super) fn push_notifications(&self, list: &mut Vec<DailyValue>) {
         let count = |fits: fn(&Notice) -> bool| {
             Some(self.xray.notices().iter().filter(|notice| fits(notice)).count() as f64)
         };

@@ -180,7 +180,7 @@ impl MetricsDay<'_> {
         self.push_product(&mut list);
         self.push_market(&mut list);
         self.push_posts(&mut list);
-        self.push_notices(&mut list);
+        self.push_notifications(&mut list);
         self.push_enterprise(&mut list);
         list
     }

@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn idle_company_beats_13_of_16() {
+    fn idle_company_beats_13_of_16_published_runs() {
         let configuration = Configuration::bundled();
         let policy = Policy::find(IDLE_POLICY, &configuration).expect("a bundled policy");
         let idle = play_idle_company(&policy, Interface::Release1, &configuration).expect("it plays");

@@ -5,7 +5,9 @@ use crate::experiment::{Experiment, RunResult, group_equal_items};
 use crate::lab_report::{
     AxisScale, CellValue, Column, Graph, GraphAxis, GraphForm, LabReport, LabTable, Measure, Series,
 };
-use novamind_base::statistics::{CONFIDENCE_LEVEL, Interval, MIN_SAMPLE_SIZE, Quartiles, RESAMPLES, median};
+use novamind_base::statistics::{
+    CONFIDENCE_LEVEL, Interval, MIN_SAMPLE_SIZE, Quartiles, RESAMPLE_COUNT, median,
+};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_report::pluralize;
@@ -57,7 +59,7 @@ pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
         }
     };
     let interval = format!(
-        "Intervals: percentile bootstrap over {MIN_SAMPLE_SIZE} seeds or more, {RESAMPLES} resamples, {:.0} %. Final cash is the cash of a run on its \
+        "Intervals: percentile bootstrap over {MIN_SAMPLE_SIZE} seeds or more, {RESAMPLE_COUNT} resamples, {:.0} %. Final cash is the cash of a run on its \
          last day or in bankruptcy.",
         CONFIDENCE_LEVEL * 100.0
     );

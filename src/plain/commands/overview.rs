@@ -14,7 +14,7 @@ use novamind_base::similar_names;
 use novamind_database::Interface;
 use novamind_record::trajectory::record::Reversal;
 use novamind_report::action_items::{ActionItem, ActionTarget, action_items};
-use novamind_report::cost_review::{identical_plan_lines, money_lines};
+use novamind_report::cost_review::{identical_plan_lines, income_and_cost_lines};
 use novamind_report::deals::describe_deals;
 use novamind_report::decision_periods::describe_change;
 use novamind_report::describe_cash_change;
@@ -87,7 +87,7 @@ impl Interpreter {
         CommandResponse::success("status", text, data)
     }
 
-    pub(super) fn needs(&self) -> CommandResponse {
+    pub(super) fn action_needed(&self) -> CommandResponse {
         let needs = action_items(&self.session);
         let row = |need: &ActionItem| {
             let call = match &need.target {
@@ -106,7 +106,7 @@ impl Interpreter {
             })
         };
         let data = json!({ "needs": needs.iter().map(row).collect::<Vec<Value>>() });
-        let mut lines: Vec<String> = needs.iter().flat_map(need_lines).collect();
+        let mut lines: Vec<String> = needs.iter().flat_map(action_item_lines).collect();
         if lines.is_empty() {
             lines.push("no action needed".to_owned());
         }
@@ -122,7 +122,7 @@ impl Interpreter {
         }
         lines.extend(identical_plan_lines(&seen));
         lines.extend(late_project_lines(&seen));
-        lines.extend(money_lines(&seen));
+        lines.extend(income_and_cost_lines(&seen));
         let data = json!({
             "changes": seen.changes,
             "purchases": seen.purchases,
@@ -151,7 +151,7 @@ impl Interpreter {
 }
 
 /// Formats a problem as one line, and the tool call that addresses the problem as a second line.
-fn need_lines(need: &ActionItem) -> Vec<String> {
+fn action_item_lines(need: &ActionItem) -> Vec<String> {
     let mark = if need.is_urgent { '!' } else { '-' };
     let risk = grouped_number(need.at_risk, 0);
     let mut lines = vec![format!("{mark} {} ${risk} of the next four weeks is at risk.", need.describe())];

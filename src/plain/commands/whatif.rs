@@ -59,15 +59,15 @@ impl Interpreter {
             let text = self.read_question_file(Path::new(path.trim()));
             let text = text.map_err(|why| problem(format!("{} cannot be read: {why}", path.trim())))?;
             return parse_question(&convert_question_file(&text), 0)
-                .map(|question| self.compare(&question))
+                .map(|question| self.compare_alternatives(&question))
                 .map_err(|wrong| problem(wrong.text));
         }
         match words.strip_prefix("adopt ") {
             Some(rest) if rest.trim_start().starts_with("from") => {
                 parse_question(rest, column + "adopt ".len())
-                    .and_then(|question| self.adopt(&question, column))
+                    .and_then(|question| self.adopt_alternative(&question, column))
             }
-            _ => parse_question(words, column).map(|question| self.compare(&question)),
+            _ => parse_question(words, column).map(|question| self.compare_alternatives(&question)),
         }
     }
 
@@ -120,7 +120,7 @@ impl Interpreter {
         CommandResponse::success("whatif", text, json!({ "calls": made, "parameters": set }))
     }
 
-    fn compare(&mut self, question: &WhatIfQuestion) -> CommandResponse {
+    fn compare_alternatives(&mut self, question: &WhatIfQuestion) -> CommandResponse {
         let stop = self.watch.enter_simulation();
         let go_on = |_, _| continue_unless_stopped(&stop);
         let WhatIfQuestion { from, until, futures, alternatives } = question;
@@ -150,7 +150,11 @@ impl Interpreter {
     }
 
     /// Plays the only alternative of a question in a new branch, and continues in this branch.
-    fn adopt(&mut self, question: &WhatIfQuestion, column: usize) -> Result<CommandResponse, ParseError> {
+    fn adopt_alternative(
+        &mut self,
+        question: &WhatIfQuestion,
+        column: usize,
+    ) -> Result<CommandResponse, ParseError> {
         if question.futures.is_some() || question.until.is_some() {
             let text =
                 "adopt cannot be combined with until or futures, because the branch is always played to the current day of this run"
@@ -169,7 +173,7 @@ impl Interpreter {
     }
 
     /// Executes `branch WEEK [keep]`.
-    pub(super) fn branch(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
+    pub(super) fn create_branch(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (last, first) =
             arguments.split_last().map_or((None, arguments), |(last, first)| (Some(last), first));
         let keeps = last.is_some_and(|last| last.key.is_none() && last.value == "keep");
@@ -238,7 +242,7 @@ impl Interpreter {
     }
 
     /// Executes `branches`: shows the tree of branches that contains the run.
-    pub(super) fn branches(&self) -> CommandResponse {
+    pub(super) fn show_branches(&self) -> CommandResponse {
         let id = &self.session.manifest().id;
         let Some(runs) = self.session.folder().and_then(Path::parent) else {
             return CommandResponse::rejected(

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::definition::{GuessForm, LessonAccess, LessonPart, LessonStep};
 use super::lesson_file::Lesson;
-use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
+use crate::trajectory::record::{Activity, LessonEvent, RecordedLessonEvent};
 use crate::trajectory::{Line, Record};
 use novamind_tools::{Rejection, ToolId};
 
@@ -18,7 +18,7 @@ pub struct LessonProgress {
     /// Whether goals and pitfalls are checked in this run.
     pub is_judged: bool,
     /// Lesson events in the order of recording, each with its day.
-    pub events: Vec<(u32, LessonNote)>,
+    pub events: Vec<(u32, RecordedLessonEvent)>,
 }
 
 impl LessonPart {
@@ -126,7 +126,7 @@ impl LessonProgress {
 
     /// Returns the number of the latest attempt at a step.
     pub fn attempt(&self, step: usize) -> u32 {
-        let of_try = |note: &LessonNote| note.number;
+        let of_try = |note: &RecordedLessonEvent| note.number;
         self.last_event(LessonEvent::Begun, step).and_then(of_try).unwrap_or(0)
     }
 
@@ -146,7 +146,7 @@ impl LessonProgress {
     }
 
     /// Returns the recorded outcome of the guess of a step, if the outcome was measured.
-    pub fn outcome(&self, step: usize) -> Option<&LessonNote> {
+    pub fn outcome(&self, step: usize) -> Option<&RecordedLessonEvent> {
         self.last_event(LessonEvent::Outcome, step)
     }
 
@@ -161,15 +161,16 @@ impl LessonProgress {
     }
 
     /// Returns the goal results of a step, in order. The list is empty before the step is over.
-    pub fn goal_results(&self, step: usize) -> Vec<&LessonNote> {
+    pub fn goal_results(&self, step: usize) -> Vec<&RecordedLessonEvent> {
         self.events_of_step(LessonEvent::Goal, step).collect()
     }
 
     /// Returns whether the student reached every goal of every step.
     pub fn has_reached_all_goals(&self) -> bool {
         let wanted: usize = self.current_part().steps.iter().map(|step| step.goals.len()).sum();
-        let reached =
-            |(_, note): &&(u32, LessonNote)| note.event == LessonEvent::Goal && note.met == Some(true);
+        let reached = |(_, note): &&(u32, RecordedLessonEvent)| {
+            note.event == LessonEvent::Goal && note.met == Some(true)
+        };
         self.events.iter().filter(reached).count() == wanted
     }
 
@@ -191,13 +192,13 @@ impl LessonProgress {
         &self,
         event: LessonEvent,
         step: usize,
-    ) -> impl DoubleEndedIterator<Item = &LessonNote> {
+    ) -> impl DoubleEndedIterator<Item = &RecordedLessonEvent> {
         let number = step as u32 + 1;
-        let is_it = move |note: &&LessonNote| note.event == event && note.step == number;
+        let is_it = move |note: &&RecordedLessonEvent| note.event == event && note.step == number;
         self.events.iter().map(|(_, note)| note).filter(is_it)
     }
 
-    fn last_event(&self, event: LessonEvent, step: usize) -> Option<&LessonNote> {
+    fn last_event(&self, event: LessonEvent, step: usize) -> Option<&RecordedLessonEvent> {
         self.events_of_step(event, step).next_back()
     }
 }

@@ -53,7 +53,7 @@ impl Line {
         let unreadable = |error: serde_json::Error| format!("this is not a line of a trajectory ({error})");
         let frame: Frame<'_> = serde_json::from_slice(text).map_err(unreadable)?;
         let summed = summed && (seq > 0 || frame.line_sums);
-        if check_sum(text).map_or(summed, |fits| !fits) {
+        if verify_checksum(text).map_or(summed, |fits| !fits) {
             return Err("the line does not match its checksum: it was changed".to_owned());
         }
         if frame.seq != Some(seq) {
@@ -94,7 +94,7 @@ impl Line {
     }
 
     /// Returns whether this first line declares that every line of the run has a checksum.
-    pub fn declares_sums(&self) -> bool {
+    pub fn declares_checksums(&self) -> bool {
         matches!(&self.record, Record::Start(start) if start.line_sums)
     }
 
@@ -135,23 +135,24 @@ pub fn first_line_hash(path: &Path) -> Option<String> {
     line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))
 }
 
-const SUM_PREFIX: &[u8] = b",\"sum\":\"";
-const SUM_DIGITS: usize = 16;
+const CHECKSUM_PREFIX: &[u8] = b",\"sum\":\"";
+const CHECKSUM_DIGITS: usize = 16;
 
 /// Appends the field `sum` to a line: the checksum of all other bytes.
-pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
+pub(super) fn with_checksum(mut line: Vec<u8>) -> Vec<u8> {
     let sum = line_hash(&line);
     line.pop();
-    line.extend_from_slice(SUM_PREFIX);
-    line.extend_from_slice(&sum.as_bytes()[..SUM_DIGITS]);
+    line.extend_from_slice(CHECKSUM_PREFIX);
+    line.extend_from_slice(&sum.as_bytes()[..CHECKSUM_DIGITS]);
     line.extend_from_slice(b"\"}");
     line
 }
 
 /// Returns whether the checksum of a line is correct, or `None` if the line has no checksum.
-fn check_sum(line: &[u8]) -> Option<bool> {
-    let (bytes, tail) = line.split_at_checked(line.len().checked_sub(SUM_PREFIX.len() + SUM_DIGITS + 2)?)?;
-    let sum = tail.strip_prefix(SUM_PREFIX)?.strip_suffix(b"\"}")?;
+fn verify_checksum(line: &[u8]) -> Option<bool> {
+    let (bytes, tail) =
+        line.split_at_checked(line.len().checked_sub(CHECKSUM_PREFIX.len() + CHECKSUM_DIGITS + 2)?)?;
+    let sum = tail.strip_prefix(CHECKSUM_PREFIX)?.strip_suffix(b"\"}")?;
     let without: Vec<u8> = bytes.iter().copied().chain([b'}']).collect();
     Some(line_hash(&without).as_bytes().starts_with(sum))
 }

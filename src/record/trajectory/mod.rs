@@ -128,8 +128,8 @@ impl Trajectory {
     }
 
     /// Returns whether every line must have a checksum; true before the first line.
-    fn has_sums(&self) -> bool {
-        self.continued_position.is_some() || self.lines.first().is_none_or(Line::declares_sums)
+    fn has_checksums(&self) -> bool {
+        self.continued_position.is_some() || self.lines.first().is_none_or(Line::declares_checksums)
     }
 
     /// Parses and checks bytes that follow the parsed bytes in the file.
@@ -141,7 +141,7 @@ impl Trajectory {
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
             let line = &text[..text.len() - 1];
             let number = self.lines.len() + 1;
-            let line = Line::parse(line, self.next_seq(), &self.last_hash(), self.has_sums())
+            let line = Line::parse(line, self.next_seq(), &self.last_hash(), self.has_checksums())
                 .map_err(|problem| (number, problem))?;
             self.lines.push(line);
             self.length += text.len() as u64;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
-use super::line::{Line, line_hash, with_sum};
+use super::line::{Line, line_hash, with_checksum};
 use super::medium::{Medium, NamedFile};
 use super::record::Record;
 use super::synced_file::SyncedFile;
@@ -213,7 +213,7 @@ impl TrajectoryWriter {
             "a field has the name of a frame field: {kind}"
         );
         line.extend(fields);
-        let mut bytes = with_sum(Value::Object(line).to_string().into_bytes());
+        let mut bytes = with_checksum(Value::Object(line).to_string().into_bytes());
         let hash = line_hash(&bytes);
         bytes.push(b'\n');
         (bytes, hash, at)

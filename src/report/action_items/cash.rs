@@ -13,7 +13,7 @@ use novamind_tools::ToolId;
 const MIN_RUNWAY_WEEKS: f64 = 8.0;
 
 /// Reports a problem if cash lasts less than eight weeks at the current rate.
-pub(super) fn runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let seen = &situation.observation;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < MIN_RUNWAY_WEEKS)?;
     let pace = &seen.pace;

@@ -188,7 +188,7 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     }
     let situation = DiagnosisContext::new(session);
     let mut found: Vec<ActionItem> = Vec::new();
-    found.extend(cash::runway(&situation));
+    found.extend(cash::diagnose_runway(&situation));
     found.extend(retention::expiring_threads(&situation));
     found.extend(selling::missing_offers(&situation));
     found.extend(selling::missing_leads(&situation));
@@ -196,9 +196,9 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(advertising::groups_without_requests(&situation));
     found.extend(advertising::rising_lead_costs(&situation));
     found.extend(cash::unprofitable_plans(&situation));
-    found.extend(service::capacity(&situation));
-    found.extend(service::outages(&situation));
-    found.extend(service::backlog(&situation));
+    found.extend(service::diagnose_capacity(&situation));
+    found.extend(service::diagnose_outages(&situation));
+    found.extend(service::diagnose_backlog(&situation));
     found.extend(retention::churn_waves(&situation));
     let moved = situation.upcoming_revenue() + situation.upcoming_costs();
     // Threads that wait for an answer are always reported, even if little money is at risk.

@@ -20,13 +20,13 @@ const MAX_BACKLOG_SHARE: f64 = 0.02;
 const BACKLOG_CLEARANCE_DAYS: f64 = 7.0;
 
 /// Reports a problem if usage exceeds capacity or will soon exceed capacity.
-pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week()?;
     let tiers = &situation.terms.capacities;
     let now = tiers.iter().find(|tier| tier.tier == situation.settings.capacity_tier)?;
     let busiest = week.busiest_day as f64;
     if busiest > now.units {
-        return Some(overload(situation, week, now));
+        return Some(diagnose_overload(situation, week, now));
     }
     // No usage has been measured yet for a capacity tier that was chosen today.
     if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
@@ -59,7 +59,7 @@ pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     })
 }
 
-fn overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &CapacityTier) -> ActionItem {
+fn diagnose_overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &CapacityTier) -> ActionItem {
     let busiest = week.busiest_day as f64;
     let tiers = &situation.terms.capacities;
     let enough = tiers.iter().find(|tier| tier.units >= busiest).or(tiers.last()).unwrap_or(now);
@@ -90,7 +90,7 @@ fn describe_tier_cost(tier: &CapacityTier, now: &CapacityTier) -> String {
 }
 
 /// Reports outages that higher operations spending would reduce. Outages during overload are excluded.
-pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+pub(super) fn diagnose_outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week().filter(|week| week.outage && week.overload_peak == 0.0)?;
     let operations = situation.settings.operations;
     let share = |dollars: f64| situation.session.company().outage_share(dollars);
@@ -127,7 +127,7 @@ pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
 }
 
 /// Reports a backlog if many subscribers have waited for support for more than a day.
-pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+pub(super) fn diagnose_backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let week = situation.last_week()?;
     let people = f64::from(week.individual_subscribers.max(1));
     let opened = f64::from(week.issues_opened) / f64::from(week.days_run.max(1));

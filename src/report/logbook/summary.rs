@@ -204,7 +204,7 @@ fn tools_block(tools: &BTreeMap<String, u32>) -> Block {
 fn decision_blocks(book: &Logbook) -> Vec<Block> {
     let decision_weeks = book.weeks.iter().filter(|week| !week.decisions.is_empty());
     let blocks: Vec<Block> = decision_weeks
-        .map(|week| Block::Folded {
+        .map(|week| Block::Collapsible {
             title: format!("Week {}", week.week),
             note: pluralize(week.decisions.len() as u32, "decision"),
             lines: Vec::new(),

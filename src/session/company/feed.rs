@@ -55,17 +55,17 @@ mod kept_posts {
     }
 
     #[derive(Serialize)]
-    struct Borrowed<'a>(#[serde(with = "Kept")] &'a PublicPost);
+    struct BorrowedPost<'a>(#[serde(with = "Kept")] &'a PublicPost);
 
     #[derive(Deserialize)]
-    struct Owned(#[serde(with = "Kept")] PublicPost);
+    struct OwnedPost(#[serde(with = "Kept")] PublicPost);
 
     pub fn serialize<S: Serializer>(posts: &[PublicPost], serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(posts.iter().map(Borrowed))
+        serializer.collect_seq(posts.iter().map(BorrowedPost))
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<PublicPost>, D::Error> {
-        Ok(Vec::<Owned>::deserialize(deserializer)?.into_iter().map(|owned| owned.0).collect())
+        Ok(Vec::<OwnedPost>::deserialize(deserializer)?.into_iter().map(|owned| owned.0).collect())
     }
 }
 

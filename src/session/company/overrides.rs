@@ -200,7 +200,7 @@ pub(crate) struct DerivedValues {
 }
 
 impl DerivedValues {
-    pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<ParameterNumbers> {
+    pub(crate) fn parameter_numbers(&self, simulation: &Simulation) -> Arc<ParameterNumbers> {
         self.numbers.get_or_init(|| ParameterNumbers::from_params(&simulation.params).into()).clone()
     }
 

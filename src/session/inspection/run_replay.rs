@@ -35,7 +35,7 @@ impl RunReplay {
         &mut self,
         run: &Session,
         goes_on: impl Fn(u32) -> bool,
-        tell: &mut dyn FnMut(&DayReport<'_>),
+        progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), Rejection> {
         let RunReplay(shadow) = self;
         let Some(folder) = run.folder() else { return Ok(()) };
@@ -52,7 +52,7 @@ impl RunReplay {
                 break;
             }
             shadow
-                .apply_line_with_progress(&path, line, tell)
+                .apply_line_with_progress(&path, line, progress)
                 .map_err(|error| unreadable_record_rejection(&error))?;
         }
         Ok(())

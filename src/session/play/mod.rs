@@ -166,7 +166,7 @@ impl Session {
 
     /// Returns the log that records activities of the user.
     pub fn activity(&mut self) -> ActivityLog<'_> {
-        let (day, is_over) = self.day_and_is_over();
+        let (day, is_over) = self.day_and_has_ended();
         ActivityLog::new(&mut self.log, day, is_over)
     }
 
@@ -227,7 +227,7 @@ impl Session {
 
     /// Returns the parameter values of this run that the tool documentation quotes.
     pub fn numbers(&self) -> Arc<ParameterNumbers> {
-        self.derived_values.numbers(&self.simulation)
+        self.derived_values.parameter_numbers(&self.simulation)
     }
 
     /// Returns the calculations and scripts of the run.
@@ -307,7 +307,7 @@ impl Session {
 
     /// Appends a line. Does nothing if the run is open read-only.
     pub(crate) fn append(&mut self, record: &Record, durability: Durability) -> Result<String, RunError> {
-        self.log.append(self.day_and_is_over(), record, durability)
+        self.log.append(self.day_and_has_ended(), record, durability)
     }
 
     /// Appends a line about an irrevocable action, even if it cannot be saved yet. Returns a description of the
@@ -322,7 +322,7 @@ impl Session {
     }
 
     /// Returns the last simulated day, and whether the run has ended.
-    fn day_and_is_over(&self) -> (u32, bool) {
+    fn day_and_has_ended(&self) -> (u32, bool) {
         (self.simulation.world.day, self.history.ended.is_some())
     }
 }

@@ -70,7 +70,7 @@ impl Session {
         access: Access,
         projection: bool,
         key: SealKey,
-        keeping: Option<StoreFunctions>,
+        store_functions: Option<StoreFunctions>,
     ) -> Result<Session, RunError> {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();
@@ -96,7 +96,7 @@ impl Session {
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
-        let keeping = keeping
+        let keeping = store_functions
             .filter(|cache_functions| (cache_functions.may_store)(folder, &manifest, &trajectory, &key));
         let simulates = projection && finished.is_none();
         if simulates && keeping.is_some_and(|functions| (functions.store_database)(folder, &key)) {
@@ -156,7 +156,7 @@ pub(crate) fn open_projector(
     access: Access,
     (manifest, params): (&Manifest, &Arc<Params>),
     trajectory: &Trajectory,
-    sound: bool,
+    is_intact: bool,
 ) -> Result<(Projector, Option<ProjectionPosition>), RunError> {
     let location = match access {
         Access::Write => DatabaseLocation::File(folder.join("world.db")),
@@ -165,7 +165,7 @@ pub(crate) fn open_projector(
     };
     let known = |position: &ProjectionPosition| {
         let line = trajectory.lines.get(position.seq as usize);
-        sound && line.is_some_and(|line| line.hash == position.line_hash)
+        is_intact && line.is_some_and(|line| line.hash == position.line_hash)
     };
     Ok(Projector::start(location, manifest.id_number(), params.clone(), known)?)
 }

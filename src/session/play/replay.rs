@@ -86,14 +86,14 @@ impl Session {
         &mut self,
         path: &Path,
         line: &Line,
-        tell: &mut dyn FnMut(&DayReport<'_>),
+        progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), RunError> {
         self.log.set_position(line.position());
         let damaged = damaged_line_error(path);
-        self.replay_line(line, tell).map_err(|problem| damaged((line.seq as usize + 1, problem)))
+        self.replay_line(line, progress).map_err(|problem| damaged((line.seq as usize + 1, problem)))
     }
 
-    fn replay_line(&mut self, line: &Line, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), String> {
+    fn replay_line(&mut self, line: &Line, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), String> {
         match &line.record {
             Record::Start(_) => self.write_initial_rows(),
             Record::Call(call) => {
@@ -108,7 +108,7 @@ impl Session {
             }
             Record::Week(closing) | Record::Step(closing) => {
                 let from = self.simulation.world.day;
-                let state = self.run_days(from.saturating_add(closing.days_run), tell);
+                let state = self.run_days(from.saturating_add(closing.days_run), progress);
                 self.verify_closing(from, &state, closing)?;
                 self.record_replayed_week();
                 self.commit_projection();

@@ -75,11 +75,16 @@ impl Session {
     }
 
     /// Executes a Python script. Records its queries if `noted` is true.
-    fn run_python(&mut self, code: &str, time: Duration, noted: bool) -> Result<RawScriptOutput, Rejection> {
+    fn run_python(
+        &mut self,
+        code: &str,
+        time: Duration,
+        records_queries: bool,
+    ) -> Result<RawScriptOutput, Rejection> {
         let stop = self.up_to_date_database().and_then(RunDatabase::interrupt_handle);
         let stop = stop.map_err(|refusal| script_failed(refusal.message))?;
         let (ticket, mode) = (stop.issue_ticket(), self.manifest.mode);
-        let mut answer = |request, left| self.answer_script_request(request, left, noted);
+        let mut answer = |request, left| self.answer_script_request(request, left, records_queries);
         let host = &mut ScriptHost { is_stopped: &|| stop.is_ticket_stopped(ticket), answer: &mut answer };
         run_python(code, time, mode, host)
     }
@@ -88,23 +93,28 @@ impl Session {
         &mut self,
         request: ScriptRequest,
         left: Duration,
-        noted: bool,
+        records_queries: bool,
     ) -> Result<Value, Rejection> {
         match request {
             ScriptRequest::Vars => Ok(json!({ "current_day": self.day() })),
-            ScriptRequest::Query { sql } => {
-                self.query_for_script(&sql, left, noted).map(|rows| Value::Object(rows_to_json(&rows)))
-            }
+            ScriptRequest::Query { sql } => self
+                .query_for_script(&sql, left, records_queries)
+                .map(|rows| Value::Object(rows_to_json(&rows))),
         }
     }
 
-    fn query_for_script(&mut self, sql: &str, left: Duration, noted: bool) -> Result<QueryResult, Rejection> {
+    fn query_for_script(
+        &mut self,
+        sql: &str,
+        left: Duration,
+        records_queries: bool,
+    ) -> Result<QueryResult, Rejection> {
         let started = Instant::now();
         let query_limits = self.company().query_limits();
         let limits = QueryLimits { time: query_limits.time.min(left), ..query_limits };
         let ticket = self.new_ticket()?;
         let answer = self.query_with_limits(ticket, sql, limits);
-        if noted {
+        if records_queries {
             self.record_query(sql, answer.as_ref(), started.elapsed(), QuerySource::Script);
         }
         answer

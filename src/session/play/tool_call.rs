@@ -260,7 +260,7 @@ impl Session {
         arguments: &Value,
     ) -> Result<(Arguments, PlannedCall<Answer>), Rejection> {
         let planned = Arguments::parse(tool.spec(), arguments, || self.numbers()).and_then(|given| {
-            let planned = tool.plan(&self.company().tool_view(), &given)?;
+            let planned = tool.plan(&self.company().tool_context(), &given)?;
             Ok((given, planned))
         });
         planned.map_err(|refusal| match self.has_release_2_interface() {

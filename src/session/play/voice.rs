@@ -11,7 +11,7 @@ use novamind_database::ProjectionEntry;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::{
-    FailedAnswer, JudgedPost, ModelTask, VoiceAnswer, WordedPost, WordedPosts,
+    FailedModelRequest, JudgedPost, ModelTask, RewordedPost, RewordedPosts, VoiceAnswer,
 };
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::PublicPost;
@@ -109,7 +109,7 @@ impl Session {
     }
 
     fn record_failure(&mut self, model_task: ModelTask, problem: String, took_ms: f64) {
-        self.record_event(Record::Voice(VoiceAnswer::Failed(FailedAnswer {
+        self.record_event(Record::Voice(VoiceAnswer::Failed(FailedModelRequest {
             asked: model_task,
             problem,
             took_ms,
@@ -134,8 +134,8 @@ impl Session {
         match answer {
             Ok(texts) => {
                 let numbers = newest.iter().map(|post| post.post);
-                let posts = numbers.zip(texts).map(|(post, text)| WordedPost { post, text }).collect();
-                let worded = WordedPosts { posts, took_ms };
+                let posts = numbers.zip(texts).map(|(post, text)| RewordedPost { post, text }).collect();
+                let worded = RewordedPosts { posts, took_ms };
                 let record = Record::Voice(VoiceAnswer::Words(worded.clone()));
                 if self.append(&record, Durability::Synced).is_ok() {
                     self.apply_rewordings(&worded.posts);
@@ -145,8 +145,8 @@ impl Session {
         }
     }
 
-    fn apply_rewordings(&mut self, posts: &[WordedPost]) {
-        for WordedPost { post, text } in posts {
+    fn apply_rewordings(&mut self, posts: &[RewordedPost]) {
+        for RewordedPost { post, text } in posts {
             self.simulation.feed.replace_text(*post, text);
         }
         let rewordings =

@@ -16,7 +16,7 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::stamp::StudyStamp;
-use novamind_record::trajectory::record::{ModelTask, Via, VoiceAnswer, WordedPost, WordedPosts};
+use novamind_record::trajectory::record::{ModelTask, RewordedPost, RewordedPosts, Via, VoiceAnswer};
 use novamind_record::trajectory::{Record, Trajectory};
 
 const POST: &str = "We doubled the quota of plan B today and cut its price by 20%.";
@@ -250,8 +250,8 @@ fn missing_key_is_rejected_and_other_model_is_not_connected() {
 #[test]
 fn replay_rejects_impossible_voice_lines() {
     let words = |post, text: &str| {
-        let posts = vec![WordedPost { post, text: text.to_owned() }];
-        VoiceAnswer::Words(WordedPosts { posts, took_ms: 1.0 })
+        let posts = vec![RewordedPost { post, text: text.to_owned() }];
+        VoiceAnswer::Words(RewordedPosts { posts, took_ms: 1.0 })
     };
     let mut plain = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
     assert!(plain.replay_voice(&words(1, "Hello.")).is_err(), "it has no model");

@@ -45,7 +45,7 @@ pub fn rebuild_database(
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
     session.database().wait_until_written()?;
     let place = SnapshotTarget::new(folder, key);
-    if may_store_end(folder, &manifest, &trajectory, key) {
+    if may_store_final_snapshot(folder, &manifest, &trajectory, key) {
         session.write_snapshot(place, true);
     } else if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
         // The database file has changed: update its digest in the snapshot.
@@ -56,7 +56,12 @@ pub fn rebuild_database(
 
 /// Returns whether a read-only command may store a snapshot of the end of a run. The run must have ended and its
 /// hidden state may be shown. An existing snapshot must not be sealed with the secret of a study.
-fn may_store_end(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
+fn may_store_final_snapshot(
+    folder: &Path,
+    manifest: &Manifest,
+    trajectory: &Trajectory,
+    key: &SealKey,
+) -> bool {
     let ended = trajectory.end_line().and_then(|line| match &line.record {
         Record::End(end) => Some(end.reason),
         _ => None,
@@ -91,7 +96,7 @@ impl Session {
     /// The same errors as [`Session::open`].
     pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
         let keeping = StoreFunctions {
-            may_store: may_store_end,
+            may_store: may_store_final_snapshot,
             store_database: |folder, key| rebuild_database(folder, key, &mut |_, _| {}).is_ok(),
             store_snapshot: Session::store_final_snapshot,
         };

@@ -101,7 +101,7 @@ fn count_valid_lines(
             reached = at + 1;
         }
     }
-    let summed = lines.first().is_some_and(Line::declares_sums);
+    let summed = lines.first().is_some_and(Line::declares_checksums);
     // A checksum validates a line, unless the hash in the next line differs. Lines without checksums are validated
     // only by a reproduced state.
     let doubtful = problem.as_ref().is_some_and(|(_, words)| !summed || words == CHAIN_BROKEN_MESSAGE);

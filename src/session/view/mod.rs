@@ -64,12 +64,12 @@ impl<'a> CompanyView<'a> {
         if tool.spec().kind != ToolKind::Read {
             return None;
         }
-        let planned = tool.plan(&self.tool_view(), args).ok()?;
+        let planned = tool.plan(&self.tool_context(), args).ok()?;
         let resolved = self.simulation.resolve(planned.command);
         planned.reply.into_answer_without_script(&resolved)
     }
 
-    pub(crate) fn tool_view(&self) -> ToolContext<'a> {
+    pub(crate) fn tool_context(&self) -> ToolContext<'a> {
         ToolContext::new(&self.simulation.world, &self.simulation.params)
             .with_session(self.surroundings)
             .with_posts(&self.simulation.feed.posts)

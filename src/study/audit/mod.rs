@@ -164,7 +164,7 @@ impl RunAudit<'_> {
         self.run.manifest.as_ref().and_then(|manifest| manifest.participant.clone())
     }
 
-    fn finding(&self, kind: FindingKind, line: Option<u64>, at: &str, words: String) -> AuditFinding {
+    fn new_finding(&self, kind: FindingKind, line: Option<u64>, at: &str, words: String) -> AuditFinding {
         let (run, participant) = (self.run.id.clone(), self.participant());
         AuditFinding { kind, run, participant, line, at: at.to_owned(), words }
     }
@@ -178,14 +178,14 @@ impl RunAudit<'_> {
         let mut found = self.check_unsaved_lines();
         match &self.run.trajectory {
             Err(RunError::Damaged { line, problem, .. }) => {
-                found.push(self.finding(FindingKind::Damaged, Some(*line as u64), "", problem.clone()));
+                found.push(self.new_finding(FindingKind::Damaged, Some(*line as u64), "", problem.clone()));
             }
             Err(problem) => {
-                found.push(self.finding(FindingKind::Missing, None, "", problem.to_string()));
+                found.push(self.new_finding(FindingKind::Missing, None, "", problem.to_string()));
             }
             Ok(trajectory) => {
                 let afterwards = read_afterwards(&self.run.folder, trajectory);
-                let damaged = |problem| self.finding(FindingKind::Damaged, None, "", problem);
+                let damaged = |problem| self.new_finding(FindingKind::Damaged, None, "", problem);
                 found.extend(afterwards.as_ref().err().map(|problem| damaged(problem.to_string())));
                 let afterwards = afterwards.map_or(Vec::new(), |after| after.lines);
                 found.extend(self.check_against_database(trajectory));
@@ -207,7 +207,7 @@ impl RunAudit<'_> {
         let words = |name: String| {
             format!("{name}: the trajectory was moved, removed or replaced while the run was played")
         };
-        unsaved.map(|name| self.finding(FindingKind::Unsaved, None, "", words(name))).collect()
+        unsaved.map(|name| self.new_finding(FindingKind::Unsaved, None, "", words(name))).collect()
     }
 
     /// Returns a finding if the re-simulation of the run does not reproduce the recorded states.
@@ -217,7 +217,7 @@ impl RunAudit<'_> {
             RunError::Damaged { line, .. } => Some(*line as u64),
             _ => None,
         };
-        Some(self.finding(FindingKind::NotReached, line, "", problem.to_string()))
+        Some(self.new_finding(FindingKind::NotReached, line, "", problem.to_string()))
     }
 
     /// Returns a finding if the database or the snapshot contains lines that are missing in the trajectory.
@@ -227,9 +227,9 @@ impl RunAudit<'_> {
         let integrity = Integrity::read(&self.run.folder, manifest, &self.study.seal_key);
         match integrity.check(&path, trajectory).err()? {
             RunError::Damaged { line, problem, .. } => {
-                Some(self.finding(FindingKind::Cut, Some(line as u64), "", problem))
+                Some(self.new_finding(FindingKind::Cut, Some(line as u64), "", problem))
             }
-            other => Some(self.finding(FindingKind::Cut, None, "", other.to_string())),
+            other => Some(self.new_finding(FindingKind::Cut, None, "", other.to_string())),
         }
     }
 
@@ -238,7 +238,7 @@ impl RunAudit<'_> {
         let manifests = self.run.manifest.iter();
         manifests
             .flat_map(|manifest| manifest_differences(&self.run.folder, manifest))
-            .map(|words| self.finding(FindingKind::Manifest, Some(1), "", words))
+            .map(|words| self.new_finding(FindingKind::Manifest, Some(1), "", words))
             .collect()
     }
 
@@ -285,7 +285,7 @@ impl RunAudit<'_> {
         }
         wrong
             .into_iter()
-            .map(|words| self.finding(FindingKind::Assignment, Some(1), &first.at, words))
+            .map(|words| self.new_finding(FindingKind::Assignment, Some(1), &first.at, words))
             .collect()
     }
 
@@ -293,7 +293,7 @@ impl RunAudit<'_> {
         // Lines after the end of the run are included, because they contain the line that closes the run.
         let changes = clock::clock_changes(trajectory.lines.iter().chain(afterwards)).into_iter();
         changes
-            .map(|(line, words)| self.finding(FindingKind::Clock, Some(line.seq + 1), &line.at, words))
+            .map(|(line, words)| self.new_finding(FindingKind::Clock, Some(line.seq + 1), &line.at, words))
             .collect()
     }
 
@@ -314,7 +314,7 @@ impl RunAudit<'_> {
                     "run {} of this participant is older, and the first line does not list it",
                     other.id
                 );
-                self.finding(FindingKind::EarlierRuns, Some(1), &manifest.created, words)
+                self.new_finding(FindingKind::EarlierRuns, Some(1), &manifest.created, words)
             })
             .collect()
     }

@@ -3,7 +3,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::super::arguments::{Arguments, SentNumber, parse_sent_per_group, to_json};
-use super::super::marketing::BUDGET;
+use super::super::marketing::BUDGET_RULE;
 use super::super::{
     Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
@@ -73,7 +73,7 @@ impl Tool for SetTargetedDevSpend {
         arguments: &Arguments,
     ) -> Result<IndexMap<Group, SentNumber>, Rejection> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
-        parse_sent_per_group(given, "targeted_spend", BUDGET, view)
+        parse_sent_per_group(given, "targeted_spend", BUDGET_RULE, view)
     }
 
     fn plan(

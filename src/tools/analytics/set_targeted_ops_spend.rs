@@ -6,7 +6,7 @@ use super::super::arguments::{
     Arguments, parse_per_customer, parse_per_group, parse_per_group_plan, parse_per_plan, replace_if_given,
     to_json,
 };
-use super::super::marketing::BUDGET;
+use super::super::marketing::BUDGET_RULE;
 use super::super::{
     Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec, limits,
@@ -156,14 +156,14 @@ impl Tool for SetTargetedOpsSpend {
         };
         Ok(SupportScopes {
             by_group: arguments
-                .parse_argument(field, |value, name| parse_per_group(value, name, BUDGET, view))?,
+                .parse_argument(field, |value, name| parse_per_group(value, name, BUDGET_RULE, view))?,
             by_plan: arguments
-                .parse_argument("by_plan", |value, name| parse_per_plan(value, name, BUDGET))?,
+                .parse_argument("by_plan", |value, name| parse_per_plan(value, name, BUDGET_RULE))?,
             by_group_plan: arguments.parse_argument("by_group_plan", |value, name| {
-                parse_per_group_plan(value, name, BUDGET, view)
+                parse_per_group_plan(value, name, BUDGET_RULE, view)
             })?,
             by_customer: arguments.parse_argument("by_customer", |value, name| {
-                parse_per_customer(value, name, BUDGET).and_then(|budgets| {
+                parse_per_customer(value, name, BUDGET_RULE).and_then(|budgets| {
                     if is_release_2(view) {
                         check_customers(&budgets, name)?;
                     }

@@ -100,7 +100,7 @@ impl Tool for SendEnterpriseDeal {
         let mut proposals = Vec::new();
         let open = view.world().enterprise.open_threads();
         let mut send = |deal: Deal| {
-            let proposal = to_proposal(deal, view, &open)?;
+            let proposal = to_offer_draft(deal, view, &open)?;
             let customer = proposal.customer;
             proposals.push(proposal);
             Ok(customer)
@@ -128,7 +128,7 @@ fn parse_deal(element: &Value, path: &str, view: &ToolContext<'_>) -> Result<Dea
 }
 
 /// Converts a deal to an offer of the simulator. The customer must be an enterprise with an open thread or a subscription.
-fn to_proposal(
+fn to_offer_draft(
     deal: Deal,
     view: &ToolContext<'_>,
     open: &OpenThreads<'_>,

@@ -11,7 +11,7 @@ use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 /// The tool `set_capacity_tier`.
 pub struct SetCapacityTier;
 
-const TIERS: NumberRange = NumberRange::between(0.0, 7.0);
+const TIER_RANGE: NumberRange = NumberRange::between(0.0, 7.0);
 
 static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetCapacityTier,
@@ -22,7 +22,7 @@ static SPEC: ToolSpec = ToolSpec {
     arguments: &[Argument {
         name: "tier",
         alias: Some("capacity_tier"),
-        kind: ArgumentKind::Integer(TIERS),
+        kind: ArgumentKind::Integer(TIER_RANGE),
         required: true,
         unit: "tier",
         description: "capacity tier 0 to 7; any jump is allowed and free",
@@ -68,11 +68,11 @@ impl Tool for SetCapacityTier {
 
     fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
         let given = arguments.get("tier").or_else(|| arguments.get("capacity_tier")).unwrap_or(&Value::Null);
-        TIERS.parse_integer(given).ok_or_else(|| {
+        TIER_RANGE.parse_integer(given).ok_or_else(|| {
             Rejection::for_field(
                 "tier",
                 "capacity_out_of_range",
-                format!("the capacity tier must be {}", TIERS.describe()),
+                format!("the capacity tier must be {}", TIER_RANGE.describe()),
             )
         })
     }

@@ -16,7 +16,7 @@ use super::arguments::AmountRule;
 use super::spec::NumberRange;
 
 /// Requirement for the amounts of daily budgets.
-pub(super) const BUDGET: AmountRule = AmountRule {
+pub(super) const BUDGET_RULE: AmountRule = AmountRule {
     code: "amount_invalid",
     requirement: "must be a number of at least zero, in dollars a day",
     range: NumberRange::AT_LEAST_ZERO,

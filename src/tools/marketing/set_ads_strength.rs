@@ -13,7 +13,7 @@ use novamind_world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, Set
 /// The tool `set_ads_strength`.
 pub struct SetAdsStrength;
 
-const STRENGTH: AmountRule = AmountRule {
+const STRENGTH_RULE: AmountRule = AmountRule {
     code: "strength_out_of_range",
     requirement: "must be an ads strength between 0 and 1",
     range: NumberRange::SHARE,
@@ -101,10 +101,12 @@ impl Tool for SetAdsStrength {
                     Rejection::for_field(name, "global_strength_out_of_range", message)
                 })
             })?,
-            by_group: arguments
-                .parse_argument("by_group", |value, name| parse_per_group(value, name, STRENGTH, view))?,
-            by_customer: arguments
-                .parse_argument("by_customer", |value, name| parse_per_customer(value, name, STRENGTH))?,
+            by_group: arguments.parse_argument("by_group", |value, name| {
+                parse_per_group(value, name, STRENGTH_RULE, view)
+            })?,
+            by_customer: arguments.parse_argument("by_customer", |value, name| {
+                parse_per_customer(value, name, STRENGTH_RULE)
+            })?,
         })
     }
 

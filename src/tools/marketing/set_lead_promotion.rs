@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 use super::super::arguments::{
     Arguments, parse_per_channel, parse_per_channel_group, parse_per_group, replace_if_given, to_json,
 };
-use super::super::pricing::{DISCOUNT, parse_global_discount};
+use super::super::pricing::{DISCOUNT_RULE, parse_global_discount};
 use super::super::{
     Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
@@ -110,12 +110,13 @@ impl Tool for SetLeadPromotion {
     ) -> Result<LeadDiscounts, Rejection> {
         Ok(LeadDiscounts {
             global: arguments.parse_argument("global_promotion", parse_global_discount)?,
-            by_group: arguments
-                .parse_argument("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
+            by_group: arguments.parse_argument("by_group", |value, name| {
+                parse_per_group(value, name, DISCOUNT_RULE, view)
+            })?,
             by_channel: arguments
-                .parse_argument("by_channel", |value, name| parse_per_channel(value, name, DISCOUNT))?,
+                .parse_argument("by_channel", |value, name| parse_per_channel(value, name, DISCOUNT_RULE))?,
             by_channel_group: arguments.parse_argument("by_channel_group", |value, name| {
-                parse_per_channel_group(value, name, DISCOUNT, view)
+                parse_per_channel_group(value, name, DISCOUNT_RULE, view)
             })?,
         })
     }

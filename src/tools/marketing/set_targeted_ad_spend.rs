@@ -9,7 +9,7 @@ use super::super::{
     Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::BUDGET;
+use super::BUDGET_RULE;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
@@ -117,7 +117,12 @@ impl Tool for SetTargetedAdSpend {
         arguments: &Arguments,
     ) -> Result<Self::Args, Rejection> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
-        parse_sent_per_channel_group(&*channels_as_outer_keys(given, view)?, "targeted_spend", BUDGET, view)
+        parse_sent_per_channel_group(
+            &*channels_as_outer_keys(given, view)?,
+            "targeted_spend",
+            BUDGET_RULE,
+            view,
+        )
     }
 
     fn plan(&self, _: &ToolContext<'_>, sent: Self::Args) -> Result<PlannedCall<AdBudgets>, Rejection> {

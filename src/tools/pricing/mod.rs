@@ -29,7 +29,7 @@ pub struct PlanUpdate<T: Serialize> {
 }
 
 /// Requirement for the discounts of a scope.
-pub(super) const DISCOUNT: AmountRule = AmountRule {
+pub(super) const DISCOUNT_RULE: AmountRule = AmountRule {
     code: "promotion_negative",
     requirement: "must be a number of at least zero, in dollars a month",
     range: NumberRange::AT_LEAST_ZERO,

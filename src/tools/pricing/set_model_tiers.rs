@@ -13,10 +13,10 @@ use novamind_world::settings::{Settings, SettingsChange};
 /// The tool `set_model_tiers`.
 pub struct SetModelTiers;
 
-const TIERS: NumberRange = NumberRange::between(1.0, 5.0);
+const TIER_RANGE: NumberRange = NumberRange::between(1.0, 5.0);
 
 const fn tier_argument(name: &'static str, doc: &'static str) -> Argument {
-    let kind = ArgumentKind::Integer(TIERS);
+    let kind = ArgumentKind::Integer(TIER_RANGE);
     Argument { name, alias: None, kind, required: false, unit: "tier", description: doc }
 }
 
@@ -64,8 +64,8 @@ impl Tool for SetModelTiers {
         arguments: &Arguments,
     ) -> Result<IndexMap<Plan, u8>, Rejection> {
         parse_per_plan_arguments(arguments, |plan, value| {
-            TIERS.parse_integer(value).ok_or_else(|| {
-                let message = format!("model tier of plan {plan} must be {}", TIERS.describe());
+            TIER_RANGE.parse_integer(value).ok_or_else(|| {
+                let message = format!("model tier of plan {plan} must be {}", TIER_RANGE.describe());
                 Rejection::for_field(plan.id(), "tier_out_of_range", message)
             })
         })

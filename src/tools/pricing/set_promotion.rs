@@ -8,7 +8,7 @@ use super::super::{
     Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
     ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::{DISCOUNT, parse_global_discount};
+use super::{DISCOUNT_RULE, parse_global_discount};
 use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
@@ -107,12 +107,14 @@ impl Tool for SetPromotion {
     fn parse_arguments(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Discounts, Rejection> {
         Ok(Discounts {
             global: arguments.parse_argument("global_promotion", parse_global_discount)?,
-            by_group: arguments
-                .parse_argument("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
-            by_customer: arguments
-                .parse_argument("by_customer", |value, name| parse_per_customer(value, name, DISCOUNT))?,
+            by_group: arguments.parse_argument("by_group", |value, name| {
+                parse_per_group(value, name, DISCOUNT_RULE, view)
+            })?,
+            by_customer: arguments.parse_argument("by_customer", |value, name| {
+                parse_per_customer(value, name, DISCOUNT_RULE)
+            })?,
             by_group_plan: arguments.parse_argument("by_group_plan", |value, name| {
-                parse_per_group_plan(value, name, DISCOUNT, view)
+                parse_per_group_plan(value, name, DISCOUNT_RULE, view)
             })?,
         })
     }

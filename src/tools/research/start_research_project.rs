@@ -14,7 +14,7 @@ use novamind_world::events::Project;
 /// The tool `start_research_project`.
 pub struct StartResearchProject;
 
-const TIERS: NumberRange = NumberRange::between(1.0, 20.0);
+const TIER_RANGE: NumberRange = NumberRange::between(1.0, 20.0);
 
 static SPEC: ToolSpec = ToolSpec {
     id: ToolId::StartResearchProject,
@@ -25,7 +25,7 @@ static SPEC: ToolSpec = ToolSpec {
     arguments: &[Argument {
         name: "tier",
         alias: None,
-        kind: ArgumentKind::Integer(TIERS),
+        kind: ArgumentKind::Integer(TIER_RANGE),
         required: true,
         unit: "tier",
         description: "R&D tier 1 to 20; list_research_projects shows prices and means",
@@ -89,8 +89,8 @@ impl Tool for StartResearchProject {
 
     fn parse_arguments(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
         let given = arguments.get("tier").unwrap_or(&Value::Null);
-        TIERS.parse_integer(given).ok_or_else(|| {
-            let message = format!("R&D tier {given} does not exist; the tiers are {}", TIERS.describe());
+        TIER_RANGE.parse_integer(given).ok_or_else(|| {
+            let message = format!("R&D tier {given} does not exist; the tiers are {}", TIER_RANGE.describe());
             Rejection::for_field("tier", "rd_tier_unknown", message)
         })
     }

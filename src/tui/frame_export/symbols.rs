@@ -10,9 +10,9 @@ const DOT_DIAMETER: f64 = 2.3;
 
 /// Returns the SVG path of a character in a cell, or `None` for characters that are written as text.
 pub fn symbol_path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> Option<String> {
-    let block = |from: f64, to: f64| rectangle(left, top + height * from, width, height * (to - from));
+    let block = |from: f64, to: f64| rectangle_path(left, top + height * from, width, height * (to - from));
     Some(match sign {
-        '\u{2801}'..='\u{28ff}' => braille(sign, left, top, (width, height)),
+        '\u{2801}'..='\u{28ff}' => braille_path(sign, left, top, (width, height)),
         '▁'..='█' => block(1.0 - f64::from(sign as u32 - 0x2580) / 8.0, 1.0),
         '▀' => block(0.0, 0.5),
         '░' | '▒' | '▓' => shade_path(sign, left, top, (width, height)),
@@ -24,7 +24,7 @@ pub fn symbol_path(sign: char, left: f64, top: f64, (width, height): (f64, f64))
     })
 }
 
-fn rectangle(left: f64, top: f64, width: f64, height: f64) -> String {
+fn rectangle_path(left: f64, top: f64, width: f64, height: f64) -> String {
     let mut path = String::new();
     // Writing to a string cannot fail.
     let _ = write!(path, "M{left:.1} {top:.1}h{width:.1}v{height:.1}h-{width:.1}z");
@@ -33,14 +33,14 @@ fn rectangle(left: f64, top: f64, width: f64, height: f64) -> String {
 
 /// Returns the path of a braille character, which has two columns of four dots. The lower six bits are the first three
 /// rows by column, and the upper two bits are the last row.
-fn braille(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
+fn braille_path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> String {
     let bits = sign as u32 - 0x2800;
     let places = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3)];
     let dot = |(bit, (column, row)): (usize, &(u32, u32))| {
         (bits >> bit & 1 == 1).then(|| {
             let x = left + width * (0.25 + 0.5 * f64::from(*column)) - DOT_DIAMETER / 2.0;
             let y = top + height * (0.125 + 0.25 * f64::from(*row)) - DOT_DIAMETER / 2.0;
-            rectangle(x, y, DOT_DIAMETER, DOT_DIAMETER)
+            rectangle_path(x, y, DOT_DIAMETER, DOT_DIAMETER)
         })
     };
     places.iter().enumerate().filter_map(dot).collect()
@@ -55,7 +55,9 @@ fn shade_path(sign: char, left: f64, top: f64, (width, height): (f64, f64)) -> S
     };
     const STRIPES: u32 = 6;
     let step = height / f64::from(STRIPES);
-    (0..STRIPES).map(|stripe| rectangle(left, top + f64::from(stripe) * step, width, step * share)).collect()
+    (0..STRIPES)
+        .map(|stripe| rectangle_path(left, top + f64::from(stripe) * step, width, step * share))
+        .collect()
 }
 
 fn thin_variant(sign: char) -> Option<char> {
@@ -70,10 +72,10 @@ fn line_path(sign: char, line: f64, left: f64, top: f64, (width, height): (f64, 
     let (x, y) = (left + (width - line) / 2.0, top + (height - line) / 2.0);
     let (half_width, half_height) = ((width + line) / 2.0, (height + line) / 2.0);
     let lines = [
-        (to_left, rectangle(left, y, half_width, line)),
-        (to_right, rectangle(x, y, half_width, line)),
-        (up, rectangle(x, top, line, half_height)),
-        (down, rectangle(x, y, line, half_height)),
+        (to_left, rectangle_path(left, y, half_width, line)),
+        (to_right, rectangle_path(x, y, half_width, line)),
+        (up, rectangle_path(x, top, line, half_height)),
+        (down, rectangle_path(x, y, line, half_height)),
     ];
     lines.into_iter().filter(|(there, _)| *there).map(|(_, line)| line).collect()
 }

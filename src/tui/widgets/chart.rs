@@ -155,9 +155,10 @@ impl Plot<'_> {
             return;
         }
         let band = || self.band.iter().flat_map(|band| &band.bounds);
-        let x = bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.required_values);
+        let x =
+            axis_bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.required_values);
         let ends = band().flat_map(|end| [end.1, end.2]);
-        let y = bounds(points().map(|point| point.1).chain(ends), self.y.required_values);
+        let y = axis_bounds(points().map(|point| point.1).chain(ends), self.y.required_values);
         let rows = ((area.height - 2) / 4).clamp(2, 6) as usize;
         let y = widen_to_ticks(y, rows);
         let marks = ticks(y, rows + 1);
@@ -307,7 +308,7 @@ fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     rows
 }
 
-fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
+fn axis_bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
     let all = values.chain(holds.iter().copied());
     let (least, most) = all
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));

@@ -123,7 +123,7 @@ mod tests {
                     (0..*length as u32).map(|at| (at.wrapping_mul(seed) >> 7) as u8).collect()
                 })
                 .collect();
-            let stretch = |text| HashSegment::new(Vec::len(text), move |hasher| hasher.bytes(text));
+            let stretch = |text| HashSegment::new(Vec::len(text), move |hasher| hasher.append_bytes(text));
             let stretches: Vec<HashSegment<'_>> = texts.iter().map(stretch).collect();
             assert_eq!(hash_segments(&stretches), blake3::hash(&texts.concat()), "{count} stretches");
         }
@@ -133,7 +133,7 @@ mod tests {
     fn hash_segments_handles_complete_subtrees() {
         for subtrees in 1..=9 {
             let text = vec![7u8; subtrees * SUBTREE_BYTES];
-            let stretches = [HashSegment::new(text.len(), |hasher| hasher.bytes(&text))];
+            let stretches = [HashSegment::new(text.len(), |hasher| hasher.append_bytes(&text))];
             assert_eq!(hash_segments(&stretches), blake3::hash(&text), "{subtrees} subtrees");
         }
     }

@@ -221,7 +221,7 @@ impl Customers {
         (*next_customer, *next_subscription).feed(&mut rest);
         numbers.feed(&mut rest);
         let rest = rest.into_bytes();
-        stretches.push(HashSegment::new(rest.len(), move |hasher| hasher.bytes(&rest)));
+        stretches.push(HashSegment::new(rest.len(), move |hasher| hasher.append_bytes(&rest)));
         hash_segments(&stretches)
     }
 

@@ -15,7 +15,7 @@ pub struct PersonaPicks(pub [u8; 7]);
 
 impl Canonical for PersonaPicks {
     fn feed(&self, hasher: &mut CanonicalHasher) {
-        hasher.bytes(&self.0);
+        hasher.append_bytes(&self.0);
     }
 }
 

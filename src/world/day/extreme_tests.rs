@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use toml::{Table, Value};
 
 use super::limits::{ExceededLimit, exceeded_limit_on_next_day};
-use super::wiring_tests::busy_settings;
+use super::step_interaction_tests::busy_settings;
 use super::*;
 use crate::params::keys;
 

@@ -34,7 +34,7 @@ use super::customers::Customers;
 use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
 use super::product::Product;
 use crate::customers::drift::DriftTotals;
-use crate::reputation::{OnReputationWrite, ReputationBook};
+use crate::reputation::{OnReputationWrite, Reputations};
 
 /// State of the negotiations with enterprises.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,7 +97,7 @@ impl Enterprise {
     pub fn step(
         &mut self,
         customers: &mut Customers,
-        reputation: &mut ReputationBook,
+        reputation: &mut Reputations,
         context: &NegotiationContext<'_>,
         facts: &mut Facts,
         on_write: &mut OnReputationWrite<'_>,
@@ -238,7 +238,7 @@ struct ActiveThread {
 struct NegotiationStep<'a> {
     enterprise: &'a mut Enterprise,
     customers: &'a mut Customers,
-    reputation: &'a mut ReputationBook,
+    reputation: &'a mut Reputations,
     /// Function that is called after each reputation change.
     on_reputation_write: &'a mut OnReputationWrite<'a>,
     day: &'a DayContext<'a>,

@@ -14,7 +14,7 @@ use crate::morning::tests::morning;
 use crate::params::Params;
 use crate::product::Product;
 use crate::random::Streams;
-use crate::reputation::ReputationBook;
+use crate::reputation::Reputations;
 use crate::settings::Settings;
 use crate::test_kit::{plain_enterprise, subscriber};
 
@@ -28,7 +28,7 @@ pub(super) struct NegotiationKit {
     pub drift: DriftTotals,
     pub group: Group,
     pub customers: Customers,
-    pub reputation: ReputationBook,
+    pub reputation: Reputations,
     pub enterprise: Enterprise,
     pub facts: Facts,
 }
@@ -46,7 +46,7 @@ impl NegotiationKit {
             drift: DriftTotals::default(),
             group: Group::parse("E1").expect("a group"),
             customers: Customers::default(),
-            reputation: ReputationBook::initial(&params),
+            reputation: Reputations::initial(&params),
             enterprise: Enterprise::default(),
             facts: Facts::default(),
             params,

@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn first_campaign_yields_leads_times_calendar() {
+    fn first_campaign_leads_are_yield_times_calendar_factor() {
         let params = Params::bundled();
         let market = Market::initial(&params);
         let subscribers = ByGroup::default();

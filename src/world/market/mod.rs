@@ -24,7 +24,7 @@ use super::settings::Settings;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Market {
     /// Reputation of the company in each group.
-    pub reputation: reputation::ReputationBook,
+    pub reputation: reputation::Reputations,
     /// Accumulated drift of expectations and budgets.
     pub drift: drift::DriftTotals,
     /// Channel yields: leads per 1,000 dollars of advertising, by channel and group.
@@ -67,7 +67,7 @@ impl Market {
             }
         };
         Market {
-            reputation: reputation::ReputationBook::initial(params),
+            reputation: reputation::Reputations::initial(params),
             drift: drift::DriftTotals::default(),
             yields: params.starting_yields(),
             economy: economy::Economy::initial(params),

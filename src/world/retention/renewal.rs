@@ -6,7 +6,7 @@ use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, Term
 use crate::identifiers::{ByGroup, Group, Plan};
 use crate::params::{DriftCounted, InvoluntaryChurn, Params};
 use crate::random::{Part, Streams, Word, bernoulli_from_word};
-use crate::reputation::{OnReputationWrite, ReputationBook, ReputationCause, cancel_damage};
+use crate::reputation::{OnReputationWrite, ReputationCause, Reputations, cancel_damage};
 use crate::retention::due_today;
 use crate::retention::plan_comparison::{compare_plans, drifted_curve};
 use crate::settings::Settings;
@@ -98,7 +98,7 @@ pub struct BlockDecisions {
 /// plan is applied in the order of the individuals. Failed payments do not damage the reputation.
 pub fn record_decisions(
     by_block: Vec<BlockDecisions>,
-    reputation: &mut ReputationBook,
+    reputation: &mut Reputations,
     params: &Params,
     facts: &mut Facts,
     on_write: &mut OnReputationWrite<'_>,
@@ -430,7 +430,7 @@ mod tests {
         for row in [picky, subscriber(2), Subscriber { billing_day: 9, ..subscriber(3) }] {
             customers.groups[group()].activate(row);
         }
-        let (mut reputation, mut facts) = (ReputationBook::initial(&Params::bundled()), Facts::default());
+        let (mut reputation, mut facts) = (Reputations::initial(&Params::bundled()), Facts::default());
         let renewals = with_renewal_context(&day, &settings, 1.0, |judgement| {
             let decided =
                 customers.sweep(|group, number, block| decide_block(group, number, block, judgement));

@@ -47,7 +47,7 @@ impl SupportPool {
     }
 
     /// Returns the group in the pool's definition, or `None` if no group defines the pool.
-    fn only_group(self) -> Option<Group> {
+    fn defining_group(self) -> Option<Group> {
         match self {
             SupportPool::Group(group) | SupportPool::GroupPlan(group, _) => Some(group),
             _ => None,
@@ -119,7 +119,7 @@ impl ResolutionRound<'_> {
         let mut members: ByGroup<PoolMembers> = ByGroup::default();
         let calls = (0..).zip(&*self.calls);
         for (number, issue_batch) in
-            calls.filter(|(_, batch)| pool.only_group().is_none_or(|group| group == batch.group))
+            calls.filter(|(_, batch)| pool.defining_group().is_none_or(|group| group == batch.group))
         {
             let of_group = &mut members[issue_batch.group];
             if pool.contains_all_issues_of(issue_batch.group) && !issue_batch.solved.contains(&true) {

@@ -9,7 +9,7 @@ use novamind::record::trajectory::record::Activity;
 use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{Access, Session, read_afterwards, verify};
 
-use super::{integer, open_many_markets, query_hidden, run_in};
+use super::{integer, play_until_several_groups_subscribe, query_hidden, run_in};
 use crate::support::company::{advance_week, advance_weeks};
 
 fn inspections(lines: &Trajectory) -> Vec<(String, String, u32)> {
@@ -28,7 +28,7 @@ fn hidden_queries_are_recorded_without_changing_the_state() {
     let mut asked = run_in(folder.path(), Mode::Debug, 60);
     let mut alone = run_in(folder.path(), Mode::Debug, 60);
     for session in [&mut asked, &mut alone] {
-        open_many_markets(session);
+        play_until_several_groups_subscribe(session);
         advance_weeks(session, 2);
     }
     let place = asked.folder().expect("a folder").to_owned();
@@ -69,7 +69,7 @@ fn unfinished_runs_reject_hidden_queries_uniformly() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = run_in(folder.path(), mode, 28);
-        open_many_markets(&mut session);
+        play_until_several_groups_subscribe(&mut session);
         advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
@@ -120,7 +120,7 @@ fn other_connections_report_an_unknown_table() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Debug, Mode::Sandbox] {
         let mut session = run_in(folder.path(), mode, 28);
-        open_many_markets(&mut session);
+        play_until_several_groups_subscribe(&mut session);
         advance_week(&mut session);
         if mode == Mode::Debug {
             // The tables stay unknown to other connections after a query of the x-ray.

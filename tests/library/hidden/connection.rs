@@ -4,14 +4,14 @@ use novamind::database::Cell;
 use novamind::insight::Inspect;
 use novamind::record::mode::Mode;
 
-use super::{integer, open_many_markets, query_hidden, run_in};
+use super::{integer, play_until_several_groups_subscribe, query_hidden, run_in};
 use crate::support::company::{advance_week, advance_weeks};
 
 #[test]
 fn xray_connection_is_read_only_and_discloses_nothing_else() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 28);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     advance_week(&mut session);
     let count = query_hidden(&mut session, "SELECT count(*) FROM hidden.groups");
     for (code, sql) in [
@@ -81,7 +81,7 @@ fn xray_connection_is_read_only_and_discloses_nothing_else() {
 fn stopped_statement_keeps_hidden_tables() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 60);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     advance_weeks(&mut session, 2);
     let interrupt = session.inspect().hidden_query_interrupt().expect("a debug run");
     let ticket = interrupt.issue_ticket();
@@ -98,7 +98,7 @@ fn stopped_statement_keeps_hidden_tables() {
 fn hidden_tables_do_not_block_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 60);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     advance_week(&mut session);
     let mut connection = session.database().open_connection().expect("a connection");
     let limits = session.company().query_limits();

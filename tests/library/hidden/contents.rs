@@ -10,7 +10,7 @@ use novamind::session::{DayReport, OfferResponse, Session};
 use novamind::world::identifiers::{Channel, Group, Plan};
 use novamind::world::market::economy::Dimension;
 
-use super::{cell, integer, make_offers, open_many_markets, query_hidden, run_in, text};
+use super::{cell, integer, make_offers, play_until_several_groups_subscribe, query_hidden, run_in, text};
 use crate::support::company::advance_week;
 
 /// Expected rows by table, which are collected from the simulator after each day.
@@ -108,7 +108,7 @@ fn advance_watched_week(session: &mut Session, watched: &mut WatchedTables) {
 fn hidden_tables_match_the_state_of_each_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 200);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     let mut watched = WatchedTables::default();
     // Queries the tables in several weeks, because each query extends the tables.
     for (week, asks) in (1..=20).zip([true, false, false, true, false, false, false].into_iter().cycle()) {
@@ -185,7 +185,7 @@ const SUBSCRIBERS: &str = "SELECT customer_id, group_id, plan, start_day, satisf
 fn hidden_customers_match_the_requested_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     let mut evenings = BTreeMap::new();
     for _ in 0..5 {
         advance_week(&mut session);
@@ -232,7 +232,7 @@ fn hidden_customers_match_the_requested_day() {
 fn hidden_threads_match_the_customer_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     // Queries the table of leads first, so that the re-simulation is ahead of the stored threads.
     for _ in 0..6 {
         advance_week(&mut session);

@@ -7,7 +7,7 @@ use novamind::database::{Cell, Column, Table, hidden_tables};
 use novamind::insight::Inspect;
 use novamind::record::mode::Mode;
 
-use super::{open_many_markets, run_in};
+use super::{play_until_several_groups_subscribe, run_in};
 use crate::support::company::advance_weeks;
 
 fn tables_as_markdown(tables: &[Table]) -> String {
@@ -46,7 +46,7 @@ fn documented_columns_of_hidden_tables_exist() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 28);
-    open_many_markets(&mut session);
+    play_until_several_groups_subscribe(&mut session);
     advance_weeks(&mut session, 3);
     for table in hidden_tables() {
         let rows = session

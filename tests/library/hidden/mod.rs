@@ -32,7 +32,7 @@ fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
 }
 
 /// Plays until the company has subscribers in several groups, in-app advertising and negotiations.
-fn open_many_markets(session: &mut Session) {
+fn play_until_several_groups_subscribe(session: &mut Session) {
     apply_opening_decisions(session);
     for (tool, arguments) in [
         (

@@ -122,7 +122,7 @@ fn collect_lists_missing_participants() {
 }
 
 #[test]
-fn read_commands_find_listed_runs() {
+fn read_only_commands_find_runs_of_participants() {
     let home = Home::new();
     let mut command = home.program();
     command.args(["--as", "P01", "play", "--plain", "--days", "14"]);

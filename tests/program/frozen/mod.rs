@@ -87,36 +87,36 @@ fn stored_form(text: String) -> String {
 }
 
 #[test]
-fn output_of_descriptive_commands() {
+fn output_of_descriptive_commands_is_unchanged() {
     check_group("catalogue");
 }
 
 #[test]
-fn output_of_run_commands() {
+fn output_of_run_commands_is_unchanged() {
     check_group("runs");
 }
 
 #[test]
-fn output_of_exports_and_imports() {
+fn output_of_exports_and_imports_is_unchanged() {
     check_group("exports");
 }
 
 #[test]
-fn output_of_lab_commands() {
+fn output_of_lab_commands_is_unchanged() {
     check_group("lab");
 }
 
 #[test]
-fn output_of_lessons_classes_and_studies() {
+fn output_of_lessons_classes_and_studies_is_unchanged() {
     check_group("people");
 }
 
 #[test]
-fn output_of_played_runs() {
+fn output_of_played_runs_is_unchanged() {
     check_group("play");
 }
 
 #[test]
-fn output_of_program_interfaces() {
+fn output_of_program_interfaces_is_unchanged() {
     check_group("agents");
 }

@@ -7,7 +7,7 @@ use super::{compare_or_write, report, stored_form};
 use crate::interfaces::{Server, predictions};
 
 #[test]
-fn output_of_http_routes() {
+fn output_of_http_routes_is_unchanged() {
     let mut frozen = FrozenHome::new();
     let run = frozen.id("http").to_owned();
     let server = Server::start(&frozen.home, &["--run", &run]);

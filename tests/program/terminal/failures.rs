@@ -92,7 +92,7 @@ fn screen_is_redrawn_on_request() {
 }
 
 #[test]
-fn farewell_names_the_resume_command() {
+fn exit_message_names_the_resume_command() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--as", "P01", "--new"], (120, 30));
     terminal.wait_for("Action needed");

@@ -6,7 +6,7 @@ use crate::record::folder::configuration::Configuration;
 use novamind_study::{Occasion, Study};
 
 /// Checks the questionnaires, the assignment and the forecasts of the design.
-pub(super) fn design_checks(study: &Study, configuration: &Configuration) -> Vec<CheckItem> {
+pub(super) fn check_design(study: &Study, configuration: &Configuration) -> Vec<CheckItem> {
     let Ok((days, horizons)) = days_and_horizons(study, configuration) else {
         // A separate check reports an invalid scenario.
         return Vec::new();

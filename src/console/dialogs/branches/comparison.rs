@@ -40,7 +40,7 @@ impl ComparisonView {
         let sure = None;
         let mut figures =
             ComparisonView { comparison, futures, days_per_week, figure, selected, confidence_text: sure };
-        figures.resample();
+        figures.update_confidence_text();
         figures
     }
 
@@ -52,7 +52,7 @@ impl ComparisonView {
         self.comparison.figures[self.figure % self.comparison.figures.len()]
     }
 
-    pub(super) fn note(&self) -> String {
+    pub(super) fn figure_label(&self) -> String {
         let (name, percent) =
             (self.shown_figure().name(), if is_share(self.shown_figure()) { ", %" } else { "" });
         format!("{name}{percent}")
@@ -64,15 +64,15 @@ impl ComparisonView {
 
     pub(super) fn select(&mut self, branch: usize) {
         self.selected = branch.min(self.comparison.branches.len().saturating_sub(1));
-        self.resample();
+        self.update_confidence_text();
     }
 
     fn show_figure(&mut self, figure: usize) {
         self.figure = figure % self.comparison.figures.len();
-        self.resample();
+        self.update_confidence_text();
     }
 
-    fn resample(&mut self) {
+    fn update_confidence_text(&mut self) {
         let differs = self
             .comparison
             .branches

@@ -80,7 +80,7 @@ impl DecisionList {
         self.input.is_some()
     }
 
-    pub(super) fn note(&self) -> String {
+    pub(super) fn position_label(&self) -> String {
         format!("alternative {} of {} · ‹ › change week", self.current + 1, self.alternatives.len())
     }
 

@@ -184,8 +184,12 @@ impl Dialog for BranchesPage {
             centered_rect(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
         let week = self.decisions.week();
-        let inside =
-            canvas.draw_pane_frame(dialog_area, &format!("What if, from week {week}"), &self.note(), true);
+        let inside = canvas.draw_pane_frame(
+            dialog_area,
+            &format!("What if, from week {week}"),
+            &self.border_note(),
+            true,
+        );
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let below = self.problem.as_ref().map_or(0, |_| 1).min(inside.height);
         let page = Rect { height: inside.height - below, ..inside };
@@ -207,10 +211,10 @@ impl Dialog for BranchesPage {
 }
 
 impl BranchesPage {
-    fn note(&self) -> String {
+    fn border_note(&self) -> String {
         match &self.page {
-            BranchesView::Comparison(figures) => figures.note(),
-            _ => self.decisions.note(),
+            BranchesView::Comparison(figures) => figures.figure_label(),
+            _ => self.decisions.position_label(),
         }
     }
 }

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line as TextLine;
 
 use crate::action::Action;
-use novamind_report::cost_review::{identical_plan_lines, money_lines};
+use novamind_report::cost_review::{identical_plan_lines, income_and_cost_lines};
 use novamind_report::research::late_project_lines;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
@@ -27,7 +27,7 @@ impl ChangeReview {
 
     /// Draws the visible lines of the review.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany, unsent: &[ToolId]) {
-        let lines = lines(canvas, area.width as usize, company, unsent);
+        let lines = review_lines(canvas, area.width as usize, company, unsent);
         let room = area.height as usize;
         let fits = lines.len() <= room;
         // The last row shows the number of hidden lines.
@@ -48,7 +48,7 @@ impl ChangeReview {
     }
 }
 
-fn lines(
+fn review_lines(
     canvas: &Canvas<'_>,
     width: usize,
     company: &DisplayedCompany,
@@ -58,7 +58,7 @@ fn lines(
     let mut lines: Vec<TextLine<'static>> = Vec::new();
     let head = |text: &str, canvas: &Canvas<'_>| TextLine::from(canvas.span(text.to_owned(), Role::Header));
     lines.push(head("Money", canvas));
-    let money = money_lines(seen).into_iter().map(|line| format!("  {line}"));
+    let money = income_and_cost_lines(seen).into_iter().map(|line| format!("  {line}"));
     let money = money.flat_map(|line| wrap(&line, width));
     lines.extend(money.map(|line| TextLine::from(canvas.span(line, Role::Text))));
     lines.push(TextLine::default());

@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::symbols::Marker;
 
-use super::model::{CategoryAmounts, WeeklyLedger, CATEGORIES, CATEGORY_COUNT, format_money, sum_side};
+use super::model::{CategoryAmounts, WeeklyLedger, CATEGORIES, CATEGORY_COUNT, format_money, income_or_cost_total};
 use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
@@ -129,7 +129,7 @@ struct BarScale {
 impl BarScale {
     fn for_weeks(weeks: &[(u32, CategoryAmounts)], height: u16) -> BarScale {
         let most =
-            |income: bool| weeks.iter().map(|(_, amounts)| sum_side(amounts, income).abs()).fold(0.0, f64::max);
+            |income: bool| weeks.iter().map(|(_, amounts)| income_or_cost_total(amounts, income).abs()).fold(0.0, f64::max);
         let (income, costs) = (most(true), most(false));
         let rows = height.saturating_sub(1);
         let whole = income + costs;

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{CategoryAmounts, WeeklyLedger, CATEGORIES, LedgerSubject, days_of_week, format_money, sum_side};
+use super::model::{CategoryAmounts, WeeklyLedger, CATEGORIES, LedgerSubject, days_of_week, format_money, income_or_cost_total};
 use super::{Cash, SelectedSubject, ledger_rows};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
@@ -123,7 +123,7 @@ fn ledger_row(subject: &LedgerSubject, all: &[CategoryAmounts; 4], week: u32) ->
         change if (change > 0.0) == income => Role::Good,
         _ => Role::Bad,
     };
-    let whole = sum_side(&all[0], income).abs();
+    let whole = income_or_cost_total(&all[0], income).abs();
     let share = if *subject == LedgerSubject::Net || whole <= 0.0 { None } else { Some(now.abs() / whole) };
     let amount = |value: f64| TableCell::from_number(value, if value == 0.0 { "–".to_owned() } else { format_money(value) });
     let moved = if week < 2 { "–".to_owned() } else { format_change(change, &compact_number(change.abs())) };

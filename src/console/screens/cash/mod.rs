@@ -138,7 +138,7 @@ fn week_keys(context: &ScreenContext<'_>) -> String {
 }
 
 impl ScreenState for Cash {
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.selected_week.is_some())
     }
 

@@ -123,7 +123,7 @@ fn category_amounts(booked: &CategoryTotals) -> CategoryAmounts {
 }
 
 /// Returns the sum of all income categories or of all cost categories.
-pub fn sum_side(amounts: &CategoryAmounts, income: bool) -> f64 {
+pub fn income_or_cost_total(amounts: &CategoryAmounts, income: bool) -> f64 {
     let side_amounts = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.is_income == income);
     side_amounts.map(|(amount, _)| amount).sum()
 }
@@ -260,8 +260,8 @@ impl LedgerSubject {
     pub fn amount(self, amounts: &CategoryAmounts) -> f64 {
         match self {
             LedgerSubject::Category(at) => amounts[at],
-            LedgerSubject::Income => sum_side(amounts, true),
-            LedgerSubject::Costs => sum_side(amounts, false),
+            LedgerSubject::Income => income_or_cost_total(amounts, true),
+            LedgerSubject::Costs => income_or_cost_total(amounts, false),
             LedgerSubject::Net => amounts.iter().sum(),
         }
     }

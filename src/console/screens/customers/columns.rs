@@ -190,7 +190,7 @@ pub fn figure(group: Group, column: usize, company: &DisplayedCompany) -> Option
         }
         _ => format!("{group}: {name}"),
     };
-    let figure = Figure { title, term, sql: statement(what, group, week, company.observation.day), week_quantity: None };
+    let figure = Figure { title, term, sql: source_rows_query(what, group, week, company.observation.day), week_quantity: None };
     Some(figure.with_week_quantity(week_quantity(what, group), week))
 }
 
@@ -245,7 +245,7 @@ pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
     }
 }
 
-fn statement(what: GroupColumn, group: Group, week: u32, day: u32) -> Option<String> {
+fn source_rows_query(what: GroupColumn, group: Group, week: u32, day: u32) -> Option<String> {
     let month = day.saturating_sub(27);
     Some(match what {
         GroupColumn::TrueValue(_) => return None,

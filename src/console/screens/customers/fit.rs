@@ -77,14 +77,14 @@ struct FitLine {
     role: Role,
 }
 
-fn line(text: String, role: Role) -> FitLine {
+fn styled_line(text: String, role: Role) -> FitLine {
     FitLine { text, role }
 }
 
 /// Returns all lines of the pane, at most `width` columns wide.
 fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
     let company = fit.group.is_enterprise();
-    let mut lines = vec![line(format!("quality  required {}", fit.floor.format_quality()), Role::Header)];
+    let mut lines = vec![styled_line(format!("quality  required {}", fit.floor.format_quality()), Role::Header)];
     let qualities = Plan::ALL.map(|plan| fit.plans[plan].quality);
     lines.extend(Plan::ALL.map(|plan| {
         let name = format!("T{}", tier(plan));
@@ -92,7 +92,7 @@ fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitL
         bar_line(fit, (plan, FitCriterion::Quality), (&name, &shown), (fit.floor, &qualities), width)
     }));
     let per = if company { " a seat" } else { "" };
-    lines.push(line(format!("price    budget {}{per}", fit.budget.format_money()), Role::Header));
+    lines.push(styled_line(format!("price    budget {}{per}", fit.budget.format_money()), Role::Header));
     let prices = Plan::ALL.map(|plan| fit.plans[plan].lead_price);
     lines.extend(Plan::ALL.map(|plan| {
         let plan_fit = &fit.plans[plan];
@@ -106,13 +106,13 @@ fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitL
         )
     }));
     let smallest = if company { " (smallest)" } else { "" };
-    lines.push(line(format!("quota    typically {} units a day{smallest}", fit.usage.format_units()), Role::Header));
+    lines.push(styled_line(format!("quota    typically {} units a day{smallest}", fit.usage.format_units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact_number(fit.plans[plan].quota)));
-    lines.push(line(format!(" {} a day", quotas.join(" · ")), shared_role(fit, FitCriterion::Quota)));
+    lines.push(styled_line(format!(" {} a day", quotas.join(" · ")), shared_role(fit, FitCriterion::Quota)));
     let mut add_rows = |name: &str, text: &str, role: Role| {
         for (at, text) in wrap(text, width.saturating_sub(NAME_WIDTH + 1)).into_iter().enumerate() {
             let name = if at == 0 { name } else { "" };
-            lines.push(line(format!("{name:<NAME_WIDTH$} {text}"), role));
+            lines.push(styled_line(format!("{name:<NAME_WIDTH$} {text}"), role));
         }
     };
     match fit.last_week {
@@ -167,7 +167,7 @@ fn bar_line(
     } else {
         " ".repeat(cells)
     };
-    line(format!(" {plan} {name:<4} {bar} {shown:>9} {verdict}"), role)
+    styled_line(format!(" {plan} {name:<4} {bar} {shown:>9} {verdict}"), role)
 }
 
 /// Returns a bar up to a figure, followed by the part of the range above the figure.

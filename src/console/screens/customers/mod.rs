@@ -34,7 +34,7 @@ use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::DisplayedCompany;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Panes of the customers screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -135,7 +135,7 @@ impl Customers {
 }
 
 impl ScreenState for Customers {
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[
             Reading::Subscribers,
             Reading::Arrivals,
@@ -166,7 +166,7 @@ impl ScreenState for Customers {
         self.open_group.is_some()
     }
 
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.open_group.is_some())
     }
 

@@ -8,7 +8,7 @@ use novamind_database::{QueryResult, number_at, text_at};
 use novamind_session::identifiers::{Channel, Group, Plan};
 use novamind_tools::ToolId;
 use novamind_worker::company::DisplayedCompany;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 pub const CURVE_WEEKS: u32 = 12;
 
@@ -134,7 +134,7 @@ impl CustomerData {
     }
 
     pub fn apply_rows(&mut self, reading: Reading, rows: &QueryResult) {
-        self.clear_reading(reading);
+        self.clear_query_figures(reading);
         for row in &rows.rows {
             match reading {
                 Reading::Subscribers => self.update_plan(row, |plan_subscribers, row| {
@@ -167,7 +167,7 @@ impl CustomerData {
         }
     }
 
-    fn clear_reading(&mut self, reading: Reading) {
+    fn clear_query_figures(&mut self, reading: Reading) {
         if reading == Reading::LeadsByChannel {
             self.channels.clear();
         }

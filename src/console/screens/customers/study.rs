@@ -30,7 +30,7 @@ impl Pane<Customers> for StudyPane {
         if action == Action::Open {
             return show_rows_effect(self.figure(customers, context));
         }
-        let last = report::lines(context.company, group).len().saturating_sub(1);
+        let last = report::report_lines(context.company, group).len().saturating_sub(1);
         customers.group_state.study_line = move_index(customers.group_state.study_line, last, action);
         Vec::new()
     }

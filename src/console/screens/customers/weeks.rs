@@ -82,7 +82,7 @@ impl Pane<Customers> for WeeksPane {
         let Some(group) = customers.group(context.company) else { return };
         let group_facts = customers.data.facts_of_group(group);
         let week = context.company.observation.week;
-        let trend = |figure: fn(&WeekFlow) -> f64| points(group_facts.weekly_values(week, figure));
+        let trend = |figure: fn(&WeekFlow) -> f64| to_curve_points(group_facts.weekly_values(week, figure));
         let lines = [
             Curve::from_points(trend(|flow| flow.leads), Role::Series(2)).with_name("leads"),
             Curve::from_points(trend(|flow| flow.signups), Role::Good).with_name("new"),
@@ -106,7 +106,7 @@ impl Pane<Customers> for WeeksPane {
 impl WeeksPane {
     fn draw_subscriptions(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let Some(group) = customers.group(context.company) else { return };
-        let held = points(customers.data.facts_of_group(group).subscriptions_by_week(context.company.observation.week));
+        let held = to_curve_points(customers.data.facts_of_group(group).subscriptions_by_week(context.company.observation.week));
         let values: Vec<f64> = held.iter().map(|point| point.1).collect();
         let title = format!("{group} {}", if group.is_enterprise() { "enterprises" } else { "subscribers" });
         let words = summary(&values, &|value| grouped_number(value, 0), note_width(placement.area, &title));
@@ -117,7 +117,7 @@ impl WeeksPane {
     }
 }
 
-fn points(values: Vec<(u32, f64)>) -> Vec<(f64, f64)> {
+fn to_curve_points(values: Vec<(u32, f64)>) -> Vec<(f64, f64)> {
     values.iter().map(|(at, value)| (f64::from(*at), *value)).collect()
 }
 

@@ -38,7 +38,7 @@ use novamind_tui::widgets::Table;
 use novamind_tui::widgets::field::{TextField, NUMBER_HINT};
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Panes of the inbox screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -306,13 +306,13 @@ impl ScreenState for Inbox {
         }
     }
 
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.outcomes.is_some()) + usize::from(self.focus != self.left_pane())
     }
 
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         match self.outcomes {
-            Some(_) => &outcomes::OUTCOME_READINGS,
+            Some(_) => &outcomes::OUTCOME_QUERIES,
             None => &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters],
         }
     }

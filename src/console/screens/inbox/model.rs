@@ -6,7 +6,7 @@ use novamind_database::{QueryResult, number_at, text_at};
 use novamind_rules::{ThreadContext, parse_offer, first_plan_in};
 use novamind_session::EnterpriseNames;
 use novamind_session::identifiers::Plan;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreadMessage {

@@ -13,10 +13,10 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::{TableCell, TableColumn, Table};
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Screen queries whose results the inbox needs while outcomes are shown.
-pub const OUTCOME_READINGS: [Reading; 5] = [
+pub const OUTCOME_QUERIES: [Reading; 5] = [
     Reading::EnterpriseTurns,
     Reading::Companies,
     Reading::Usage,

@@ -37,11 +37,11 @@ pub fn empty_table() -> Table {
 }
 
 /// Returns the table rows of a tree of related runs. The current run is marked.
-pub fn rows(tree: &[RelatedRun], text: &str) -> Vec<Vec<TableCell>> {
-    tree.iter().map(|run| row(run, text)).collect()
+pub fn tree_rows(tree: &[RelatedRun], text: &str) -> Vec<Vec<TableCell>> {
+    tree.iter().map(|run| tree_row(run, text)).collect()
 }
 
-fn row(related_run: &RelatedRun, text: &str) -> Vec<TableCell> {
+fn tree_row(related_run: &RelatedRun, text: &str) -> Vec<TableCell> {
     let run = &related_run.run;
     let (mark, role) = if run.id == text { (" ◂", Role::Strong) } else { ("", Role::Text) };
     let left = match related_run.branched_in_week {
@@ -82,7 +82,7 @@ impl Journal {
         let run = &company.observation.run;
         let is_first = self.tree.is_empty();
         (self.tree, self.is_tree_read) = (tree, true);
-        self.branches.set_rows(rows(&self.tree, run));
+        self.branches.set_rows(tree_rows(&self.tree, run));
         if is_first && let Some(number) = self.tree.iter().position(|related_run| related_run.run.id == *run) {
             self.branches.select(number);
         }

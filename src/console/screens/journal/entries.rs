@@ -35,7 +35,7 @@ pub struct JournalLine {
 }
 
 /// The rationale and the forecasts that were submitted before a week.
-struct FiledWeek<'a> {
+struct WeekSubmission<'a> {
     day: u32,
     rationale: &'a str,
     forecasts: &'a [Forecast],
@@ -46,12 +46,12 @@ struct FiledWeek<'a> {
 #[derive(Default)]
 struct JournalWeek<'a> {
     calls: Vec<JournalLine>,
-    filed: Option<FiledWeek<'a>>,
+    filed: Option<WeekSubmission<'a>>,
     figures: Option<&'a WeekFigures>,
 }
 
 /// Returns all lines of the journal.
-pub fn lines(company: &DisplayedCompany) -> Vec<JournalLine> {
+pub fn journal_lines(company: &DisplayedCompany) -> Vec<JournalLine> {
     let mut groups = vec![JournalWeek::default()];
     let mut settings = KnownSettings::default();
     let undone = undone_call_lines(&company.journal);
@@ -65,7 +65,7 @@ pub fn lines(company: &DisplayedCompany) -> Vec<JournalLine> {
                 last.calls.push(parameter_line(*day, key, [old, new], *from_day));
             }
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
-                last.filed = Some(FiledWeek { day: *day, rationale, forecasts, filled_naively });
+                last.filed = Some(WeekSubmission { day: *day, rationale, forecasts, filled_naively });
             }
             JournalEntry::Week { figures } => {
                 last.figures = Some(figures);
@@ -168,7 +168,7 @@ impl JournalWeek<'_> {
     }
 }
 
-impl FiledWeek<'_> {
+impl WeekSubmission<'_> {
     fn summary(&self, company: &DisplayedCompany) -> String {
         let one = |forecast: &Forecast| {
             let filed = ScoredForecast::new(self.day, forecast, &company.cash_by_day);

@@ -101,7 +101,7 @@ impl Journal {
 }
 
 impl ScreenState for Journal {
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.focus != JournalPane::List)
     }
 
@@ -109,7 +109,7 @@ impl ScreenState for Journal {
         let mut rows = Vec::new();
         self.full_texts.clear();
         self.figures.clear();
-        for line in entries::lines(context.company) {
+        for line in entries::journal_lines(context.company) {
             rows.push(vec![
                 TableCell::from_number(f64::from(line.day), line.day.to_string()).with_role(Role::Dim),
                 TableCell::from_text(line.text).with_role(line.role),

@@ -55,7 +55,7 @@ impl Pane<Market> for EconomyPane {
     }
 
     fn figure(&self, market: &Market, _: &ScreenContext<'_>) -> Option<Figure> {
-        let day = market.economy().selected()?.day;
+        let day = market.economy_view().selected()?.day;
         Some(Figure {
             title: format!("PMI of day {day}"),
             term: "pmi",
@@ -68,7 +68,7 @@ impl Pane<Market> for EconomyPane {
         let last = market.facts.economy.len().saturating_sub(1);
         let now = market.selected_measurement.unwrap_or(last).min(last);
         market.selected_measurement = match action {
-            Action::Open => return market.economy().selected().map(show_measurement).into_iter().collect(),
+            Action::Open => return market.economy_view().selected().map(show_measurement).into_iter().collect(),
             Action::Left | Action::Down | Action::PageDown => Some(now.saturating_sub(1)),
             Action::Right | Action::Up | Action::PageUp => Some((now + 1).min(last)),
             Action::First => Some(0),
@@ -81,7 +81,7 @@ impl Pane<Market> for EconomyPane {
     }
 
     fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
-        let note = market.economy().selected().map_or(String::new(), |here| {
+        let note = market.economy_view().selected().map_or(String::new(), |here| {
             let sign = if here.change < 0.0 { '-' } else { '+' };
             let figures = format!("PMI {} ({sign}{})", grouped_number(here.value, 1), grouped_number(here.change.abs(), 1));
             format!("{figures} · {}", here.phase)
@@ -96,7 +96,7 @@ impl Pane<Market> for EconomyPane {
             Some(hidden) => true_values::draw_lines_above(canvas, placement.area, &true_values::economy_lines(hidden)),
             None => placement.area,
         };
-        let view = market.economy();
+        let view = market.economy_view();
         let Some(here) = view.selected() else {
             return draw_empty_state(canvas, inside, &view, &context.company.tool_limits);
         };

@@ -33,7 +33,7 @@ use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::posts::Posts;
 use novamind_worker::page_questions::PreviewCallQuestion;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Panes of the market screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -202,7 +202,7 @@ impl Market {
         Effect::ConfirmCall { tool, arguments, text }
     }
 
-    fn economy(&self) -> economy::EconomyView<'_> {
+    fn economy_view(&self) -> economy::EconomyView<'_> {
         economy::EconomyView { economy: &self.facts.economy, selected_index: self.selected_measurement, news: &self.news }
     }
 
@@ -215,11 +215,11 @@ impl Market {
 }
 
 impl ScreenState for Market {
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.focus == MarketPane::Report)
     }
 
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[Reading::Knowledge, Reading::Attempts, Reading::Economy]
     }
 

@@ -6,7 +6,7 @@ use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_session::RunningStudy;
 use novamind_session::identifiers::Group;
 use novamind_worker::company::DisplayedCompany;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Study level of a group, with the days of discovery and of the last study.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

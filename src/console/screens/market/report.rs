@@ -96,7 +96,7 @@ fn format_share(value: f64) -> String {
 }
 
 /// Returns the lines of the insight report of a known group.
-pub fn lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine> {
+pub fn report_lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine> {
     let Some(insights) = company.insights.get(&group) else { return Vec::new() };
     let noise = company.tool_limits.study_level(study_level(company, group)).map_or(0.0, |level| level.noise);
     let mut lines = vec![ReportLine::heading("mean of the group", "range")];
@@ -188,7 +188,7 @@ impl Pane<Market> for ReportPane {
 
     fn handle_action(&self, market: &mut Market, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let page = usize::from(context.page_rows.max(1));
-        let count = market.group().map_or(0, |group| lines(context.company, group).len());
+        let count = market.group().map_or(0, |group| report_lines(context.company, group).len());
         let (from, last) = (market.first_line, count.saturating_sub(page));
         market.first_line = match action {
             Action::Open => return market.show_customers_effect(context.company),
@@ -258,7 +258,7 @@ fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>
 
 /// Draws the estimates of a group, starting at a line of the report.
 pub fn draw_estimates(canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany, group: Group, from: usize) {
-    let lines = lines(company, group);
+    let lines = report_lines(company, group);
     let from = from.min(lines.len().saturating_sub(area.height as usize));
     for (row, line) in row_rects(area).zip(&lines[from..]) {
         canvas.draw_text(row, &line.label, line.role);

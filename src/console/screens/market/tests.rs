@@ -93,7 +93,7 @@ fn report_shows_estimates_with_ranges() {
     let session = played_session(1);
     let company = DisplayedCompany::from_session(&session);
     for group in &company.observation.known_groups {
-        let lines = report::lines(&company, *group);
+        let lines = report::report_lines(&company, *group);
         let text = format!("{lines:?}");
         for words in ["budget", "usage", "required quality", "market", "lock-in aversion", "word of mouth"] {
             assert!(text.contains(words), "{group} {words}: {text}");

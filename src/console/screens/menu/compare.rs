@@ -58,7 +58,7 @@ impl StartMenu {
         }
         for (row, (at, run)) in rows.zip(runs.iter().enumerate()) {
             let preview = loaded_preview(&self.previews, &run.id);
-            let cells = cells(at, run, preview);
+            let cells = row_cells(at, run, preview);
             draw_cells(canvas, row, &cells, |column| if column == 0 { Role::Series(at) } else { Role::Text });
             let rest = chart_area(row);
             if let Some(preview) = preview {
@@ -73,7 +73,7 @@ impl StartMenu {
     }
 }
 
-fn cells(at: usize, run: &RunSummary, preview: Option<&RunPreview>) -> [String; 8] {
+fn row_cells(at: usize, run: &RunSummary, preview: Option<&RunPreview>) -> [String; 8] {
     let figure = |read: fn(&RunPreview) -> f64| {
         preview.map_or("…".to_owned(), |preview| compact_number(read(preview)))
     };

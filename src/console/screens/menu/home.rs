@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::runs::{draw_preview, facts, progress_label};
+use super::runs::{draw_preview, progress_label, run_facts};
 use super::{RunPreviews, StartMenu};
 use novamind_base::formatting::dollars;
 use novamind_record::folder::runs::RunSummary;
@@ -150,7 +150,7 @@ pub(super) fn draw_run(
     let inside = canvas.draw_pane_frame(area, title, &progress_label(run), false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let known = previews.get(&run.id).and_then(Option::as_ref);
-    let facts = facts(run, known);
+    let facts = run_facts(run, known);
     let is_flat = inside.width >= 70 && inside.height < 14;
     let (above, below) = if is_flat {
         let left = Rect { width: 42, ..inside };

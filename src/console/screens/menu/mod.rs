@@ -200,7 +200,7 @@ impl StartMenu {
         let rows = match self.page {
             MenuPage::Home => self.entries().len(),
             MenuPage::NewRun => FORM_ROWS.len(),
-            MenuPage::PublishedResults => published_results::ranked(self.runs()).len(),
+            MenuPage::PublishedResults => published_results::rank_results(self.runs()).len(),
             MenuPage::Lessons => self.lessons.len(),
             MenuPage::Runs | MenuPage::Compare | MenuPage::PathForm | MenuPage::Class => 1,
         };

@@ -27,7 +27,7 @@ pub(super) struct RankedResult {
 
 /// Returns the published results of release 1 and the user's results, the best first, then the published results that
 /// are not ranked.
-pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
+pub(super) fn rank_results(runs: &[RunSummary]) -> Vec<RankedResult> {
     let published = published_results();
     let baseline = RankedResult {
         name: "Rule-based baseline".to_owned(),
@@ -48,7 +48,9 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
     results.extend(published.paper().agent.iter().map(|agent| row(agent, days(agent))));
     results.extend(
         runs.iter()
-            .filter(|run| obstacles(run).is_some_and(|ranking_obstacles| ranking_obstacles.is_empty()))
+            .filter(|run| {
+                ranking_obstacles(run).is_some_and(|ranking_obstacles| ranking_obstacles.is_empty())
+            })
             .map(|run| RankedResult {
                 name: format!("You · {}", run.id),
                 rank: None,
@@ -64,7 +66,7 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
 }
 
 /// Returns the reasons why a run is not ranked, or `None` if the run has no score.
-fn obstacles(run: &RunSummary) -> Option<Vec<RankingObstacle>> {
+fn ranking_obstacles(run: &RunSummary) -> Option<Vec<RankingObstacle>> {
     let has_score =
         matches!(run.ended, Some(RunEndReason::Horizon | RunEndReason::Bankruptcy | RunEndReason::Lesson));
     (has_score && run.problem.is_none()).then(|| RankingCriteria::from_summary(run).obstacles())
@@ -72,7 +74,7 @@ fn obstacles(run: &RunSummary) -> Option<Vec<RankingObstacle>> {
 
 impl StartMenu {
     pub(super) fn draw_published_results(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        let results = ranked(self.runs());
+        let results = rank_results(self.runs());
         let number = results.iter().filter(|result| result.is_own).count();
         let note = if number > 0 { format!("{number} of your runs") } else { String::new() };
         let inside = canvas.draw_pane_frame(area, "Published results and yours", &note, true);
@@ -94,7 +96,7 @@ impl StartMenu {
 
     /// Explains why runs are not ranked, or how the user's ranked runs are marked.
     fn own_results_text(&self, ranked: usize) -> String {
-        let finished: Vec<Vec<RankingObstacle>> = self.runs().iter().filter_map(obstacles).collect();
+        let finished: Vec<Vec<RankingObstacle>> = self.runs().iter().filter_map(ranking_obstacles).collect();
         match (ranked, explain_unranked_runs(&finished)) {
             (_, Some(left_out)) => left_out,
             (0, None) => "Finish a 500-day run to appear here.".to_owned(),
@@ -155,9 +157,11 @@ mod tests {
             finished("open", 1e9, 500, None),
             finished("ruin", -5.0, 500, Some(RunEndReason::Bankruptcy)),
         ];
-        let results = ranked(&runs);
-        let why: Vec<Option<usize>> =
-            runs.iter().map(|run| obstacles(run).map(|ranking_obstacles| ranking_obstacles.len())).collect();
+        let results = rank_results(&runs);
+        let why: Vec<Option<usize>> = runs
+            .iter()
+            .map(|run| ranking_obstacles(run).map(|ranking_obstacles| ranking_obstacles.len()))
+            .collect();
         assert_eq!(why, [Some(0), Some(1), Some(1), Some(1), None, Some(0)]);
         assert_eq!((results[0].name.as_str(), results[0].is_own), ("You · rich", true));
         assert_eq!(results.iter().filter(|result| result.is_own).count(), 2);

@@ -327,7 +327,7 @@ fn format_to_minute(at: &str) -> String {
     at.get(..16).unwrap_or("").replace('T', " ")
 }
 
-pub(super) fn facts(
+pub(super) fn run_facts(
     run: &RunSummary,
     preview: Option<&Result<RunPreview, String>>,
 ) -> Vec<(&'static str, String)> {

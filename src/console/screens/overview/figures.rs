@@ -284,14 +284,14 @@ pub fn figure(metric: &Metric, column: usize, company: &DisplayedCompany) -> Fig
     Figure {
         title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.rows_source, (from, to), now),
+        sql: source_rows_query(&metric.rows_source, (from, to), now),
         week_quantity: None,
     }
     .with_week_quantity(quantity, to)
 }
 
 /// Returns the query for the source rows of a range of weeks. Returns `None` if no rows exist for these weeks.
-fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String> {
+fn source_rows_query(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String> {
     let (from, to) = ((7 * weeks.0).saturating_sub(6), 7 * weeks.1);
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");
     Some(match source {

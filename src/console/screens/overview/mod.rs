@@ -2,7 +2,7 @@
 
 mod cash;
 pub mod figures;
-pub mod needs;
+pub mod action_items;
 mod news;
 mod quality;
 mod linked_rows;
@@ -25,14 +25,14 @@ use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
 use novamind_worker::company::DisplayedCompany;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Panes of the overview in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum OverviewPane {
     /// Items that need action.
     #[default]
-    Needs,
+    ActionItems,
     /// The figures of the week.
     Week,
     /// Delivered quality by group.
@@ -68,7 +68,7 @@ impl Overview {
 }
 
 impl ScreenState for Overview {
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[Reading::Service, Reading::WeekNotices, Reading::Research]
     }
 
@@ -110,7 +110,7 @@ impl PaneScreen for Overview {
 
     fn pane(name: OverviewPane) -> &'static dyn Pane<Overview> {
         match name {
-            OverviewPane::Needs => &needs::NeedsPane,
+            OverviewPane::ActionItems => &action_items::ActionItemsPane,
             OverviewPane::Week => &week::WeekPane,
             OverviewPane::Quality => &quality::QualityPane,
             OverviewPane::Cash => &cash::CashCurvePane,
@@ -149,7 +149,7 @@ impl Overview {
             trends::draw_usage(canvas, used, &self.days);
         }
         draw_pane(self, OverviewPane::Quality, canvas, below, context);
-        let needs = needs::pane_height(context.company, right.width, right.height / 3);
+        let needs = action_items::pane_height(context.company, right.width, right.height / 3);
         let table = (METRICS.len() as u16 + 3).min(right.height.saturating_sub(needs));
         let left = right.height.saturating_sub(needs + table);
         let news = if left >= 3 { (self.news.len().max(1) as u16 + 2).min(left) } else { 0 };
@@ -161,7 +161,7 @@ impl Overview {
             Constraint::Length(charts),
         ])
         .areas(right);
-        draw_pane(self, OverviewPane::Needs, canvas, above, context);
+        draw_pane(self, OverviewPane::ActionItems, canvas, above, context);
         if news > 0 {
             draw_pane(self, OverviewPane::News, canvas, new, context);
         }
@@ -170,9 +170,9 @@ impl Overview {
     }
 
     fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
-        let needs = needs::pane_height(context.company, area.width, area.height * 2 / 5);
+        let needs = action_items::pane_height(context.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
-        draw_pane(self, OverviewPane::Needs, canvas, above, context);
+        draw_pane(self, OverviewPane::ActionItems, canvas, above, context);
         // The week pane needs space for the name and the value of each figure, and for its change.
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);

@@ -102,7 +102,7 @@ fn every_action_item_opens_its_object_and_has_source_rows() {
             (ActionTarget::Ledger, [Effect::Show(ScreenId::Cash)]) => {}
             other => panic!("{other:?}"),
         }
-        if let Some(sql) = needs::item_figure(need, company.observation.day).sql {
+        if let Some(sql) = action_items::item_figure(need, company.observation.day).sql {
             session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
         }
         handle_action(&mut screen, Action::Down, &company);
@@ -113,7 +113,7 @@ fn every_action_item_opens_its_object_and_has_source_rows() {
 fn every_selection_has_a_term_or_tool() {
     let company = DisplayedCompany::from_session(&played_session(7));
     let day = company.observation.day;
-    let needs = company.action_items.iter().map(|need| needs::item_figure(need, day).term);
+    let needs = company.action_items.iter().map(|need| action_items::item_figure(need, day).term);
     let metrics = METRICS.iter().map(|metric| metric.term);
     let kinds = [NewsKind::Research, NewsKind::Study, NewsKind::Economy, NewsKind::Posts, NewsKind::Press];
     let news = kinds.map(|kind| news::NewsItem { kind, text: String::new() }.figure(day).term);
@@ -128,7 +128,7 @@ fn waiting_threads_item_queries_the_waiting_threads() {
     let mut session = session_with_negotiations();
     let company = DisplayedCompany::from_session(&session);
     let need = company.action_items.iter().find(|need| need.problem == Problem::Threads).expect("threads wait");
-    let sql = needs::item_figure(need, company.observation.day).sql.expect("rows");
+    let sql = action_items::item_figure(need, company.observation.day).sql.expect("rows");
     let open = sum_column(&mut session, &sql, "count(*)");
     assert_eq!(open, company.observation.waiting.len() as f64);
 }
@@ -139,7 +139,7 @@ fn proposed_call_fills_the_form() {
     let company = DisplayedCompany::from_session(&session);
     let need = &company.action_items[0];
     assert_eq!(need.problem, Problem::NoPrice);
-    let Effect::Prefill { tool, arguments } = needs::need_effect(need) else { panic!("{need:?}") };
+    let Effect::Prefill { tool, arguments } = action_items::item_effect(need) else { panic!("{need:?}") };
     let mut tools = crate::screens::tools::Tools::default();
     let effects = tools.prefill(tool, &arguments, &company);
     let checked = only_question::<PreviewCallQuestion>(&effects);

@@ -21,13 +21,13 @@ use novamind_tui::widgets::{XAxis, Curve, YAxis, AxisUnit, draw_chart};
 use novamind_worker::company::DisplayedCompany;
 
 /// Returns the capacity tier of the last day and the capacity tier of the current setting.
-pub fn tiers(company: &DisplayedCompany, days: &[ServiceDay]) -> (Option<u32>, u32) {
+pub fn used_and_set_tiers(company: &DisplayedCompany, days: &[ServiceDay]) -> (Option<u32>, u32) {
     (days.last().map(|day| day.tier), company.current_setting(ToolId::SetCapacityTier, "tier") as u32)
 }
 
 /// Returns one-line summaries of capacity, the longest first.
 fn summary(company: &DisplayedCompany, rungs: &[CapacityTier], days: &[ServiceDay]) -> Vec<String> {
-    let (_, set) = tiers(company, days);
+    let (_, set) = used_and_set_tiers(company, days);
     let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return Vec::new() };
     let Some((mean, peak)) = last_week(days).filter(|_| rung.units > 0.0) else {
         return vec![format!("tier {set} · {} units a day", compact_number(rung.units))];
@@ -98,17 +98,17 @@ impl ProductPanel for CapacityPane {
         } else {
             [area, Rect::default()]
         };
-        draw_ladder(product, canvas, PanePlacement { area: list, ..placement }, company);
+        draw_tiers(product, canvas, PanePlacement { area: list, ..placement }, company);
         draw_history(canvas, history, &product.capacity_tiers, &product.days);
     }
 }
 
-fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+fn draw_tiers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
     let (area, rungs, days) = (placement.area, &product.capacity_tiers, &product.days);
     let selected = product.selected_row(ProductPane::Capacity);
     let head = format!("{:<6}{:>10}{:>10}{:>9}{:>9}{:>8}", "tier", "units/day", "$/day", "mean", "peak", "");
     canvas.draw_text(area, &head, Role::Header);
-    let (in_force, set) = tiers(company, days);
+    let (in_force, set) = used_and_set_tiers(company, days);
     let used = last_week(days);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     if placement.focused {

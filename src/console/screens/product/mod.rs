@@ -27,7 +27,7 @@ use novamind_session::Category;
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Panes of the product screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -88,7 +88,7 @@ pub struct Product {
     offers: Vec<ProjectOffer>,
     spending: research::QualitySpending,
     /// Whether the initial selection of the capacity pane was moved to the current tier.
-    is_ladder_positioned: bool,
+    has_selected_current_tier: bool,
 }
 
 impl Product {
@@ -112,7 +112,7 @@ impl Product {
 }
 
 impl ScreenState for Product {
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[Reading::Service, Reading::Research, Reading::Subscribers, Reading::Usage, Reading::OpenIssues]
     }
 
@@ -137,11 +137,11 @@ impl ScreenState for Product {
         self.capacity_tiers = model::capacity_tiers(context.company);
         self.offers = model::offers(context.company);
         self.plans = model::plans(&self.sales, context.company);
-        if !self.is_ladder_positioned {
-            let (_, set) = capacity::tiers(context.company, &self.days);
+        if !self.has_selected_current_tier {
+            let (_, set) = capacity::used_and_set_tiers(context.company, &self.days);
             let rung = self.capacity_tiers.iter().position(|rung| rung.tier == set);
             *self.selected_row_mut(ProductPane::Capacity) = rung.unwrap_or(0);
-            self.is_ladder_positioned = true;
+            self.has_selected_current_tier = true;
         }
     }
 }

@@ -32,7 +32,7 @@ fn plan_margin_is_revenue_minus_compute() {
 }
 
 #[test]
-fn the_readings_agree_with_the_company() {
+fn screen_queries_agree_with_the_company() {
     let (_, company, screen) = played_screen::<Product>(6);
     let week = company.observation.last_week.expect("a week");
     assert_eq!(screen.days.len(), 42);

@@ -90,7 +90,7 @@ fn is_in_thread(post: &Post, (number, answered): (u32, Option<u32>)) -> bool {
 }
 
 /// Returns all posts in feed order: the newest first. Comments follow the player's post that they answer, the oldest first.
-pub fn threads(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
+pub fn posts_in_feed_order(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = posts.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {
         let thread = match post.kind {
@@ -139,7 +139,7 @@ mod tests {
         ];
         let posts = [post(PostKind::Own, 2, 21, None), post(PostKind::Own, 1, 14, Some(3))];
         let order: Vec<(PostKind, u32)> =
-            threads(&others, &posts).iter().map(|post| (post.kind, post.number)).collect();
+            posts_in_feed_order(&others, &posts).iter().map(|post| (post.kind, post.number)).collect();
         let (post_kind, comment) = (PostKind::Own, PostKind::Comments);
         assert_eq!(
             order,

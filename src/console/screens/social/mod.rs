@@ -32,7 +32,7 @@ use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::posts::Posts;
 use novamind_worker::page_questions::PreviewCallQuestion;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 
 /// Panes of the social screen in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -66,7 +66,7 @@ pub struct Social {
     editing: bool,
     reply_to: Option<u32>,
     /// Check of the tool call before the user confirms the call.
-    pending_arguments: Pending<PreviewCallQuestion>,
+    pending_call: Pending<PreviewCallQuestion>,
     /// Number of the newest post that was seen, or `None` until the screen is shown.
     newest_seen_post: Option<u32>,
     /// Day up to which posts were seen before the run was opened.
@@ -81,7 +81,7 @@ impl Social {
 
     fn rebuild_feed(&mut self) {
         let kept = self.selected_post().map(|post| (post.kind, post.number));
-        self.feed = feed::threads(&self.others, &self.own_posts);
+        self.feed = feed::posts_in_feed_order(&self.others, &self.own_posts);
         self.update_visible_posts(kept);
         let row = |post: &Arc<Post>| {
             vec![
@@ -201,7 +201,7 @@ impl Social {
         if let Some(number) = self.reply_to {
             arguments["reply_to_post_id"] = number.into();
         }
-        vec![Effect::Ask(self.pending_arguments.ask(PreviewCallQuestion { tool: POST_TOOL, arguments }))]
+        vec![Effect::Ask(self.pending_call.ask(PreviewCallQuestion { tool: POST_TOOL, arguments }))]
     }
 
     fn confirm_effect(&self, arguments: Value, effect_day: Option<u32>) -> Effect {
@@ -242,11 +242,11 @@ impl Social {
 }
 
 impl ScreenState for Social {
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.focus == SocialPane::Draft || self.filter != PostFilter::default())
     }
 
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[Reading::OwnPosts]
     }
 
@@ -278,7 +278,7 @@ impl ScreenState for Social {
     }
 
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
-        match self.pending_arguments.try_take() {
+        match self.pending_call.try_take() {
             Some((call, Ok(preview))) => vec![self.confirm_effect(call.arguments, preview.effect_day)],
             Some((_, Err(refusal))) => vec![Effect::ShowError(refusal.to_string())],
             None => Vec::new(),

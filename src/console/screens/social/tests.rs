@@ -161,7 +161,7 @@ fn post_is_checked_confirmed_and_sent() {
     let effects = handle_action(&mut screen, Action::SendPost, &company);
     let PreviewCallQuestion { tool, arguments } = only_question(&effects);
     assert_eq!(arguments["reply_to_post_id"], answered);
-    screen.pending_arguments.set_answer(session.preview_call(*tool, arguments));
+    screen.pending_call.set_answer(session.preview_call(*tool, arguments));
     let effects = with_context(&company, |screen_context| screen.take_answers(screen_context));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
     assert!(text.contains("cannot be undone") && text.contains("on day 15"), "{text}");
@@ -182,14 +182,14 @@ fn rejected_post_keeps_the_draft() {
     type_draft(&mut screen, &company, "Again");
     handle_action(&mut screen, Action::SendPost, &company);
     let refused = || Err(Rejection::new("already_posted", "you have already posted"));
-    screen.pending_arguments.set_answer(refused());
+    screen.pending_call.set_answer(refused());
     let effects = with_context(&company, |context| screen.take_answers(context));
     assert!(
         matches!(&effects[..], [Effect::ShowError(text)] if text.contains("already posted")),
         "{effects:?}"
     );
     assert_eq!(screen.draft.text(), "Again");
-    screen.pending_arguments.set_answer(refused());
+    screen.pending_call.set_answer(refused());
     let effects = with_context(&company, |screen_context| screen.take_answers(screen_context));
     assert!(effects.is_empty(), "an unexpected answer is ignored");
 }

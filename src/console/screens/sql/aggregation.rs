@@ -247,15 +247,15 @@ mod tests {
     }
 
     /// A statement whose result has duplicate and unusual column names, NULL and quotes.
-    const SQL: &str = "-- title: Odd\nWITH t AS (VALUES ('it''s', 1, 2.5), ('it''s', 2, NULL), (NULL, 1, 4.0), ('b', 1, 1.5))
+    const ODD_COLUMN_NAMES_SQL: &str = "-- title: Odd\nWITH t AS (VALUES ('it''s', 1, 2.5), ('it''s', 2, NULL), (NULL, 1, 4.0), ('b', 1, 1.5))
         SELECT column1 AS \"group by\", column2 AS n, column3 AS n, count(*) OVER () FROM t -- the end";
 
     #[test]
     fn values_are_counted_with_their_shares() {
         let mut session = new_session();
-        let rows = query(&mut session, SQL);
+        let rows = query(&mut session, ODD_COLUMN_NAMES_SQL);
         let counted =
-            query(&mut session, &count_statement(SQL, &rows.columns, 0, &RowFilter::All).expect("a statement"));
+            query(&mut session, &count_statement(ODD_COLUMN_NAMES_SQL, &rows.columns, 0, &RowFilter::All).expect("a statement"));
         assert_eq!(counted.columns, ["group by", "count", "percent"]);
         let text = |text: &str| Cell::Text(text.to_owned());
         let row = |cell, count, percent| vec![cell, Cell::Integer(count), Cell::Real(percent)];
@@ -264,7 +264,7 @@ mod tests {
             [row(text("it's"), 2, 50.0), row(Cell::Null, 1, 25.0), row(text("b"), 1, 25.0)]
         );
         let second =
-            query(&mut session, &count_statement(SQL, &rows.columns, 2, &RowFilter::All).expect("a statement"));
+            query(&mut session, &count_statement(ODD_COLUMN_NAMES_SQL, &rows.columns, 2, &RowFilter::All).expect("a statement"));
         assert_eq!(second.rows.len(), 4, "the second column of the same name is counted: {second:?}");
     }
 
@@ -286,9 +286,9 @@ mod tests {
     #[test]
     fn pivot_has_a_row_and_column_per_value() {
         let mut session = new_session();
-        let query_result = query(&mut session, SQL);
+        let query_result = query(&mut session, ODD_COLUMN_NAMES_SQL);
         let shape = PivotShape { row_column: 1, header_column: Some(0), value_column: Some(2), aggregate: Aggregate::Sum };
-        let rows = query(&mut session, &pivot_statement(SQL, &query_result, shape, &RowFilter::All).expect("a statement"));
+        let rows = query(&mut session, &pivot_statement(ODD_COLUMN_NAMES_SQL, &query_result, shape, &RowFilter::All).expect("a statement"));
         assert_eq!(rows.columns, ["n", "b", "it's", "NULL", "all"]);
         let real = Cell::Real;
         assert_eq!(rows.rows[0], [Cell::Integer(1), real(1.5), real(2.5), real(4.0), real(8.0)]);
@@ -296,12 +296,12 @@ mod tests {
         for (aggregate, all) in [(Aggregate::Mean, 8.0 / 3.0), (Aggregate::Min, 1.5), (Aggregate::Max, 4.0)] {
             let rows = query(
                 &mut session,
-                &pivot_statement(SQL, &query_result, PivotShape { aggregate, ..shape }, &RowFilter::All).expect("one"),
+                &pivot_statement(ODD_COLUMN_NAMES_SQL, &query_result, PivotShape { aggregate, ..shape }, &RowFilter::All).expect("one"),
             );
             assert_eq!(rows.rows[0][4], real(all), "{aggregate:?}");
         }
         let flat = PivotShape { header_column: None, value_column: None, aggregate: Aggregate::Count, ..shape };
-        let rows = query(&mut session, &pivot_statement(SQL, &query_result, flat, &RowFilter::All).expect("a statement"));
+        let rows = query(&mut session, &pivot_statement(ODD_COLUMN_NAMES_SQL, &query_result, flat, &RowFilter::All).expect("a statement"));
         assert_eq!((rows.columns[1].as_str(), &rows.rows[0][1]), ("count", &Cell::Integer(3)));
     }
 

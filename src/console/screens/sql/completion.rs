@@ -54,7 +54,7 @@ pub fn complete(sql: &str, place: usize, least: usize, interface: Interface) -> 
         .last()
         .map_or(place, |(at, _)| at);
     let word = &before[word_start..];
-    let sources = sources(statement, &pieces, interface);
+    let sources = statement_tables(statement, &pieces, interface);
     let found = match before[..word_start].strip_suffix('.') {
         Some(rest) => {
             let name = rest.rsplit(|letter| !is_identifier_char(letter)).next().unwrap_or_default();
@@ -147,7 +147,7 @@ fn filter_candidates(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
 }
 
 /// Returns the tables in a statement, with their aliases.
-fn sources(sql: &str, pieces: &[Token], interface: Interface) -> Vec<NamedTable> {
+fn statement_tables(sql: &str, pieces: &[Token], interface: Interface) -> Vec<NamedTable> {
     let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.range.clone()]);
     let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == TokenKind::Identifier);
     let mut found = Vec::new();

@@ -192,7 +192,7 @@ impl ScreenState for Sql {
         self.editor.interface = self.browser.interface;
     }
 
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         let filtered = self.focus == SqlPane::Tables && self.browser.is_filtered();
         usize::from(self.results.current().is_chart()) + usize::from(filtered)
     }

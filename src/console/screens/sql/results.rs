@@ -101,7 +101,7 @@ impl ResultView {
     }
 
     /// Returns the approximate size in bytes of the rows and their display form.
-    pub fn bytes(&self) -> usize {
+    pub fn size_in_bytes(&self) -> usize {
         self.bytes
     }
 

@@ -89,12 +89,12 @@ impl ResultTabs {
         self.evict_old_tabs();
     }
 
-    fn bytes(&self) -> usize {
-        self.tabs.iter().map(|tab| tab.results.bytes()).sum()
+    fn total_bytes(&self) -> usize {
+        self.tabs.iter().map(|tab| tab.results.size_in_bytes()).sum()
     }
 
     fn evict_old_tabs(&mut self) {
-        while self.tabs.len() > MAX_TABS || self.bytes() > MAX_TOTAL_BYTES {
+        while self.tabs.len() > MAX_TABS || self.total_bytes() > MAX_TOTAL_BYTES {
             let oldest = (0..self.tabs.len()).find(|at| *at != self.current_index && !self.tabs[*at].pinned);
             let Some(oldest) = oldest else { return };
             self.remove(oldest);
@@ -130,14 +130,14 @@ impl ResultTabs {
     pub fn toggle_pin(&mut self) -> Result<bool, String> {
         let pinned = self.tabs.iter().filter(|tab| tab.pinned);
         let (count, bytes) =
-            pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.bytes()));
+            pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.size_in_bytes()));
         let Some(tab) = self.tabs.get_mut(self.current_index).filter(|tab| !tab.results.is_rejected()) else {
             return Err("No result to pin. Run a statement first.".to_owned());
         };
         if !tab.pinned && count == MAX_PINNED_TABS {
             return Err(format!("{MAX_PINNED_TABS} results are pinned. Unpin or close one first."));
         }
-        if !tab.pinned && bytes + tab.results.bytes() > MAX_TOTAL_BYTES {
+        if !tab.pinned && bytes + tab.results.size_in_bytes() > MAX_TOTAL_BYTES {
             return Err("The pinned results are too large. Unpin or close one first.".to_owned());
         }
         tab.pinned = !tab.pinned;
@@ -296,7 +296,7 @@ mod tests {
                 QueryResult { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..QueryResult::default() };
             tabs.add_answer(&format!("SELECT {number}"), Ok(large), Duration::ZERO);
         }
-        assert!(tabs.bytes() <= MAX_TOTAL_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());
+        assert!(tabs.total_bytes() <= MAX_TOTAL_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());
     }
 
     #[test]

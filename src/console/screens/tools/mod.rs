@@ -36,7 +36,7 @@ use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::TextField;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
-use novamind_worker::readings::Reading;
+use novamind_worker::screen_queries::Reading;
 use outcome::ChannelLeads;
 
 /// Panes of the tools screen.
@@ -193,7 +193,7 @@ impl Tools {
 }
 
 impl ScreenState for Tools {
-    fn readings(&self) -> &'static [Reading] {
+    fn screen_queries(&self) -> &'static [Reading] {
         &[Reading::LeadsByChannel, Reading::Subscribers, Reading::Usage]
     }
 
@@ -253,7 +253,7 @@ impl ScreenState for Tools {
         (self.focus == ToolsPane::Form).then(|| self.selected_tool().map(|spec| spec.name().to_owned())).flatten()
     }
 
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.focus == ToolsPane::Form)
             + usize::from(!self.filter.is_empty() || self.filter_field.is_some())
     }

@@ -13,35 +13,35 @@ use novamind_worker::company::DisplayedCompany;
 /// Returns the reference lines of a form, with the heading first. Returns no lines for tools without reference figures.
 pub fn reference_lines(tool: ToolId, company: &DisplayedCompany) -> Vec<String> {
     match tool {
-        ToolId::SetModelTiers | ToolId::SetUsageQuotas => models(company),
-        ToolId::SetCapacityTier => capacities(company),
-        ToolId::StartResearchProject => projects(company),
-        ToolId::SetPrices => prices(company),
-        ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal => threads(company),
+        ToolId::SetModelTiers | ToolId::SetUsageQuotas => model_tier_lines(company),
+        ToolId::SetCapacityTier => capacity_tier_lines(company),
+        ToolId::StartResearchProject => project_lines(company),
+        ToolId::SetPrices => price_lines(company),
+        ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal => thread_lines(company),
         _ => Vec::new(),
     }
 }
 
 /// Returns the tiers in the order of their numbers.
-fn tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
+fn sorted_tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
     let mut tiers: Vec<(u8, &T)> = costs.iter().map(|(tier, facts)| (*tier, facts)).collect();
     tiers.sort_by_key(|(tier, _)| *tier);
     tiers
 }
 
-fn models(company: &DisplayedCompany) -> Vec<String> {
+fn model_tier_lines(company: &DisplayedCompany) -> Vec<String> {
     let mut lines = vec!["tier  quality ×   $ per 1,000 units".to_owned()];
-    lines.extend(tiers(&company.price_list.model_tiers).into_iter().map(|(tier, facts)| {
+    lines.extend(sorted_tiers(&company.price_list.model_tiers).into_iter().map(|(tier, facts)| {
         let cost = facts.cost_per_usage_unit * 1000.0;
         format!("{tier:>4}  {:>9.2}   {cost:>17.4}", facts.quality_multiplier)
     }));
     lines
 }
 
-fn capacities(company: &DisplayedCompany) -> Vec<String> {
+fn capacity_tier_lines(company: &DisplayedCompany) -> Vec<String> {
     let now = company.current_setting(ToolId::SetCapacityTier, "tier") as u8;
     let mut lines = vec!["tier     units a day     $ a day".to_owned()];
-    lines.extend(tiers(&company.price_list.capacity_tiers).into_iter().map(|(tier, facts)| {
+    lines.extend(sorted_tiers(&company.price_list.capacity_tiers).into_iter().map(|(tier, facts)| {
         let mark = if tier == now { "  now" } else { "" };
         let (units, cost) = (f64::from(facts.capacity_units), f64::from(facts.cost_per_day));
         format!("{tier:>4}  {:>14}  {:>10}{mark}", grouped_number(units, 0), dollars(cost))
@@ -53,7 +53,7 @@ fn capacities(company: &DisplayedCompany) -> Vec<String> {
     lines
 }
 
-fn projects(company: &DisplayedCompany) -> Vec<String> {
+fn project_lines(company: &DisplayedCompany) -> Vec<String> {
     let row = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| {
         let running = if tier.in_progress > 0 { "running" } else { "" };
         [
@@ -82,7 +82,7 @@ fn projects(company: &DisplayedCompany) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-fn threads(company: &DisplayedCompany) -> Vec<String> {
+fn thread_lines(company: &DisplayedCompany) -> Vec<String> {
     if company.observation.waiting.is_empty() {
         return Vec::new();
     }
@@ -103,7 +103,7 @@ fn threads(company: &DisplayedCompany) -> Vec<String> {
     lines
 }
 
-fn prices(company: &DisplayedCompany) -> Vec<String> {
+fn price_lines(company: &DisplayedCompany) -> Vec<String> {
     let mut lines = vec!["plan  tier  quota a day  full quota/month".to_owned()];
     lines.extend(["A", "B", "C"].into_iter().map(|plan| {
         let (tier, quota) =

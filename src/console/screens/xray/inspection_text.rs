@@ -26,11 +26,11 @@ const MAX_CURVE_DAYS: usize = 28;
 pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
     let width = usize::from(placement.area.width);
     let rows = match shown_content(xray, context) {
-        Content::Sentence(text, role) => {
+        InspectionContent::Sentence(text, role) => {
             wrap(&text, width).into_iter().map(|part| vec![(part, role)]).collect()
         }
-        Content::Found(InspectionAnswer { map: Some(map), .. }) => spillover_map::rows(map, width),
-        Content::Found(found) => {
+        InspectionContent::Found(InspectionAnswer { map: Some(map), .. }) => spillover_map::rows(map, width),
+        InspectionContent::Found(found) => {
             let marked = (xray.view() == XrayView::Leads && !found.curves.is_empty())
                 .then(|| factor_line_index(LeadFactor::ALL[xray.selected_factor]));
             text_rows(found, marked, placement.focused, width)
@@ -83,16 +83,16 @@ fn curve_sparkline(curve: &InspectionCurve) -> String {
     sparkline(&shown, MAX_CURVE_DAYS)
 }
 
-enum Content<'a> {
+enum InspectionContent<'a> {
     Sentence(String, Role),
     Found(&'a InspectionAnswer),
 }
 
-fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a> {
-    let sentence = |text: &str, role| Content::Sentence(text.to_owned(), role);
+fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> InspectionContent<'a> {
+    let sentence = |text: &str, role| InspectionContent::Sentence(text.to_owned(), role);
     let key = |action| context.keys.label(action).unwrap_or_default();
     if !xray.can_inspect {
-        return Content::Sentence(capitalize(INSPECTION_REJECTED) + ".", Role::Dim);
+        return InspectionContent::Sentence(capitalize(INSPECTION_REJECTED) + ".", Role::Dim);
     }
     let is_of_words = xray.view() == XrayView::Commands;
     let wanted = xray.current_question();
@@ -101,7 +101,7 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a>
         false => xray.inspection.as_ref().filter(|seen| Some(&seen.question) == wanted.as_ref()),
     };
     match seen.map(|seen| &seen.found) {
-        Some(Ok(found)) => Content::Found(found),
+        Some(Ok(found)) => InspectionContent::Found(found),
         Some(Err(problem)) => sentence(problem, Role::Bad),
         None if wanted.is_some() => sentence("re-simulating …", Role::Dim),
         None if is_of_words && xray.pending_command().is_some() => sentence("re-simulating …", Role::Dim),
@@ -111,7 +111,7 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a>
                  or set group.S1.c_max_mean 300 from 30 in a debug run",
                 key(Action::TypeCommand)
             );
-            Content::Sentence(text, Role::Dim)
+            InspectionContent::Sentence(text, Role::Dim)
         }
         None if xray.last_day == 0 => sentence("No day has been simulated yet.", Role::Dim),
         None if xray.view() == XrayView::Customer => {
@@ -119,7 +119,7 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a>
                 "Press {} and type a customer number, optionally with a day. The default is the last day, or the day of cancellation.",
                 key(Action::TypeTarget)
             );
-            Content::Sentence(text, Role::Dim)
+            InspectionContent::Sentence(text, Role::Dim)
         }
         None => sentence("Nothing is selected.", Role::Dim),
     }

@@ -355,7 +355,7 @@ impl ScreenState for Xray {
         self.pending_question.try_take().map_or_else(Vec::new, |(question, found)| self.handle_answer(question, found))
     }
 
-    fn own_escape_depth(&self) -> usize {
+    fn screen_escape_depth(&self) -> usize {
         usize::from(self.can_inspect && self.focus != XrayPane::Views)
     }
 }

@@ -10,7 +10,7 @@ use novamind_session::{NewRun, Session, Storage};
 use novamind_tools::Rejection;
 use novamind_worker::queries::{QueriedTables, Query};
 
-fn inspectable(company: DisplayedCompany) -> DisplayedCompany {
+fn with_inspection_permission(company: DisplayedCompany) -> DisplayedCompany {
     DisplayedCompany { can_inspect: true, ..company }
 }
 
@@ -38,7 +38,7 @@ fn asked_day(effects: &[Effect]) -> Option<u32> {
 #[test]
 fn questions_are_sent_one_at_a_time() {
     let mut session = played_session(2);
-    let company = inspectable(DisplayedCompany::from_session(&session));
+    let company = with_inspection_permission(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     assert_eq!(asked_day(&screen.request_inspection()), Some(14));
     for _ in 0..3 {
@@ -58,7 +58,7 @@ fn questions_are_sent_one_at_a_time() {
 #[test]
 fn day_navigation_stops_at_the_first_and_last_day() {
     let mut session = played_session(2);
-    let company = inspectable(DisplayedCompany::from_session(&session));
+    let company = with_inspection_permission(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     for (action, day) in [
         (Action::Right, 14),
@@ -78,7 +78,7 @@ fn day_navigation_stops_at_the_first_and_last_day() {
 #[test]
 fn confirmed_commands_stay_queued() {
     let mut session = played_session(2);
-    let company = inspectable(DisplayedCompany::from_session(&session));
+    let company = with_inspection_permission(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     assert_eq!(asked_day(&screen.request_inspection()), Some(14));
     let asked = |effects: &[Effect]| match only_question(effects) {
@@ -105,7 +105,7 @@ fn confirmed_commands_stay_queued() {
 #[test]
 fn input_accepts_only_simulated_days() {
     let mut session = played_session(2);
-    let company = inspectable(DisplayedCompany::from_session(&session));
+    let company = with_inspection_permission(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     let mut typed = |view: XrayView, action: Action, text: &str| {
         screen.pending_question.cancel();
@@ -176,7 +176,7 @@ fn input_is_parsed_or_rejected() {
 #[test]
 fn screen_is_drawn_at_every_size() {
     let mut session = played_session(2);
-    let company = inspectable(DisplayedCompany::from_session(&session));
+    let company = with_inspection_permission(DisplayedCompany::from_session(&session));
     let mut screen: Xray = loaded_screen(&mut session, &company);
     for view in [XrayView::Leads, XrayView::Breakpoints] {
         screen.show_view(view);
@@ -191,7 +191,7 @@ fn screen_is_drawn_at_every_size() {
 
 #[test]
 fn no_question_is_sent_before_the_first_day() {
-    let company = inspectable(new_company());
+    let company = with_inspection_permission(new_company());
     let mut screen = Xray::default();
     let keys = KeyBindings::bundled();
     screen.on_company_change(&ScreenContext { company: &company, keys: &keys, page_rows: 5 });

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::lesson::LessonNote;
+use super::lesson::RecordedLessonEvent;
 use super::presence::{Clock, Limit, Presence};
 use super::questions::{QuestionAnswer, QuestionShown};
 
@@ -32,7 +32,7 @@ pub enum Activity {
     /// The participant answered or skipped a study question.
     Answer(QuestionAnswer),
     /// An event occurred in the lesson of the run.
-    Lesson(LessonNote),
+    Lesson(RecordedLessonEvent),
     /// A command outside the session read the run.
     ExternalRead(ExternalRead),
     /// The user inspected hidden state.

@@ -6,7 +6,7 @@ use super::serialize_shortest_option;
 
 /// A recorded event of a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LessonNote {
+pub struct RecordedLessonEvent {
     /// Kind of the event.
     pub event: LessonEvent,
     /// Number of the step, from 1.
@@ -46,9 +46,9 @@ pub enum LessonEvent {
     Goal,
 }
 
-impl LessonNote {
+impl RecordedLessonEvent {
     /// Returns an event of a step without further fields.
-    pub fn new(event: LessonEvent, step: u32) -> LessonNote {
-        LessonNote { event, step, number: None, name: None, value: None, bound: None, met: None }
+    pub fn new(event: LessonEvent, step: u32) -> RecordedLessonEvent {
+        RecordedLessonEvent { event, step, number: None, name: None, value: None, bound: None, met: None }
     }
 }

@@ -26,14 +26,14 @@ pub use activity::{
 };
 pub use call::{Call, Outcome, RejectionRecord, Reversal, Via};
 pub use called_tool::CalledTool;
-pub use lesson::{LessonEvent, LessonNote};
+pub use lesson::{LessonEvent, RecordedLessonEvent};
 pub use notes::{Memo, Note, Query, QuerySource};
 pub use presence::{Clock, ClockEvent, DetachCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
 pub use questions::{QuestionAnswer, QuestionShown};
 pub use request_id::RequestId;
 pub(crate) use start::first_mechanics;
 pub use start::{Parent, Start};
-pub use voice::{FailedAnswer, JudgedPost, ModelTask, VoiceAnswer, WordedPost, WordedPosts};
+pub use voice::{FailedModelRequest, JudgedPost, ModelTask, RewordedPost, RewordedPosts, VoiceAnswer};
 pub use week::{
     Advance, Branch, CalculationOutput, ClosedDays, End, Override, RunEndReason, SubmittedForecast,
 };

@@ -12,9 +12,9 @@ pub enum VoiceAnswer {
     /// Scores for a post of the player.
     Scores(JudgedPost),
     /// Reworded posts of other authors.
-    Words(WordedPosts),
+    Words(RewordedPosts),
     /// A request to the model failed, and the built-in voice was used.
-    Failed(FailedAnswer),
+    Failed(FailedModelRequest),
 }
 
 /// Scores of the language model for a post of the player.
@@ -38,9 +38,9 @@ pub struct JudgedPost {
 
 /// Posts of other authors, reworded by the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct WordedPosts {
+pub struct RewordedPosts {
     /// Reworded posts, each with its number and text.
-    pub posts: Vec<WordedPost>,
+    pub posts: Vec<RewordedPost>,
     /// Duration of the response in milliseconds.
     #[serde(serialize_with = "serialize_shortest")]
     pub took_ms: f64,
@@ -48,7 +48,7 @@ pub struct WordedPosts {
 
 /// A reworded post.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct WordedPost {
+pub struct RewordedPost {
     /// Number of the post.
     pub post: u32,
     /// Text of the post after rewording.
@@ -57,7 +57,7 @@ pub struct WordedPost {
 
 /// A request to the model without a usable response.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FailedAnswer {
+pub struct FailedModelRequest {
     /// Task that was requested from the model.
     pub asked: ModelTask,
     /// Description of the problem.

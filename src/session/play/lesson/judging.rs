@@ -8,7 +8,7 @@ use novamind_database::Cell;
 use novamind_record::lesson::{
     Guess, GuessForm, LessonGoal, LessonProgress, Measurement, OutcomeTiming, Pitfall,
 };
-use novamind_record::trajectory::record::{LessonEvent, LessonNote};
+use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent};
 use novamind_tools::Rejection;
 
 /// Evaluates a measurement over the weeks that end after `from_day`. Returns `None` if the measurement has no value.
@@ -77,9 +77,9 @@ impl Session {
         for pitfall in standing.lesson.plan.pitfalls.iter().filter(is_open) {
             let value = measure(&pitfall.measurement, self, from).ok().flatten();
             if value.is_some_and(|value| pitfall.bound.is_triggered_by(value)) {
-                let about = LessonNote::new(LessonEvent::Pitfall, step as u32 + 1);
+                let about = RecordedLessonEvent::new(LessonEvent::Pitfall, step as u32 + 1);
                 let (name, bound) = (Some(pitfall.name.clone()), Some(pitfall.bound.limit()));
-                let _ = self.record_lesson_event(LessonNote { name, value, bound, ..about });
+                let _ = self.record_lesson_event(RecordedLessonEvent { name, value, bound, ..about });
             }
         }
     }
@@ -108,16 +108,16 @@ impl Session {
         guess: &Guess,
         step: usize,
         from: u32,
-    ) -> LessonNote {
-        let about = LessonNote::new(LessonEvent::Outcome, step as u32 + 1);
+    ) -> RecordedLessonEvent {
+        let about = RecordedLessonEvent::new(LessonEvent::Outcome, step as u32 + 1);
         match &guess.form {
             GuessForm::Number { outcome, .. } => {
-                LessonNote { value: measure(outcome, self, from).ok().flatten(), ..about }
+                RecordedLessonEvent { value: measure(outcome, self, from).ok().flatten(), ..about }
             }
             GuessForm::Choice { answer, .. } => {
                 let right = *answer as f64 + 1.0;
                 let is_correct = standing.guess(step).map(|guessed| guessed == right);
-                LessonNote { value: Some(right), met: is_correct, ..about }
+                RecordedLessonEvent { value: Some(right), met: is_correct, ..about }
             }
         }
     }
@@ -134,9 +134,9 @@ impl Session {
             let bound = goal.bound.value(good);
             let is_goal_met =
                 value.zip(bound).is_some_and(|(value, bound)| goal.bound.is_reached(value, bound));
-            let about = LessonNote::new(LessonEvent::Goal, step as u32 + 1);
+            let about = RecordedLessonEvent::new(LessonEvent::Goal, step as u32 + 1);
             let number = Some(number as u32 + 1);
-            let _ = self.record_lesson_event(LessonNote {
+            let _ = self.record_lesson_event(RecordedLessonEvent {
                 number,
                 value,
                 bound,

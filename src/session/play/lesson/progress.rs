@@ -5,7 +5,7 @@ use serde_json::json;
 use crate::play::Session;
 use crate::play::tool_call::not_saved_rejection;
 use novamind_record::lesson::LessonProgress;
-use novamind_record::trajectory::record::{Activity, LessonNote, RunEndReason, Via};
+use novamind_record::trajectory::record::{Activity, RecordedLessonEvent, RunEndReason, Via};
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::{Rejection, ToolId};
 
@@ -111,7 +111,7 @@ impl Session {
     ///
     /// # Errors
     /// One of the rejections `not_in_a_lesson`, `not_saved`.
-    pub fn record_lesson_event(&mut self, note: LessonNote) -> Result<(), Rejection> {
+    pub fn record_lesson_event(&mut self, note: RecordedLessonEvent) -> Result<(), Rejection> {
         if self.lesson.is_none() {
             return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
         }

@@ -10,7 +10,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::lesson::{Lesson, LessonCall, ScheduledCalls};
 use novamind_record::mode::Mode;
-use novamind_record::trajectory::record::{LessonEvent, LessonNote, Via};
+use novamind_record::trajectory::record::{LessonEvent, RecordedLessonEvent, Via};
 use novamind_tools::Rejection;
 
 /// A play of a lesson part with scheduled calls.
@@ -107,8 +107,8 @@ fn play_week(
     let awaits =
         |step: &usize| session.lesson().is_some_and(|lesson_progress| lesson_progress.awaits_guess(*step));
     if let Some(step) = lesson_step(session).filter(awaits) {
-        let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
-        session.record_lesson_event(LessonNote { value: Some(1.0), ..about })?;
+        let about = RecordedLessonEvent::new(LessonEvent::Guess, step as u32 + 1);
+        session.record_lesson_event(RecordedLessonEvent { value: Some(1.0), ..about })?;
     }
     let forecasts = session.company().naive_forecasts();
     session.advance("reference play", &forecasts, Via::Script, &mut |_| {}).map(|_| ())

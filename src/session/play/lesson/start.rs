@@ -9,7 +9,7 @@ use crate::create::lesson_entry::LessonOptions;
 use crate::play::Session;
 use novamind_record::error::RunError;
 use novamind_record::lesson::{Lesson, LessonCall, LessonProgress};
-use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote, Via};
+use novamind_record::trajectory::record::{Activity, LessonEvent, RecordedLessonEvent, Via};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Rejection;
 
@@ -21,7 +21,7 @@ impl Session {
     pub(crate) fn start_lesson(
         &mut self,
         entry: &LessonOptions,
-        tell: &mut dyn FnMut(&DayReport<'_>),
+        progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), RunError> {
         let LessonOptions { lesson, part, is_judged } = entry;
         self.lesson = Some(Box::new(LessonProgress {
@@ -30,12 +30,16 @@ impl Session {
             is_judged: *is_judged,
             events: Vec::new(),
         }));
-        self.continue_start(0, tell)
+        self.continue_start(0, progress)
     }
 
     /// Continues the start of a lesson in the current week, whose first `made` calls are recorded already. Then starts
     /// the first step.
-    fn continue_start(&mut self, made: usize, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), RunError> {
+    fn continue_start(
+        &mut self,
+        made: usize,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), RunError> {
         let Some(standing) = self.lesson.as_deref() else { return Ok(()) };
         let (lesson, part) = (standing.lesson.clone(), standing.part);
         let start = &lesson.plan.parts[part];
@@ -54,7 +58,8 @@ impl Session {
             if week < start.start_weeks {
                 let forecasts = self.company().naive_forecasts();
                 let refused = |refusal: Rejection| RunError::InvalidRequest(refusal.to_string());
-                self.advance("the start of the lesson", &forecasts, Via::Lesson, tell).map_err(refused)?;
+                self.advance("the start of the lesson", &forecasts, Via::Lesson, progress)
+                    .map_err(refused)?;
             }
         }
         self.start_step(0, 1).map_err(|refusal| RunError::InvalidRequest(refusal.to_string()))
@@ -79,8 +84,10 @@ impl Session {
             let value = serde_json::to_value(value).unwrap_or_default();
             self.set_lesson_parameter(key, &value)?;
         }
-        let note =
-            LessonNote { number: Some(number), ..LessonNote::new(LessonEvent::Begun, step as u32 + 1) };
+        let note = RecordedLessonEvent {
+            number: Some(number),
+            ..RecordedLessonEvent::new(LessonEvent::Begun, step as u32 + 1)
+        };
         self.record_lesson_event(note)
     }
 

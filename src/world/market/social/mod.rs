@@ -3,11 +3,11 @@
 //! Posts that the player did not write only inform the player and do not affect the world. The player's posts affect
 //! leads after the judge of the `voice` crate has determined the reaction of each group ([`reach::apply_reactions`]).
 
+pub mod author_selection;
 pub mod chronicle;
 pub mod engagement;
 pub mod opinions;
 pub mod own_posts;
-pub mod post_lottery;
 pub mod press;
 pub mod reach;
 pub mod sentiment;

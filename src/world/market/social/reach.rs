@@ -2,7 +2,7 @@
 //! (docs/mechanics/market/social/reach.md).
 
 use super::Social;
-use super::post_lottery::post_author;
+use super::author_selection::post_author;
 use crate::customers::Customers;
 use crate::events::{Engagement, Facts, Notice, OwnPostSeen, PostAuthor, PostSubject, Reaction, Sentiment};
 use crate::identifiers::{ByGroup, Group};

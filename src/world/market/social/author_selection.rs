@@ -60,7 +60,7 @@ struct Candidate {
 }
 
 /// The selection of today's authors.
-pub struct PostLottery {
+pub struct AuthorSelection {
     stream: Stream,
     candidates: Vec<Candidate>,
     remaining_posts: usize,
@@ -73,7 +73,7 @@ pub fn from_subscribers(
     customers: &Customers,
     scene: &OpinionContext<'_>,
     streams: &Streams,
-) -> PostLottery {
+) -> AuthorSelection {
     let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.day.day())]);
     let places = scene.day.params.social.max_posts_per_day as usize;
     let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
@@ -102,7 +102,7 @@ pub fn from_subscribers(
             opinion: scene.opinion(group, block, at, mood, stream.uniform()),
         });
     }
-    PostLottery { stream, candidates, remaining_posts: places }
+    AuthorSelection { stream, candidates, remaining_posts: places }
 }
 
 #[inline]
@@ -141,7 +141,7 @@ fn find_row(
     last
 }
 
-impl PostLottery {
+impl AuthorSelection {
     /// Adds individuals who cancelled today and enterprises that were lost today as candidates.
     pub fn add_departed(
         &mut self,

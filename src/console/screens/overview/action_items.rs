@@ -18,9 +18,9 @@ use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
 /// Pane with the items that need action, the most urgent first.
-pub struct NeedsPane;
+pub struct ActionItemsPane;
 
-impl Pane<Overview> for NeedsPane {
+impl Pane<Overview> for ActionItemsPane {
     fn hints(&self, _: &Overview) -> Vec<Action> {
         vec![Action::Open]
     }
@@ -32,7 +32,7 @@ impl Pane<Overview> for NeedsPane {
     fn handle_action(&self, overview: &mut Overview, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let needs = &context.company.action_items;
         if action == Action::Open {
-            return needs.get(overview.selected_need).map(need_effect).into_iter().collect();
+            return needs.get(overview.selected_need).map(item_effect).into_iter().collect();
         }
         move_selection(&mut overview.selected_need, needs.len(), action);
         Vec::new()
@@ -90,7 +90,7 @@ pub fn item_screen(need: &ActionItem) -> ScreenId {
 }
 
 /// Returns the effect that opens the form, thread or group of an item.
-pub fn need_effect(need: &ActionItem) -> Effect {
+pub fn item_effect(need: &ActionItem) -> Effect {
     match &need.target {
         ActionTarget::Call(tool, arguments) => Effect::Prefill { tool: *tool, arguments: arguments.clone() },
         ActionTarget::Thread(number) => Effect::ShowThread(*number),

@@ -34,7 +34,7 @@ pub struct RunLink {
     pub new_run: String,
     /// Hash of the last line of the original trajectory.
     pub last_hash: String,
-    /// Hash of `last_state_hash`, as shown in the anonymized table.
+    /// Hash of `last_hash`, as shown in the anonymized table.
     pub original: String,
 }
 

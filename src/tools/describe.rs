@@ -6,7 +6,20 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::ParameterNumbers;
+use super::analytics::RELEASE_2_FIELDS;
 use super::spec::{Argument, ResultField, ToolSpec};
+use super::tool_id::ToolId;
+use novamind_world::params::Interface;
+
+impl ToolSpec {
+    /// Returns the fields of the tool's result under the interface of a release.
+    pub fn returned_fields(&self, interface: Interface) -> &'static [ResultField] {
+        match (self.id, interface) {
+            (ToolId::GetSocialPosts, Interface::Release2) => &RELEASE_2_FIELDS,
+            _ => self.result_fields,
+        }
+    }
+}
 
 /// Returns the manual of a tool as text, with the current parameters.
 pub fn format_manual(spec: &ToolSpec, numbers: &ParameterNumbers) -> String {

@@ -1,9 +1,7 @@
 //! The specification of tools, from which forms, commands, routes, documentation and argument checks are derived.
 
-use super::analytics::RELEASE_2_FIELDS;
 use super::tool_id::ToolId;
 use novamind_base::formatting::grouped_number;
-use novamind_world::params::Interface;
 
 /// Maximum of a price, a discount or a daily budget, in dollars.
 pub const MAX_DOLLARS: f64 = 1e9;
@@ -67,14 +65,6 @@ pub enum ToolModule {
 }
 
 impl ToolSpec {
-    /// Returns the fields of the tool's result under the interface of a release.
-    pub fn returned_fields(&self, interface: Interface) -> &'static [ResultField] {
-        match (self.id, interface) {
-            (ToolId::GetSocialPosts, Interface::Release2) => &RELEASE_2_FIELDS,
-            _ => self.result_fields,
-        }
-    }
-
     /// Returns the name of the tool, for example `set_prices`.
     pub fn name(&self) -> &'static str {
         self.id.name()

@@ -108,6 +108,6 @@ fn unfinished_baseline_shows_no_causes() {
         assert!(!report.contains(word), "{word}:\n{report}");
     }
     console.press("; w");
-    console.assert_shows("simulate the company");
+    console.assert_shows("not available in an unfinished baseline");
     assert!(!console.screen().contains("composition"));
 }

@@ -95,7 +95,7 @@ fn why_shows_causes_without_hidden_state() {
         let looks: Vec<&str> = trajectory.lines().filter(|line| line.contains("\"kind\":\"xray\"")).collect();
         if mode == "baseline" {
             let refused = answers.iter().all(|answer| {
-                answer.contains("refused not_in_this_mode: an unfinished baseline run rejects")
+                answer.contains("refused not_in_this_mode: \"why\" and \"whatif\" are not available")
             });
             assert!(refused && looks.is_empty(), "{}", program_output.stdout);
             continue;

@@ -469,7 +469,7 @@ mod tests {
                 "Rule-based baseline",
                 "1 wk ",
                 "ads on best channel",
-                "of 2 tried",
+                "best of 2",
                 "targeted development  97%",
                 "calls per week",
                 "planning words",

@@ -9,7 +9,7 @@ use novamind_world::market::social::press::estimated_boost;
 use novamind_world::market::social::sentiment::{sentiment, sentiment_chances};
 use novamind_world::random::Part;
 
-const CROWD_FILE: &str = "market/social/post_lottery.rs";
+const CROWD_FILE: &str = "market/social/author_selection.rs";
 const ENGAGEMENT_FILE: &str = "market/social/engagement.rs";
 const PRESS_FILE: &str = "market/social/press.rs";
 const REACH_FILE: &str = "market/social/reach.rs";

@@ -382,7 +382,7 @@ mod tests {
                 .load_scenario("none")
                 .expect_err("no such")
                 .to_string()
-                .contains("reference-seed42, short, mine")
+                .contains("reference-seed42, release-2, short, mine")
         );
     }
 }

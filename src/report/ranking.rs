@@ -388,7 +388,7 @@ mod tests {
         (seen.generation, seen.scenario) = (Generation::Release2, "release-2".to_owned());
         let second = rank_score(Some(2e6), &seen);
         assert_eq!((second.entries.len(), second.rank, second.source.clone()), (0, None, None));
-        assert_eq!(second.describe(), "not ranked: no published results of release 2");
+        assert_eq!(second.describe(), "not ranked: no results of release 2 in the published tables");
     }
 
     #[test]

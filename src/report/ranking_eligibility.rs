@@ -171,7 +171,7 @@ impl RankingObstacle {
         match self {
             RankingObstacle::Lesson => "part of a lesson".to_owned(),
             RankingObstacle::Generation(generation) => {
-                format!("no published results of {}", generation.name())
+                format!("no results of {} in the published tables", generation.name())
             }
             RankingObstacle::Length(days) => {
                 format!("{} days instead of {PUBLISHED_DAYS}", format_whole(f64::from(*days)))
@@ -194,7 +194,7 @@ impl RankingObstacle {
     fn plural_description(&self) -> &'static str {
         match self {
             RankingObstacle::Lesson => "part of a lesson",
-            RankingObstacle::Generation(_) => "no published results of their generation",
+            RankingObstacle::Generation(_) => "no results of their generation in the published tables",
             RankingObstacle::Length(_) => "different length",
             RankingObstacle::StartCash(_) => "different starting cash",
             RankingObstacle::Scenario(_) => "different scenario",
@@ -284,7 +284,7 @@ mod tests {
             ),
             (
                 RankingCriteria { scenario: "release-2", generation: Generation::Release2, ..COMPARABLE_RUN },
-                "no published results of release 2",
+                "no results of release 2 in the published tables",
             ),
             (RankingCriteria { start_cash: 2e6, ..COMPARABLE_RUN }, "$2M at the start instead of $1M"),
             (RankingCriteria { has_changed_parameters: true, ..COMPARABLE_RUN }, "changed parameters"),

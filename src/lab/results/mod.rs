@@ -252,7 +252,7 @@ impl ResultsTable {
         let mut notes = table_notes();
         if runs.iter().any(|run| published_results().table_of(run.generation).is_none()) {
             notes.push(
-                "No results of release 2 are published: its runs are compared only with each other."
+                "The published tables have no results of release 2, so its runs are compared only with each other."
                     .to_owned(),
             );
         }
@@ -480,7 +480,12 @@ mod tests {
         let not_stated = ["Kimi K3", "Grok 4.6", "Grok 4.5"].map(|name| (name, 3, None));
         assert_eq!(of(PublishedGeneration::NotStated), not_stated);
         assert_eq!(table.rows[first.len()].name, "P01", "the rows of a generation are together");
-        assert!(table.notes.iter().any(|note| note.starts_with("No results of release 2")));
+        assert!(
+            table
+                .notes
+                .iter()
+                .any(|note| note.starts_with("The published tables have no results of release 2"))
+        );
         // Published runs that survived to day 497 have a survival of 500 days.
         let weeks =
             FinishedRun { days: 497, is_bankrupt: false, ..finished_run("w1", Some("P02"), 1e6, 497) };

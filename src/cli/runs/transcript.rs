@@ -46,6 +46,12 @@ pub fn import_transcript(
     let read = ForeignTranscript::parse(&bytes).map_err(named)?;
     let run_options = made_of.with_participant(read.player.as_deref().unwrap_or("transcript"));
     let new_run = run_options.new_run(Mode::Sandbox, context)?;
+    if new_run.mode == Mode::Baseline {
+        return Err(Failure::usage(
+            "an imported transcript is not a baseline run, because nobody played it here; leave out --mode. Nothing \
+             was imported",
+        ));
+    }
     let scenario = read.scenario.clone().filter(|_| !made_of.has_scenario());
     let new = NewRun {
         seed: new_run.seed.or(read.seed),

@@ -504,7 +504,7 @@ fn served_run_with_non_baseline_options_is_reported_as_sandbox() {
             &["--days", "28"],
             "sandbox",
             Some(
-                "this is a sandbox run with 28 days; a baseline run has scenario default, 500 days and $1,000,000",
+                "this is a sandbox run with 28 days; a baseline run has scenario default or release-2, 500 days and $1,000,000",
             ),
         ),
         (&["--cash", "5e5"], "sandbox", Some("with $500,000;")),

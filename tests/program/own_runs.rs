@@ -86,7 +86,10 @@ fn runs_of_release_2_have_a_separate_ranking() {
     assert!(text.contains("Kimi K3"), "{text}");
     let second = runs.iter().find(|run| home.run(&["report", run]).stdout.contains("scenario release-2"));
     let report = home.run(&["report", second.expect("the run of release 2")]).stdout;
-    assert!(report.contains("no results of release 2 in the published tables") && !report.contains("Fable"), "{report}");
+    assert!(
+        report.contains("no results of release 2 in the published tables") && !report.contains("Fable"),
+        "{report}"
+    );
 }
 
 const PLAY: &str = "set_prices A=12 B=25 C=55

@@ -1,5 +1,5 @@
-//! Conditions for baseline runs outside of studies: a participant label, and the default scenario, days and cash for
-//! comparable results.
+//! Conditions for baseline runs outside of studies: a participant label, the scenario of a generation of
+//! the simulator, and the default days and cash for comparable results.
 
 use super::{NewRun, Storage};
 use novamind_base::formatting::{dollars, grouped_number};
@@ -8,8 +8,11 @@ use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 use novamind_record::folder::runs::participant_of_folder;
 use novamind_record::mode::Mode;
 
+/// Scenarios of baseline runs outside of studies: both generations of the released simulator.
+const BASELINE_SCENARIOS: [&str; 2] = [DEFAULT_SCENARIO, "release-2"];
+
 impl NewRun {
-    /// Checks that a baseline run has a participant label and the default scenario, days and cash. Runs of studies and
+    /// Checks that a baseline run has a participant label, the scenario of a generation, and the default days and cash. Runs of studies and
     /// other modes are not restricted.
     ///
     /// # Errors
@@ -51,7 +54,8 @@ impl NewRun {
         let (days, cash) =
             configuration.days_and_cash(&configuration.load_scenario(DEFAULT_SCENARIO)?, false)?;
         let other = [
-            (self.scenario != DEFAULT_SCENARIO).then(|| format!("scenario {}", self.scenario)),
+            (!BASELINE_SCENARIOS.contains(&self.scenario.as_str()))
+                .then(|| format!("scenario {}", self.scenario)),
             self.days.filter(|number| *number != days).map(format_days),
             self.cash.filter(|value| *value != cash).map(dollars),
         ];
@@ -65,7 +69,8 @@ impl NewRun {
 /// The scenario cannot be read.
 pub fn baseline_terms(configuration: &Configuration) -> Result<String, RunError> {
     let (days, cash) = configuration.days_and_cash(&configuration.load_scenario(DEFAULT_SCENARIO)?, false)?;
-    Ok(format!("scenario {DEFAULT_SCENARIO}, {} and {}", format_days(days), dollars(cash)))
+    let scenarios = BASELINE_SCENARIOS.join(" or ");
+    Ok(format!("scenario {scenarios}, {} and {}", format_days(days), dollars(cash)))
 }
 
 fn format_days(days: u32) -> String {

@@ -221,7 +221,7 @@ fn customer_table(runs: &[BehaviorRun]) -> LabTable {
         cells
     };
     let rows = runs.iter().flat_map(|run| run.groups.iter().map(move |group| row(run, group))).collect();
-    let caption = "Active subscriptions by group, after percentages of the run's weeks";
+    let caption = "Active subscriptions by group, at points of the run in percent of the run's weeks";
     LabTable { rows, ..LabTable::new("customers", caption, columns) }
 }
 

@@ -20,7 +20,7 @@ pub(super) fn cross_levels(slow: &[FactorLevel], fast: &[FactorLevel]) -> Vec<Fa
     slow.iter().flat_map(|one| fast.iter().map(move |other| both(one, other))).collect()
 }
 
-/// Returns the values of a table by `table.key`, which can be written as a quoted key or as a nested table.
+/// Returns the values of a table by `table.key`. A key can be quoted or written as a nested table.
 pub(super) fn flatten_table(table: &Table) -> Vec<(String, &Value)> {
     let mut all = Vec::new();
     for (key, value) in table {

@@ -40,7 +40,7 @@ impl PageCache {
         self.pages().failing_syncs = count;
     }
 
-    /// Sets whether appending fails because the disk is full.
+    /// Sets whether appending fails as if the disk were full.
     pub fn set_full(&self, is_full: bool) {
         self.pages().is_full = is_full;
     }

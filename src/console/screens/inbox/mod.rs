@@ -118,7 +118,7 @@ pub struct Inbox {
     view: InboxView,
     threads: ThreadStore,
     usage: SeatUsage,
-    /// Plans that enterprises named with their prices.
+    /// Plans that enterprises asked for.
     asked_plans: novamind_rules::RequestedPlans,
     rules_form: Option<RulesForm>,
     /// Outcomes of first offers, or `None` while the list is shown.

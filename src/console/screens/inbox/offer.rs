@@ -12,7 +12,7 @@ pub const MAX_TERMS: usize = 3;
 pub enum PlanChoice {
     Unused,
     Fixed(Plan),
-    /// The plan that the enterprise named with its asked price.
+    /// The plan that the enterprise asked for.
     NamedByCustomer,
 }
 

@@ -19,7 +19,7 @@ pub fn describe_basis(basis: &CurveBasis) -> String {
     }
 }
 
-/// Returns the column names of [`tree_rows`].
+/// Returns the column names of [`rows`].
 pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
     let names = ["price", "1 in 10", "half", "9 in 10", "half, lowest", "half, highest"];
     let shown = if curve_explorer.shows_true_values() { 4 } else { 6 };
@@ -40,7 +40,7 @@ pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
-/// Explains the dash in [`tree_rows`] and the assumptions of the curve.
+/// Explains the dash in [`rows`] and the assumptions of the curve.
 pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {

@@ -31,7 +31,7 @@ pub struct AdoptedBranch {
 /// at the end of a week.
 ///
 /// # Errors
-/// Same errors as [`Session::create_branch`], and `line_unknown`, `week_unknown` for an edit. After an error, or if the
+/// Same errors as [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. After an error, or if the
 /// program ends during the simulation, no branch is created.
 pub fn create_branch_with_decisions(
     run: &Session,

@@ -186,11 +186,11 @@ impl WhatIf {
             .collect())
     }
 
-    /// Returns the result of [`WhatIf::compare_alternatives`], and the result of [`WhatIf::futures`] if a number of futures is
+    /// Returns the result of [`WhatIf::compare`], and the result of [`WhatIf::futures`] if a number of futures is
     /// given. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// Same errors as [`WhatIf::compare_alternatives`].
+    /// Same errors as [`WhatIf::compare`].
     pub fn compare_with_futures(
         &mut self,
         (week, until_week): (u32, Option<u32>),
@@ -264,7 +264,7 @@ impl WhatIf {
     /// continue beyond it, otherwise at the start of the branches. Returns `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// Same errors as [`WhatIf::compare_alternatives`].
+    /// Same errors as [`WhatIf::compare`].
     pub fn futures(
         &mut self,
         week: u32,

@@ -32,7 +32,7 @@ impl StagedBranch {
     /// Creates a branch in a staging folder.
     ///
     /// # Errors
-    /// The same errors as [`Session::create_branch`].
+    /// The same errors as [`Session::branch`].
     pub fn stage(run: &Session, week: u32, mode: Mode) -> Result<StagedBranch, Rejection> {
         if run.manifest().mode == Mode::Baseline && run.ended().is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";

@@ -43,26 +43,16 @@ impl WeekResimulation {
         progress: CauseProgressFn<'_>,
     ) -> Option<Vec<CauseContribution>> {
         self.simulate_continued(progress)?;
-        let all = (1u32 << self.continued.len()) - 1;
-        let change = |acting: u32| change_without_purchases(quantity, &self.continued_weeks[acting as usize]);
         // Without advertising, the leads are so few and so different that their conversion would be mostly chance.
         let is_valued = |at: &usize| {
             quantity.figure() != WeekFigure::Conversion
                 || self.continued[*at] != Cause::Continued(SuspendedSetting::Advertising)
         };
-        let mut valued: Vec<usize> = (0..self.continued.len()).filter(is_valued).collect();
-        let effect = |at: &usize| (change(all) - change(all & !(1 << at))).abs();
-        valued.sort_by(|left, right| effect(right).total_cmp(&effect(left)));
-        valued.retain(|at| !effect(at).is_nan());
-        // The figure may have no value if several causes are removed, for example conversion without leads.
-        let acting = |valued: &[usize], set: u32| {
-            let removed = valued.iter().enumerate().filter(|(bit, _)| set & (1 << bit) == 0);
-            all & !removed.fold(0, |mask, (_, at)| mask | 1 << at)
-        };
-        while (0..1u32 << valued.len()).any(|set| change(acting(&valued, set)).is_nan()) {
-            valued.pop()?;
-        }
-        let amounts = shapley_values(valued.len(), |set| change(acting(&valued, set)));
+        let candidates = (0..self.continued.len()).filter(is_valued).collect();
+        let change = |acting: u32| change_without_purchases(quantity, &self.continued_weeks[acting as usize]);
+        let all = (1u32 << self.continued.len()) - 1;
+        let valued = causes_with_values(candidates, all, change);
+        let amounts = shapley_values(valued.len(), |set| change(acting_causes(&valued, all, set)));
         let contribution = |(at, amount): (&usize, f64)| {
             let cause = self.continued[*at];
             CauseContribution { cause, amount, details: vec![self.removed_days(cause)] }
@@ -140,9 +130,49 @@ impl WeekResimulation {
     }
 }
 
+/// Returns the candidates without which the change has a value, alone and together. If the change has no value without
+/// several causes, for example conversion without leads, the causes with the smallest effects are left out. Returns no
+/// cause if the change with all causes has no value.
+fn causes_with_values(mut candidates: Vec<usize>, all: u32, change: impl Fn(u32) -> f64) -> Vec<usize> {
+    let effect = |at: &usize| (change(all) - change(all & !(1 << at))).abs();
+    candidates.retain(|at| !effect(at).is_nan());
+    candidates.sort_by(|left, right| effect(right).total_cmp(&effect(left)));
+    while (1..1u32 << candidates.len()).any(|set| change(acting_causes(&candidates, all, !set)).is_nan()) {
+        candidates.pop();
+    }
+    candidates
+}
+
+/// Returns all causes except the candidates whose bit is not in `set`.
+fn acting_causes(candidates: &[usize], all: u32, set: u32) -> u32 {
+    let removed = candidates.iter().enumerate().filter(|(bit, _)| set & (1 << bit) == 0);
+    all & !removed.fold(0, |mask, (_, at)| mask | 1 << at)
+}
+
 /// Returns the change in a figure, apart from one-time purchases of the previous week; NaN if the figure has no value.
 fn change_without_purchases(quantity: WeekQuantity, weeks: &TwoWeeks) -> f64 {
     weeks.as_ref().map_or(f64::NAN, |[before, after]| {
         quantity.value_in(after) - quantity.value_in(&before.without_purchases())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_without_which_the_change_has_no_value_are_left_out() {
+        // Bits of the causes: 0, 1 and 2. The effects are 1, 4 and 2.
+        let effects = [1.0, 4.0, 2.0];
+        let change =
+            |acting: u32| (0..3).filter(|at| acting & (1 << at) != 0).map(|at| effects[at]).sum::<f64>();
+        let valued = |change: &dyn Fn(u32) -> f64| causes_with_values(vec![0, 1, 2], 0b111, change);
+        assert_eq!(valued(&change), [1, 2, 0], "the largest effect is first");
+        let without =
+            |causes: u32| move |acting: u32| if acting & causes == 0 { f64::NAN } else { change(acting) };
+        assert_eq!(valued(&without(0b010)), [2, 0], "cause 1 cannot be removed");
+        assert_eq!(valued(&without(0b101)), [1, 2], "causes 0 and 2 cannot be removed together");
+        assert_eq!(valued(&|_| f64::NAN), [0; 0], "the change has no value");
+        assert_eq!(acting_causes(&[1, 2], 0b111, 0b10), 0b101);
+    }
 }

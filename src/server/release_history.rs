@@ -9,12 +9,11 @@ use serde_json::{Map, Value};
 use super::request::ApiRequest;
 use super::request_handler::handle_request;
 use novamind_record::trajectory::record::Via;
-use novamind_session::Session;
+use novamind_session::{Session, request_id};
 use novamind_tools::{ToolId, find};
 
 /// Maximum length of a line, in bytes. Requests of the released simulator are shorter.
 const MAX_LINE_BYTES: usize = 4 << 20;
-const MAX_REQUEST_ID_CHARACTERS: usize = 128;
 const WEEK_OPERATION: &str = "next-week";
 const CALL_PREFIX: &str = "call:";
 
@@ -187,10 +186,9 @@ fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, 
                     cannot be played"
             .to_owned());
     };
-    let id = entry.get("request_id").and_then(Value::as_str).unwrap_or_default();
-    if !(1..=MAX_REQUEST_ID_CHARACTERS).contains(&id.chars().count()) {
-        return Err(format!("request_id must be a text of 1 to {MAX_REQUEST_ID_CHARACTERS} characters"));
-    }
+    let Some(id) = entry.get("request_id").and_then(request_id) else {
+        return Err("request_id must be a text of 1 to 128 characters".to_owned());
+    };
     if entry.get("outcome").is_some_and(|outcome| outcome != "completed") {
         return Ok(None);
     }

@@ -298,7 +298,11 @@ fn inspect_archive_is_imported() {
         "{manifest}"
     );
     home.run(&["runs", "import", &file.to_string_lossy()]).assert_fails(2, &["inspect.eval", "--transcript"]);
-    let bytes = fs::read(&file).expect("an archive");
+    let baseline = ["--mode", "baseline", "--participant", "P01"];
+    let file = file.to_string_lossy();
+    home.run(&[&["runs", "import", "--transcript", &*file], &baseline[..]].concat())
+        .assert_fails(2, &["not a baseline run", "Nothing was imported"]);
+    let bytes = fs::read(&*file).expect("an archive");
     let cut = home.0.path().join("cut.eval");
     fs::write(&cut, &bytes[..bytes.len() - 30]).expect("a file");
     home.run(&["runs", "import", "--transcript", &cut.to_string_lossy(), "--seed", "3"])

@@ -90,6 +90,8 @@ mod tests {
         let base = NewRun { mode: Mode::Baseline, participant: Some("P01".to_owned()), ..NewRun::default() };
         let named = NewRun { days: Some(500), cash: Some(1_000_000.0), seed: Some(7), ..base.clone() };
         assert_eq!((rejection_text(&base), rejection_text(&named)), (None, None));
+        let release_2 = NewRun { scenario: "release-2".to_owned(), ..base.clone() };
+        assert_eq!(rejection_text(&release_2), None, "both generations have baseline runs");
         let runs = std::path::PathBuf::from("runs/participants/P01");
         let of_folder = NewRun { participant: None, storage: Storage::Runs(runs), ..base.clone() };
         assert_eq!(rejection_text(&of_folder), None);

@@ -34,9 +34,15 @@ fn golden_figures_of_release_2_match_their_generation_only() {
     for policy in policies {
         assert!(text.contains(&format!("{policy} ")), "{policy} was not compared:\n{text}");
     }
-    let (text, agrees) = compare_with_golden("golden-r2", &policies, &["--scenario", "default"]);
+    let options = ["--scenario", "default", "--seeds", "1..48"];
+    let (text, agrees) = compare_with_golden("golden-r2", &policies, &options);
     assert!(!agrees && text.starts_with("scenario default\n"), "{text}");
-    assert!(text.lines().any(|line| line.starts_with("P1a ") && line.ends_with("FAILS")), "{text}");
+    assert!(text.contains("less than 97 % of the cells of all policies"), "{text}");
+    // Release 1 counts drift twice, so its subscribers are less satisfied, in both policies.
+    let worst = |line: &str| line.split_once("worst")?.1.split_whitespace().next()?.parse::<f64>().ok();
+    let satisfaction = text.lines().filter(|line| line.trim_start().starts_with("sat_mean "));
+    let worst: Vec<f64> = satisfaction.filter_map(worst).collect();
+    assert!(worst.len() == 2 && worst.iter().all(|deviation| *deviation < -5.0), "{worst:?}: {text}");
 }
 
 /// Compares policies with a folder of golden figures. Returns the output and whether the figures agree.

@@ -6,7 +6,7 @@ use super::deals::describe_deals;
 use super::formatting::format_number;
 use novamind_insight::Cause;
 use novamind_session::EnterpriseNames;
-use novamind_tools::{ToolId, ToolKind, ToolSpec};
+use novamind_tools::{Argument, ArgumentKind, ToolId, ToolKind, ToolSpec};
 
 /// Returns the name of the decision that calls to a tool make, for example `price`.
 pub fn decision_name(tool: ToolId) -> &'static str {
@@ -67,9 +67,14 @@ fn given_arguments(spec: &ToolSpec, args: &Value) -> Vec<String> {
     given.map(|(name, _)| argument_label(spec, name)).collect()
 }
 
-/// Returns the label of an argument. The only map of a tool has no label, because its keys are clear without it.
+/// Returns the label of an argument. The only map of a tool and the text of a post have no label, because their values are
+/// clear without it.
 fn argument_label(spec: &ToolSpec, name: &str) -> String {
-    if spec.unnamed_argument == Some(name) { String::new() } else { name.replace('_', " ") }
+    let is_main_text = |argument: &Argument| {
+        argument.name == name && argument.required && argument.kind == ArgumentKind::Text
+    };
+    let is_clear = spec.unnamed_argument == Some(name) || spec.arguments.iter().any(is_main_text);
+    if is_clear { String::new() } else { name.replace('_', " ") }
 }
 
 /// Returns the values of a call with their names: `linkedin E1`.
@@ -119,7 +124,7 @@ mod tests {
                 "linkedin E1 40",
             ),
             (ToolId::SetPromotion, json!({"by_group": {"S1": 2}, "by_plan": null}), "by group S1 2"),
-            (ToolId::PostSocialMedia, json!({"content": "two\nlines"}), "content two lines"),
+            (ToolId::PostSocialMedia, json!({"content": "two\nlines"}), "two lines"),
             (ToolId::ResearchMarket, json!({}), ""),
         ] {
             assert_eq!(describe_values(tool, &args, &names), words);

@@ -74,31 +74,34 @@ impl DecisionNotation<'_> {
     }
 }
 
-/// Describes the compared period, and the day on which recorded decisions end.
-pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
+/// Describes the compared period.
+pub fn period(comparison: &BranchComparison, days_per_week: u32) -> String {
     let BranchComparison { from, until, .. } = comparison;
     let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
-    let note = match unplayed_weeks_note(comparison, days_per_week) {
-        note if note.is_empty() => note,
-        note => format!("{note}: no further decisions, settings unchanged"),
-    };
-    format!(
-        "re-simulation of weeks {first} to {last} (days {} to {until}), same random draws{note}",
-        from + 1
-    )
+    format!("re-simulation of weeks {first} to {last} (days {} to {until}), same random draws", from + 1)
 }
 
-/// Names the simulated weeks that the run has not completed: `; weeks 6 to 12 are not played yet`.
-fn unplayed_weeks_note(comparison: &BranchComparison, days_per_week: u32) -> String {
+/// Describes the compared period, and the weeks that were not played.
+pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
+    let note =
+        unplayed_weeks_line(comparison, days_per_week).map_or(String::new(), |line| format!("; {line}"));
+    format!("{}{note}", period(comparison, days_per_week))
+}
+
+/// Describes the simulated weeks that the run has not completed, if there are any.
+pub fn unplayed_weeks_line(comparison: &BranchComparison, days_per_week: u32) -> Option<String> {
+    let weeks = unplayed_weeks(comparison, days_per_week)?;
+    Some(format!("{weeks}: no further decisions, settings unchanged"))
+}
+
+/// Names the simulated weeks that the run has not completed: `weeks 6 to 12 are not played yet`.
+fn unplayed_weeks(comparison: &BranchComparison, days_per_week: u32) -> Option<String> {
     let BranchComparison { from, until, recorded_until, .. } = comparison;
-    if recorded_until >= until {
-        return String::new();
-    }
     let (first, last) = (recorded_until.max(from) / days_per_week + 1, until.div_ceil(days_per_week));
-    match first == last {
-        true => format!("; week {last} is not played yet"),
-        false => format!("; weeks {first} to {last} are not played yet"),
-    }
+    (recorded_until < until).then(|| match first == last {
+        true => format!("week {last} is not played yet"),
+        false => format!("weeks {first} to {last} are not played yet"),
+    })
 }
 
 /// Describes a branch by its number, its name and the first day on which it differs from the unchanged run. The line of
@@ -106,7 +109,9 @@ fn unplayed_weeks_note(comparison: &BranchComparison, days_per_week: u32) -> Str
 pub fn branch_line(comparison: &BranchComparison, number: usize, name: &str, days_per_week: u32) -> String {
     let Some(branch) = comparison.branches.get(number) else { return String::new() };
     let since = match (branch.first_different_day, branch.edits.is_empty()) {
-        (_, true) => unplayed_weeks_note(comparison, days_per_week),
+        (_, true) => {
+            unplayed_weeks(comparison, days_per_week).map_or(String::new(), |weeks| format!("; {weeks}"))
+        }
         (Some(day), _) => format!(" · differs from day {day}"),
         (None, _) => " · identical on every day".to_owned(),
     };
@@ -128,7 +133,11 @@ pub fn describe_decisions(
     });
     let refused = branch.rejected.iter().map(|decision| {
         let name = find(&decision.name).map_or(decision.name.as_str(), |tool| notation.name(tool.spec().id));
-        format!("week {}: {name} is rejected: {}", week(decision.day), decision.rejection.message)
+        let verb = match notation {
+            DecisionNotation::Calls => "is rejected",
+            DecisionNotation::Words(_) => "rejected",
+        };
+        format!("week {}: {name} {verb}: {}", week(decision.day), decision.rejection.message)
     });
     let possible = branch.newly_accepted.iter().map(|(line, day, tool)| {
         let of_line = match notation {
@@ -450,11 +459,11 @@ mod tests {
         let note = |recorded_until| {
             let (branches, figures) = (Vec::new(), Vec::new());
             let comparison = BranchComparison { from: 0, until: 21, recorded_until, branches, figures };
-            unplayed_weeks_note(&comparison, 7)
+            unplayed_weeks(&comparison, 7)
         };
-        assert_eq!(note(0), "; weeks 1 to 3 are not played yet");
-        assert_eq!(note(10), "; weeks 2 to 3 are not played yet");
-        assert_eq!(note(14), "; week 3 is not played yet");
-        assert_eq!(note(21), "");
+        assert_eq!(note(0).as_deref(), Some("weeks 1 to 3 are not played yet"));
+        assert_eq!(note(10).as_deref(), Some("weeks 2 to 3 are not played yet"));
+        assert_eq!(note(14).as_deref(), Some("week 3 is not played yet"));
+        assert_eq!(note(21), None);
     }
 }

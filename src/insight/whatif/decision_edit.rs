@@ -81,7 +81,7 @@ pub(super) fn build_edits(
     let mut edits = Edits::default();
     for (at, edit) in decided.iter().enumerate() {
         edit.check_line_is_new(&decided[..at])?;
-        edit.add_to(&mut edits, opening, moves, until)?;
+        edit.add_to(&mut edits, opening, moves, until).map_err(|refusal| edit.name_in(refusal))?;
     }
     Ok(edits)
 }
@@ -194,6 +194,16 @@ impl DecisionEdit {
             }
         }
         Ok(())
+    }
+
+    /// Adds the edit to a rejection of its arguments, because a branch can have several edits.
+    fn name_in(&self, refusal: Rejection) -> Rejection {
+        match self {
+            DecisionEdit::Change { .. } | DecisionEdit::Add { .. } if refusal.code != "line_unknown" => {
+                Rejection { message: format!("{self}: {}", refusal.message), ..refusal }
+            }
+            _ => refusal,
+        }
     }
 
     /// Returns the edited line, if the edit concerns a single line.

@@ -7,8 +7,8 @@ use novamind_insight::{BranchComparison, BranchFigure, DecisionEdit, Futures};
 use novamind_record::figures::FigureUnit;
 use novamind_report::whatif::{
     DecisionNotation, branch_line, comparison_cell, comparison_cell_lines, describe_bankruptcies,
-    describe_decisions, difference_line, futures_cell, futures_cell_lines, futures_heading, heading,
-    milestone_label,
+    describe_decisions, difference_line, futures_cell, futures_cell_lines, futures_heading, milestone_label,
+    period, unplayed_weeks_line,
 };
 use novamind_session::EnterpriseNames;
 use novamind_tui::canvas::{Canvas, Click, row_rects, truncate_to_width};
@@ -112,7 +112,7 @@ impl ComparisonView {
         // In a small window, the first line is omitted to leave space for the table.
         if area.height > table + self.comparison.branches.len() as u16 {
             let row = split_top(&mut rest, 1);
-            let heading = heading(&self.comparison, self.days_per_week);
+            let heading = period(&self.comparison, self.days_per_week);
             canvas.draw_text(row, &truncate_to_width(&heading, row.width as usize), Role::Dim);
         }
         self.draw_branches(canvas, &mut rest, labels);
@@ -259,6 +259,7 @@ impl ComparisonView {
             );
         }
         texts.extend(describe_decisions(branch, self.days_per_week, DecisionNotation::Words(names)));
+        texts.extend(unplayed_weeks_line(&self.comparison, self.days_per_week));
         texts
     }
 }

@@ -4,6 +4,7 @@ mod changes;
 mod comparison;
 mod decisions;
 mod drawing;
+mod editing;
 mod picker;
 
 use crossterm::event::KeyEvent;

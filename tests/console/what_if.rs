@@ -101,7 +101,7 @@ fn refused_change_states_its_reason_and_can_be_removed() {
         console.assert_shows("Nothing is changed yet.");
         console.press("s");
         console.assert_shows("! capacity is not an amount.");
-        console.press("q ; q");
+        console.press("esc ; q");
     }
 }
 

@@ -121,6 +121,11 @@ impl DecisionList {
         weeks.min().unwrap_or(self.week)
     }
 
+    /// Returns whether an alternative has changes.
+    pub(super) fn has_changes(&self) -> bool {
+        self.alternatives.iter().any(|changes| !changes.is_empty())
+    }
+
     fn edits_of(&self, changes: &[ListedChange]) -> Vec<DecisionEdit> {
         let Some(history) = self.history() else { return Vec::new() };
         changes.iter().filter_map(|listed| listed.change.edit(history)).collect()
@@ -310,10 +315,9 @@ impl DecisionList {
     /// Returns the scopes of the open input, or `None` if the list has the focus.
     pub(super) fn input_scopes(&self) -> Option<Vec<Scope>> {
         Some(match self.input.as_ref()? {
-            Input::Picker(_) => vec![Scope::Decisions, Scope::List, Scope::Dialog],
+            Input::Picker(_) => vec![Scope::Decisions, Scope::List],
             Input::Factor { .. } | Input::Parameter { .. } => vec![Scope::Field],
-            Input::Form { form, .. } if form.is_typing() => form.scopes(),
-            Input::Form { form, .. } => [form.scopes(), vec![Scope::Dialog]].concat(),
+            Input::Form { form, .. } => form.scopes(),
         })
     }
 

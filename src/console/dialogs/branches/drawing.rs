@@ -174,9 +174,9 @@ impl DecisionList {
 
     fn draw_picker(&self, canvas: &mut Canvas<'_>, area: Rect, selected: usize, context: &ScreenContext<'_>) {
         let key = |action| context.keys.label(action).unwrap_or_default();
-        let week = self.week();
+        let (week, start) = (self.week(), self.start_week().min(self.week()));
         let head = format!(
-            "Add a decision to week {week}. {} opens its form, {} multiplies its values from week {week} on, {} leaves out all its decisions from week {week} on.",
+            "Add a decision to week {week}. {} opens its form. For all weeks from week {start} on, {} multiplies its values, and {} leaves out its decisions.",
             key(Action::Open),
             key(Action::ScaleDecision),
             key(Action::OmitDecision)
@@ -226,10 +226,10 @@ impl DecisionList {
         field: &TextField,
         context: &ScreenContext<'_>,
     ) {
-        let week = self.week();
+        let (week, start) = (self.week(), self.start_week().min(self.week()));
         let head = match new {
             NewDecision::Parameter => format!("Set a parameter at the start of week {week}."),
-            _ => format!("Multiply all values of {} from week {week} on.", new.texts().0),
+            _ => format!("Multiply all values of {} from week {start} on.", new.texts().0),
         };
         let rows = notice_rows(&head, area);
         draw_wrapped(canvas, rows, &head, Role::Strong);

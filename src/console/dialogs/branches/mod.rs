@@ -27,6 +27,7 @@ use novamind_worker::question::{OutgoingQuestion, Pending};
 use novamind_worker::request::Request;
 
 const FUTURE_COUNT: u32 = 20;
+const INVALID_CHANGE: &str = "A change cannot be simulated. Correct the selected change, or remove it.";
 
 enum BranchesView {
     Decisions,
@@ -42,6 +43,8 @@ pub struct BranchesPage {
     /// The check of the edits of the current alternative.
     checking: Pending<BranchesQuestion>,
     problem: Option<String>,
+    /// Whether the user was warned that closing the page discards the changes.
+    is_closing: bool,
 }
 
 impl BranchesPage {
@@ -50,7 +53,7 @@ impl BranchesPage {
         let (pending, ask) = Pending::with_question(BranchesQuestion::Decisions);
         let decisions = DecisionList::new(week, last_week);
         let (page, checking) = (BranchesView::Decisions, Pending::default());
-        (BranchesPage { decisions, page, asked: pending, checking, problem: None }, ask)
+        (BranchesPage { decisions, page, asked: pending, checking, problem: None, is_closing: false }, ask)
     }
 
     fn request_comparison(&mut self, futures: Option<u32>) -> DialogResponse {
@@ -59,7 +62,7 @@ impl BranchesPage {
         }
         if self.decisions.select_invalid_change() {
             self.problem =
-                Some("A change cannot be simulated. Correct the selected change, or remove it.".to_owned());
+                Some(INVALID_CHANGE.to_owned());
             self.page = BranchesView::Decisions;
             return DialogResponse::stay();
         }
@@ -75,6 +78,11 @@ impl BranchesPage {
 
     fn go_back(&mut self) -> DialogResponse {
         match self.page {
+            BranchesView::Decisions if self.decisions.has_changes() && !self.is_closing => {
+                self.is_closing = true;
+                self.problem = Some("Closing the page discards your changes. Press the key again to close it.".to_owned());
+                DialogResponse::stay()
+            }
             BranchesView::Decisions => DialogResponse::close(),
             BranchesView::Simulating => {
                 self.asked.cancel();
@@ -109,8 +117,10 @@ impl BranchesPage {
                 self.page = BranchesView::Comparison(Box::new(figures));
             }
             Err(refusal) => {
-                self.problem = Some(refusal.message);
                 self.page = BranchesView::Decisions;
+                // The check has already stated the reason in the row of the change.
+                let is_invalid = self.decisions.select_invalid_change();
+                self.problem = Some(if is_invalid { INVALID_CHANGE.to_owned() } else { refusal.message });
             }
         }
     }
@@ -134,7 +144,7 @@ impl Dialog for BranchesPage {
             BranchesView::Decisions => self
                 .decisions
                 .input_scopes()
-                .unwrap_or_else(|| vec![Scope::Decisions, Scope::List, Scope::Dialog]),
+                .unwrap_or_else(|| vec![Scope::Decisions, Scope::List]),
             BranchesView::Simulating => vec![Scope::Dialog],
             BranchesView::Comparison(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
         }
@@ -171,6 +181,7 @@ impl Dialog for BranchesPage {
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         self.problem = None;
+        self.is_closing &= matches!(action, Action::Close | Action::Cancel);
         match (&mut self.page, action) {
             (BranchesView::Decisions, action) if self.decisions.input.is_some() => {
                 self.decisions.handle_action(action, context.company);
@@ -200,15 +211,15 @@ impl Dialog for BranchesPage {
     }
 
     fn take_answers(&mut self) {
-        if let Some((_, found)) = self.asked.try_take() {
-            self.set_result(found);
-        }
         match self.checking.try_take() {
             Some((BranchesQuestion::Check { edits, .. }, Ok(BranchesAnswer::Checked(refused)))) => {
                 self.decisions.set_checked(&edits, refused);
             }
             Some((_, Err(refusal))) => self.problem = Some(refusal.message),
             _ => {}
+        }
+        if let Some((_, found)) = self.asked.try_take() {
+            self.set_result(found);
         }
     }
 

@@ -105,6 +105,10 @@ fn escape_leaves_an_input_without_an_effect() {
     // In the cycle, escape keeps the decision as recorded.
     act(&mut page, &[Action::CycleDecision, Action::Close]);
     assert!(edits(&page).is_empty());
+    // Changes are discarded only after a warning.
+    act(&mut page, &[Action::OmitDecision]);
+    assert!(!act(&mut page, &[Action::Close]).closes && text(&page).contains("discards your changes"));
+    assert!(!act(&mut page, &[Action::Down, Action::Close]).closes);
     assert!(act(&mut page, &[Action::Close]).closes);
 }
 

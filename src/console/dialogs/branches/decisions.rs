@@ -8,7 +8,6 @@ use novamind_insight::{DecisionEdit, EDIT_SYNTAX, MAX_ALTERNATIVES, RecordedDeci
 use novamind_tui::canvas::{Canvas, Click, row_rects, truncate_to_width};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 
 const REJECTED_CALL_ERROR: &str = "a rejected call had no effect; change its arguments instead";
 const PARAMETER_EDIT_ERROR: &str = "omit this line, and add another value with set KEY VALUE";
@@ -249,7 +248,7 @@ impl DecisionList {
             (Some(_), true) => canvas.draw_text(list, "no decisions in these weeks", Role::Dim),
             _ => {}
         }
-        let first = first_visible_row(self.selected, list.height as usize, rows.len());
+        let first = canvas.scroll_to_row(list, self.selected, rows.len());
         for (row, (at, decision_row)) in row_rects(list).zip(rows.iter().enumerate().skip(first)) {
             let here = at == self.selected && self.input.is_none();
             let (text, role) = self.row_text(*decision_row);

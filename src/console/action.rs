@@ -16,6 +16,8 @@ pub enum Scope {
     List,
     /// Tool forms.
     Form,
+    /// The dialog that arranges the columns of a table.
+    Columns,
     /// A single-line text field.
     Field,
     /// A multi-line editor.
@@ -64,9 +66,10 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the manual.
-    pub const ALL: [Scope; 27] = [
+    pub const ALL: [Scope; 28] = [
         Scope::Global,
         Scope::List,
+        Scope::Columns,
         Scope::Form,
         Scope::Query,
         Scope::Result,
@@ -101,6 +104,7 @@ impl Scope {
             Scope::Menu => "menu",
             Scope::Class => "class",
             Scope::List => "list",
+            Scope::Columns => "columns",
             Scope::Form => "form",
             Scope::Field => "field",
             Scope::Editor => "editor",
@@ -134,6 +138,7 @@ impl Scope {
             Scope::Menu => "Start menu",
             Scope::Class => "Class",
             Scope::List => "Lists and tables",
+            Scope::Columns => "Columns of a table",
             Scope::Form => "Tool forms",
             Scope::Field => "Value fields",
             Scope::Editor => "Text editors",
@@ -262,6 +267,7 @@ actions! {
         Back "back" "back" "Go back to the previous screen."
         Forward "forward" "forward" "Go forward again after going back."
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
+        Columns "columns" "columns" "Choose, move and resize the columns of the focused table; the choice is saved."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
         Explain "explain" "explain" "Explain the selected figure or field."
         Why "why" "why" "Show how much each cause contributed to the change in the selected figure, by simulating the week without that cause. Not in an unfinished baseline run."
@@ -295,6 +301,15 @@ actions! {
         Close "close" "close" "Close the open item, clear the filter, or go back to the previous place."
         Filter "filter" "filter" "Show only the rows that contain a text you type."
         Sort "sort" "sort" "Sort by the selected column; press again to reverse, a third time to stop sorting."
+    }
+    Columns {
+        ToggleColumn "toggle-column" "show or hide" "Show or hide the selected column."
+        MoveColumnUp "move-up" "move up" "Move the selected column before its neighbor."
+        MoveColumnDown "move-down" "move down" "Move the selected column behind its neighbor."
+        WidenColumn "wider" "wider" "Make the selected column wider."
+        NarrowColumn "narrower" "narrower" "Make the selected column narrower; numbers are never cut."
+        FitColumn "automatic-width" "automatic width" "Make the selected column as wide as its contents."
+        ResetColumns "reset-columns" "reset" "Show all columns in their original order and width."
     }
     Form {
         Apply "apply" "submit" "Submit the form."

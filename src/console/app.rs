@@ -5,6 +5,7 @@
 mod activity_log;
 mod breadcrumbs;
 mod busy;
+mod columns;
 mod drafts;
 mod exit;
 mod guide;
@@ -51,9 +52,11 @@ use novamind_tui::canvas::Click;
 use novamind_tui::chord::Chord;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
+use novamind_tui::widgets::ColumnLayout;
 use novamind_worker::Job;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::{Message, SimulatedDay};
+use novamind_worker::preferences::Preferences;
 use novamind_worker::question::{OutgoingQuestion, Pending};
 use novamind_worker::request::Request;
 use novamind_worker::screen_queries::Reading;
@@ -221,6 +224,8 @@ pub struct App {
     starts_tour: bool,
     study: Option<StudyState>,
     time_limit: time_limits::TimeLimitState,
+    /// Layouts of the columns by the name of the table.
+    column_layouts: BTreeMap<String, ColumnLayout>,
     /// Clickable areas of the last frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Rows of the focused list in the last frame.
@@ -235,6 +240,7 @@ impl App {
     pub fn new(settings: Settings) -> App {
         let menu = Box::new(StartMenu::new(&settings.configuration));
         let library = QueryLibrary::load(&settings.configuration);
+        let column_layouts = Preferences::load(&settings.configuration).tables;
         App {
             library,
             theme: settings.theme,
@@ -264,6 +270,7 @@ impl App {
             starts_tour: false,
             study: None,
             time_limit: time_limits::TimeLimitState::default(),
+            column_layouts,
             clicks: Vec::new(),
             page_rows: 10,
             window: (0, 0),
@@ -296,6 +303,7 @@ impl App {
         self.advance_tour();
         self.enforce_week_limit();
         self.show_due_questions();
+        self.apply_column_layouts();
         self.record_user_state();
     }
 

@@ -9,6 +9,7 @@ use novamind_session::SeekTarget;
 use novamind_session::identifiers::Group;
 use novamind_study::Study;
 use novamind_tools::ToolId;
+use novamind_tui::widgets::ColumnLayout;
 use novamind_worker::question::OutgoingQuestion;
 use novamind_worker::request::{RecordSource, Request};
 use novamind_worker::screen_queries::Reading;
@@ -77,6 +78,8 @@ pub enum Effect {
     ShowStatus(String),
     /// Show an error message.
     ShowError(String),
+    /// Arrange the columns of the focused table, and save the layout if the table has a name.
+    ArrangeColumns(ColumnLayout),
     /// Clear the breadcrumbs before the following effects are executed.
     ClearBreadcrumbs,
     /// Show a screen.

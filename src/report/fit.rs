@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::formatting::{format_range, format_whole};
-use novamind_base::formatting::{dollars, dollars_and_cents, percent, price_to_cents};
+use novamind_base::formatting::{QUALITY_DECIMALS, dollars, dollars_and_cents, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
 
@@ -49,7 +49,7 @@ impl TrueValueRange {
 
     /// Formats a range of qualities: `0.181 to 0.858`.
     pub fn format_quality(&self) -> String {
-        format_range(self.least, self.most, 3)
+        format_range(self.least, self.most, QUALITY_DECIMALS)
     }
 
     /// Formats a range of dollars: `$18 to $87`.

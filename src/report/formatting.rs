@@ -11,6 +11,14 @@ pub fn format_money(value: f64) -> String {
     format!("{sign}${}", grouped_number(value.abs(), 0))
 }
 
+/// Returns the label of a figure of the week. The unit is part of the label if neither the name nor the value shows it.
+pub fn figure_label(name: &'static str) -> &'static str {
+    match name {
+        "recurring revenue" => "recurring $/month",
+        name => name,
+    }
+}
+
 /// Describes the last change in cash and its period: `+$1,234 over the last week`.
 pub fn describe_cash_change(seen: &Observation) -> String {
     let span = match seen.cash_change_days {

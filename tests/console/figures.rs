@@ -49,7 +49,7 @@ const FIGURES: [Figure; 29] = [
          AND customer_type = 'large'",
     ),
     Figure(
-        &["recurring revenue"],
+        &["recurring revenue", "recurring $/month"],
         "SELECT total(effective_price * seat_count) FROM subscriptions WHERE status = 'subscribed'",
     ),
     Figure(

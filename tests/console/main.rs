@@ -22,6 +22,7 @@ mod sizes;
 mod stale_database;
 #[path = "../support/mod.rs"]
 mod support;
+mod tables;
 mod tasks;
 mod tour;
 mod what_if;

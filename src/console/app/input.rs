@@ -321,6 +321,7 @@ impl App {
             Action::Forward => self.go_forward(),
             Action::Zoom => self.toggle_zoom(),
             Action::Rows => self.open_selected_rows(),
+            Action::Columns => self.open_column_chooser(),
             Action::NextTheme => self.switch_theme(),
             Action::NextMarker => {
                 self.glyphs = self.glyphs.next();
@@ -398,7 +399,7 @@ impl App {
         }
     }
 
-    fn save_preferences(&mut self, chosen: Preferences) {
+    pub(super) fn save_preferences(&mut self, chosen: Preferences) {
         self.orders.push(Order::Job(Job::SavePreferences(chosen)));
     }
 

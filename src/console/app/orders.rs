@@ -101,6 +101,7 @@ impl App {
             Effect::ShowRows(figure) => self.show_source_rows(figure),
             Effect::CloseDialogs => self.close_layers(),
             Effect::ShowError(text) => self.show_error(text),
+            Effect::ArrangeColumns(layout) => self.arrange_columns(layout),
             Effect::ClearBreadcrumbs => {
                 if let Stage::Run(run) = &mut self.stage {
                     run.clear_breadcrumbs();

@@ -2,6 +2,7 @@
 
 pub mod branches;
 pub mod causes;
+pub mod column_chooser;
 pub mod confirm;
 pub mod curve;
 pub mod debrief;

@@ -17,7 +17,6 @@ use novamind_tui::canvas::{Align, Canvas, Click, centered_rect, row_rects};
 use novamind_tui::fuzzy::{self, FuzzyMatch};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 const MAX_RECENT_TOOLS: usize = 5;
@@ -361,7 +360,7 @@ impl Dialog for CommandPalette {
         if self.matches.is_empty() {
             canvas.draw_text(list, "no match", Role::Dim);
         }
-        let from = first_visible_row(self.selected, list.height as usize, self.matches.len());
+        let from = canvas.scroll_to_row(list, self.selected, self.matches.len());
         for (row, (place, (at, letters))) in row_rects(list).zip(self.matches.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *at, letters, place == self.selected);
             canvas.register_click(row, Click::Row(0, place));

@@ -4,6 +4,8 @@
 pub mod menu;
 pub mod panes;
 
+use std::collections::BTreeMap;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
@@ -12,6 +14,7 @@ use super::context::{Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
 use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::{ColumnLayout, Table};
 use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
 
@@ -160,6 +163,16 @@ pub trait Screen: ScreenState {
 
     /// Returns the selected figure, if a figure is selected.
     fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure>;
+
+    /// Returns the title of the focused pane and its table, if the pane has a table with several columns.
+    fn focused_table(&self, look: &ScreenContext<'_>) -> Option<(String, &Table)>;
+
+    /// Arranges the columns of the focused table. Returns the name with which the layout is saved, or `None` if the layout
+    /// applies only until the table is rebuilt.
+    fn set_focused_layout(&mut self, layout: ColumnLayout) -> Option<&'static str>;
+
+    /// Arranges the columns of all tables of the screen that have a name.
+    fn set_layouts(&mut self, layouts: &BTreeMap<String, ColumnLayout>);
 
     /// Handles an action of one of the screen's scopes.
     fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect>;

@@ -3,6 +3,8 @@
 //! The screen owns the state, because the panes of the screen share the state. Each pane is a type without state that
 //! defines the behavior and the drawing of one area.
 
+use std::collections::BTreeMap;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
@@ -11,7 +13,7 @@ use crate::action::{Action, Scope};
 use crate::context::{Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
 use novamind_tui::canvas::{Canvas, Click};
-use novamind_tui::widgets::{Table, TextField};
+use novamind_tui::widgets::{ColumnLayout, Table, TextField};
 
 /// Texts in the border of a pane.
 #[derive(Default)]
@@ -46,6 +48,12 @@ pub trait Pane<S> {
 
     /// Returns a mutable reference to the table of the pane, if any.
     fn table_mut<'a>(&self, _: &'a mut S) -> Option<&'a mut Table> {
+        None
+    }
+
+    /// Returns the name with which the column layout of the table is saved. If the columns depend on a query, the table has
+    /// no name.
+    fn table_name(&self) -> Option<&'static str> {
         None
     }
 
@@ -207,6 +215,26 @@ pub fn draw_pane<S: PaneScreen>(
     S::pane(name).draw_with_border(screen, canvas, placement, context);
 }
 
+/// Draws one of several panes that share an area: the focused pane, or the first pane if none of them has the focus. The
+/// area does not depend on the focus, so moving the focus does not move other panes. A mark in the lower border shows
+/// the number of panes.
+pub fn draw_stack<S: PaneScreen>(
+    screen: &S,
+    names: &[S::PaneId],
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    context: &ScreenContext<'_>,
+) {
+    let available: Vec<S::PaneId> =
+        names.iter().copied().filter(|name| screen.panes().contains(name)).collect();
+    let front = available.iter().position(|name| *name == screen.focused_pane()).unwrap_or(0);
+    let Some(name) = available.get(front) else { return };
+    draw_pane(screen, *name, canvas, area, context);
+    if available.len() > 1 {
+        canvas.draw_stack_mark(area, front, available.len());
+    }
+}
+
 fn pane_index<S: PaneScreen>(screen: &S, name: S::PaneId) -> usize {
     screen.panes().iter().position(|id| *id == name).unwrap_or(0)
 }
@@ -264,6 +292,33 @@ impl<S: PaneScreen> Screen for S {
 
     fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
         active_pane(self).figure(self, context)
+    }
+
+    fn focused_table(&self, context: &ScreenContext<'_>) -> Option<(String, &Table)> {
+        let pane = active_pane(self);
+        let table = pane.table(self).filter(|table| table.columns().len() > 1)?;
+        Some((pane.border(self, TYPICAL_AREA, context).title, table))
+    }
+
+    fn set_focused_layout(&mut self, layout: ColumnLayout) -> Option<&'static str> {
+        let pane = active_pane(self);
+        pane.table_mut(self)?.set_layout(layout);
+        pane.table_name()
+    }
+
+    fn set_layouts(&mut self, layouts: &BTreeMap<String, ColumnLayout>) {
+        if layouts.is_empty() {
+            return;
+        }
+        let panes = PaneScreen::panes(self).iter().map(|name| S::pane(*name)).chain(self.overlay());
+        for pane in panes.collect::<Vec<_>>() {
+            let layout = pane.table_name().and_then(|name| layouts.get(name));
+            if let (Some(layout), Some(table)) = (layout, pane.table_mut(self))
+                && table.layout() != layout
+            {
+                table.set_layout(layout.clone());
+            }
+        }
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {

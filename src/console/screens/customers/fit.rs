@@ -8,7 +8,7 @@ use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{compact_number, percent, price_to_cents};
+use novamind_base::formatting::{compact_number, percent, price_to_cents, quality as format_quality};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
 use novamind_report::fit::{RangePosition, FitCriterion, Fit, TrueValueRange};
@@ -88,7 +88,7 @@ fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitL
     let qualities = Plan::ALL.map(|plan| fit.plans[plan].quality);
     lines.extend(Plan::ALL.map(|plan| {
         let name = format!("T{}", tier(plan));
-        let shown = format!("{:.4}", fit.plans[plan].quality);
+        let shown = format_quality(fit.plans[plan].quality);
         bar_line(fit, (plan, FitCriterion::Quality), (&name, &shown), (fit.floor, &qualities), width)
     }));
     let per = if company { " a seat" } else { "" };
@@ -193,7 +193,7 @@ fn fit_verdict(fit: &Fit, plan: Plan, concern: FitCriterion) -> (String, Role) {
     if let Some(missing) = fit.certain_gap(plan, concern) {
         return match concern {
             FitCriterion::Price => (format!("over {}", price_to_cents(missing)), Role::Bad),
-            _ => (format!("short {missing:.4}"), Role::Bad),
+            _ => (format!("short {}", format_quality(missing)), Role::Bad),
         };
     }
     match fit.position(plan, concern) {

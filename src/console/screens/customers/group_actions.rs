@@ -12,7 +12,6 @@ use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Tools that have a setting for the group, and labels of these settings.
 const GROUP_TOOLS: [(ToolId, &str); 6] = [
@@ -72,7 +71,7 @@ impl Pane<Customers> for GroupActionsPane {
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         let choice = customers.group_state.action;
-        let from = first_visible_row(choice, placement.area.height as usize, ACTION_COUNT);
+        let from = canvas.scroll_to_row(placement.area, choice, ACTION_COUNT);
         for (at, row) in (from..ACTION_COUNT).zip(row_rects(placement.area)) {
             let role = match (at == choice, placement.focused) {
                 (true, true) => Role::Selection,

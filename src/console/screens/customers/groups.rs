@@ -19,6 +19,10 @@ impl Pane<Customers> for CustomerGroupsPane {
         Some(&customers.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("customers.groups")
+    }
+
     fn table_mut<'a>(&self, customers: &'a mut Customers) -> Option<&'a mut Table> {
         Some(&mut customers.table)
     }

@@ -25,7 +25,7 @@ use self::columns::{columns, group_row};
 use self::model::CustomerData;
 use self::open_group::OpenGroupState;
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -226,16 +226,13 @@ impl PaneScreen for Customers {
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
         draw_pane(self, CustomersPane::Groups, canvas, table, context);
-        // Both panes are shown if they fit, otherwise only the focused pane.
         if channels.width >= 150 {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [left, right] = Layout::horizontal(halves).areas(channels);
             draw_pane(self, CustomersPane::Channels, canvas, left, context);
             draw_pane(self, CustomersPane::Costs, canvas, right, context);
-        } else if self.focus == CustomersPane::Costs {
-            draw_pane(self, CustomersPane::Costs, canvas, channels, context);
         } else {
-            draw_pane(self, CustomersPane::Channels, canvas, channels, context);
+            draw_stack(self, &[CustomersPane::Channels, CustomersPane::Costs], canvas, channels, context);
         }
         if rest > 0 && self.table.selected().is_some() {
             open_group::draw_preview(self, canvas, preview, context);

@@ -206,12 +206,12 @@ fn all_columns_are_reachable_and_marked() {
         assert!(wide.contains(head), "{head} in\n{wide}");
     }
     let narrow = screen_text(&screen, &company, 80, 21);
-    assert!(narrow.contains('›') && !narrow.contains("dev/day"), "{narrow}");
-    for _ in 0..14 {
+    assert!(narrow.contains(" →") && !narrow.contains("dev/day"), "{narrow}");
+    for _ in 0..15 {
         handle_action(&mut screen, Action::Right, &company);
     }
     let moved = screen_text(&screen, &company, 80, 21);
-    assert!(moved.contains("dev/day") && moved.contains("group") && moved.contains('‹'), "{moved}");
+    assert!(moved.contains("dev/day") && moved.contains("group") && moved.contains('←'), "{moved}");
 }
 
 #[test]

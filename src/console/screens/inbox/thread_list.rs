@@ -25,6 +25,10 @@ impl Pane<Inbox> for ThreadListPane {
         Some(&inbox.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("inbox.threads")
+    }
+
     fn table_mut<'a>(&self, inbox: &'a mut Inbox) -> Option<&'a mut Table> {
         Some(&mut inbox.table)
     }

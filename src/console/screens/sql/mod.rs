@@ -26,7 +26,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -278,19 +278,22 @@ impl PaneScreen for Sql {
         let width = match area.width {
             wide if wide >= 150 => 38,
             wide if wide >= MIN_WIDTH_FOR_TABLES => 29,
-            narrow if self.focus == SqlPane::Tables => narrow.min(34),
             _ => 0,
         };
         let [tables, rest] = Layout::horizontal([Constraint::Length(width), Constraint::Min(0)]).areas(area);
         let upper = match (area.height, self.focus) {
-            (0..10, SqlPane::Results) => 0,
+            (0..10, SqlPane::Results | SqlPane::Tables) => 0,
             (0..10, _) => area.height,
             (height, _) => (height / 3).clamp(5, 14),
         };
         let [above, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(rest);
-        draw_pane(self, SqlPane::Tables, canvas, tables, context);
         draw_pane(self, SqlPane::Editor, canvas, above, context);
-        draw_pane(self, SqlPane::Results, canvas, below, context);
+        if width > 0 {
+            draw_pane(self, SqlPane::Tables, canvas, tables, context);
+            draw_pane(self, SqlPane::Results, canvas, below, context);
+        } else {
+            draw_stack(self, &[SqlPane::Results, SqlPane::Tables], canvas, below, context);
+        }
         if self.focus == SqlPane::Editor && self.overlay.is_none() {
             self.editor.draw_completion(canvas, rest);
         }

@@ -61,7 +61,7 @@ fn project_lines(company: &DisplayedCompany) -> Vec<String> {
             tier.name.clone(),
             dollars(f64::from(tier.cost)),
             format_mean_days(means),
-            format_mean_gain(means, 4),
+            format_mean_gain(means),
             running.to_owned(),
         ]
     };

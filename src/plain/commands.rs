@@ -11,6 +11,7 @@ mod help;
 mod inbox;
 mod lesson;
 mod notes;
+mod offers;
 mod overview;
 mod parameters;
 mod queries;
@@ -385,12 +386,14 @@ impl Interpreter {
     }
 
     fn call_tool_by_id(&mut self, tool: ToolId, arguments: &Value) -> CommandResponse {
+        let planned = self.planned_offers(tool, arguments);
         match self.call_cancellable(tool, arguments) {
             Ok(data) if tool.executes_code() => queries::script_response(tool, &data),
             Ok(data) => {
                 let shown = groups::answer_with_ranges(&self.session, &data);
                 let answer = CommandResponse::tool_result(tool.name(), data.to_json(), shown);
-                answer.with_notes(&self.late_project_warnings(&data))
+                let offers = self.describe_offers(&planned.sent_in(&data));
+                answer.with_notes(&self.late_project_warnings(&data)).with_notes(&offers)
             }
             Err(refusal) => CommandResponse::rejected(tool.name(), refusal),
         }

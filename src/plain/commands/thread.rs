@@ -9,7 +9,8 @@ use super::{Interpreter, argument_error, optional_count};
 use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_report::pluralize;
-use novamind_rules::{ThreadContext, parse_offer};
+use novamind_rules::{LostThread, Subscription, ThreadContext, Turn, parse_offer};
+use novamind_session::identifiers::Plan;
 use novamind_tools::Rejection;
 
 /// Beginning of a query that selects the turns of a thread.
@@ -17,7 +18,8 @@ const TURNS_SQL: &str = "SELECT thread_id, customer_id, thread_type, turn_number
                      seat_count, close_reason FROM enterprise_turns";
 /// Beginning of a query that selects the profile of an enterprise.
 const ENTERPRISE_SQL: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
-                       c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price \
+                       c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price, \
+                       s.end_day \
                        FROM customers c CROSS JOIN subscriptions s WHERE s.customer_id = c.customer_id";
 
 impl Interpreter {
@@ -80,7 +82,19 @@ impl Interpreter {
         )];
         lines.extend(company.as_ref().and_then(describe_enterprise));
         lines.extend(turns.rows.iter().filter_map(|row| Some(names.insert_names(&describe_turn(row)?))));
-        lines.extend(describe_state(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
+        let lost = company.as_ref().filter(|_| waiting.is_none()).and_then(|company| {
+            let turns: Vec<Turn> = turns.rows.iter().map(|row| Turn::from_row(row)).collect();
+            LostThread::from_turns(&turns, text_at(first, 2), &subscription(company)?)
+        });
+        match lost {
+            Some(lost) => {
+                lines.push(lost.describe(&names.name_with_number(customer)));
+                lines.extend(lost.facts.iter().map(|fact| names.insert_names(fact)));
+            }
+            None => {
+                lines.extend(describe_state(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
+            }
+        }
         let data = json!({
             "thread": thread,
             "customer": customer,
@@ -121,6 +135,18 @@ fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     Some(parts.join("; "))
 }
 
+/// Returns the subscription of an enterprise.
+fn subscription(rows: &QueryResult) -> Option<Subscription> {
+    let row = rows.rows.first()?;
+    let end_day = row.get(9).filter(|cell| !matches!(cell, Cell::Null)).map(|_| number_at(row, 9) as u32);
+    Some(Subscription {
+        status: text_at(row, 6).to_owned(),
+        plan: Plan::parse(text_at(row, 7)),
+        price: number_at(row, 8),
+        end_day,
+    })
+}
+
 /// Formats a turn as one line. Returns `None` for an opening turn without a message.
 fn describe_turn(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
@@ -144,6 +170,7 @@ fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32)
         return vec![match text_at(last, 9) {
             "accepted" => "the thread ended with a deal".to_owned(),
             "agent_rejected" => "you ended the thread".to_owned(),
+            _ if text_at(last, 4) == "agent" => "the enterprise has not answered your offer yet".to_owned(),
             _ => "the thread does not wait for you".to_owned(),
         }];
     };

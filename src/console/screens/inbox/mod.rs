@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use self::estimate::rules_market;
+use self::estimate::plan_economics;
 use self::thread_list::{columns, thread_row};
 use self::model::{ThreadStore, ThreadState, Thread};
 use self::offer::{OfferDraft, MAX_TERMS, PlanChoice};
@@ -175,7 +175,7 @@ impl Inbox {
 
     /// Returns the waiting threads with all fields that rules use.
     fn waiting_threads(&self, company: &DisplayedCompany) -> Vec<ThreadContext> {
-        let market = rules_market(company, &self.usage);
+        let market = plan_economics(company, &self.usage);
         let waiting = company.observation.waiting.iter();
         waiting.map(|waiting_thread| ThreadContext::new(waiting_thread, &self.asked_plans, &market)).collect()
     }

@@ -144,21 +144,15 @@ impl OfferDraft {
     }
 }
 
-/// Formats an offer in short form: `B $38.00 · C $61.00`.
-pub fn format_offers(offers: &[(Plan, f64)]) -> String {
-    let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped_number(*price, 2));
-    offers.iter().map(one).collect::<Vec<_>>().join(" · ")
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::model::ThreadMessage;
     use super::*;
+    use novamind_rules::Turn;
 
     const LIST_PRICES: [f64; 3] = [14.0, 32.0, 0.0];
 
     fn waiting_thread() -> Thread {
-        let turn = ThreadMessage {
+        let turn = Turn {
             number: 2,
             sender: "customer".to_owned(),
             text: "At $20.01 for plan A".to_owned(),

@@ -3,16 +3,17 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::estimate::{OfferEconomics, usage_per_seat};
+use super::estimate::plan_economics;
 use super::model::Thread;
 use super::offer::{OfferDraft, MAX_TERMS, PlanChoice};
-use super::sending::{self, summary};
+use super::sending::{self, offer_economics, summary};
 use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number, percent};
+use novamind_rules::PlanEconomics;
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
@@ -150,13 +151,14 @@ fn column_heads(width: u16, batch: bool) -> String {
 
 fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> Vec<(String, Role)> {
     let planned = inbox.planned_offers(context.company);
+    let economics = plan_economics(context.company, &inbox.usage);
     let mut notes = match planned.first() {
         _ if !inbox.marked.is_empty() => {
-            let lines = wrap(&summary(&planned), width as usize).into_iter();
+            let lines = wrap(&summary(&planned, &economics), width as usize).into_iter();
             lines.map(|line| (line, Role::Strong)).collect()
         }
         Some((_, Err(why))) => vec![(format!("cannot send: {why}"), Role::Warning)],
-        Some((thread, Ok(offers))) => offer_notes(inbox, thread, offers, width, context),
+        Some((thread, Ok(offers))) => offer_notes(thread, offers, width, &economics),
         None => Vec::new(),
     };
     let lists = list_prices(context.company);
@@ -167,19 +169,10 @@ fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> V
 
 /// Returns the notes on an offer: quota shortfalls, the asked price, and the basis of the compute estimate. If the
 /// compute columns do not fit, the notes contain the estimate.
-fn offer_notes(
-    inbox: &Inbox,
-    thread: &Thread,
-    offers: &[(Plan, f64)],
-    width: u16,
-    context: &ScreenContext<'_>,
-) -> Vec<(String, Role)> {
-    let priced = || {
-        let money = |sold: &(Plan, f64)| (sold.0, OfferEconomics::for_offer(&inbox.usage, context.company, thread, *sold));
-        offers.iter().map(money)
-    };
+fn offer_notes(thread: &Thread, offers: &[(Plan, f64)], width: u16, economics: &PlanEconomics) -> Vec<(String, Role)> {
+    let priced = offer_economics(thread, offers, economics);
     let mut notes = Vec::new();
-    for (plan, (quota, wanted)) in priced().filter_map(|(plan, money)| Some((plan, money.quota_shortfall?))) {
+    for (plan, (quota, wanted)) in priced.iter().filter_map(|line| Some((line.plan, line.quota_shortfall?))) {
         let (quota, share) = (grouped_number(quota, 0), percent(quota / wanted, 0));
         let wanted = grouped_number(wanted, 0);
         let text = match width >= MIN_FULL_WIDTH {
@@ -193,7 +186,7 @@ fn offer_notes(
         let sign = if best < 0.0 { "-" } else { "+" };
         notes.push((format!("asked price {}; difference {sign}{}", dollars_and_cents(price), dollars_and_cents(best.abs())), Role::Text));
     }
-    let Some((units, source)) = usage_per_seat(&inbox.usage, context.company, &thread.group) else {
+    let Some((units, source)) = economics.usage_per_seat(&thread.group) else {
         notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));
         return notes;
     };
@@ -202,10 +195,10 @@ fn offer_notes(
         notes.push((text, Role::Dim));
         return notes;
     }
-    for (plan, money) in priced() {
-        if let (Some(compute), Some(margin)) = (money.compute_cost, money.margin()) {
+    for line in priced {
+        if let (Some(compute), Some(margin)) = (line.compute_cost, line.margin()) {
             let role = if margin < 0.0 { Role::Bad } else { Role::Text };
-            let text = format!("{plan} est. compute {}/mo, margin {}", dollars(compute), percent(margin, 0));
+            let text = format!("{} est. compute {}/mo, margin {}", line.plan, dollars(compute), percent(margin, 0));
             notes.push((text, role));
         }
     }
@@ -231,7 +224,8 @@ fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, o
     if let Some((thread, sold)) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {
         text += &format!(" {:>8} {:>9}", dollars_and_cents(sold.1), dollars(sold.1 * thread.seats));
         if row.width >= MIN_FULL_WIDTH {
-            let money = OfferEconomics::for_offer(&inbox.usage, context.company, thread, sold);
+            let economics = plan_economics(context.company, &inbox.usage);
+            let money = economics.offer_line(&thread.group, thread.seats as u32, sold);
             let compute = money.compute_cost.map_or("–".to_owned(), dollars);
             let margin = money.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
             let loses = if money.margin().is_some_and(|margin| margin < 0.0) { "!" } else { "" };

@@ -4,7 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
 
-use super::estimate::rules_market;
+use super::estimate::plan_economics;
 use super::{Inbox, InboxPane};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -53,7 +53,7 @@ impl RulesForm {
     /// Applies the rules to the waiting threads again.
     pub fn evaluate(&mut self, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) {
         self.batch = novamind_rules::parse(self.field.text())
-            .map(|rules| RuleBatch::new(rules, threads.to_vec(), &rules_market(company, &inbox.usage)));
+            .map(|rules| RuleBatch::new(rules, threads.to_vec(), &plan_economics(company, &inbox.usage)));
     }
 
     /// Returns the outcomes of threads that match a rule.
@@ -129,7 +129,7 @@ impl Inbox {
     /// Returns the tool calls of the last rules for the waiting threads, and a summary. Returns `None` if there are no calls.
     pub fn last_rule_answers(&self, company: &DisplayedCompany) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
-        let batch = RuleBatch::new(rules, self.waiting_threads(company), &rules_market(company, &self.usage));
+        let batch = RuleBatch::new(rules, self.waiting_threads(company), &plan_economics(company, &self.usage));
         let calls = batch.tool_calls();
         (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
     }

@@ -2,14 +2,14 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{ThreadState, Thread, ThreadMessage};
-use super::offer::format_offers;
+use super::model::{ThreadState, Thread};
 use super::{Inbox, InboxPane, sending, preview};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
 use novamind_base::formatting::dollars_and_cents;
+use novamind_rules::{Turn, format_offer_lines};
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
 use novamind_tui::theme::Role;
@@ -154,8 +154,19 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
         let more = wrap_or_empty(&rest, width.saturating_sub(2));
         lines.extend(more.into_iter().map(|line| (format!("{indent}{line}"), role)));
     }
-    if let Some(end) = thread.lost_reason() {
-        lines.extend(wrap(&end, width).into_iter().map(|line| (line, Role::Strong)));
+    lines.extend(loss_lines(thread, width));
+    lines
+}
+
+/// Describes how a lost thread ended, and what the record shows about the reason.
+fn loss_lines(thread: &Thread, width: usize) -> Vec<(String, Role)> {
+    let Some(loss) = &thread.loss else { return Vec::new() };
+    let end = wrap(&loss.describe(&thread.customer_label()), width);
+    let mut lines: Vec<(String, Role)> = end.into_iter().map(|line| (line, Role::Strong)).collect();
+    for fact in &loss.facts {
+        for (at, line) in wrap(fact, width.saturating_sub(2)).into_iter().enumerate() {
+            lines.push((format!("{} {line}", if at == 0 { "·" } else { " " }), Role::Text));
+        }
     }
     lines
 }
@@ -164,10 +175,10 @@ fn wrap_or_empty(text: &str, width: usize) -> Vec<String> {
     if text.is_empty() { Vec::new() } else { wrap(text, width) }
 }
 
-fn message_text(turn: &ThreadMessage) -> String {
+fn message_text(turn: &Turn) -> String {
     match (turn.closing_reason.as_str(), turn.sender.as_str()) {
         ("agent_rejected", _) => "ended the thread".to_owned(),
-        (_, "agent") => format!("offered {}", format_offers(&turn.offers)),
+        (_, "agent") => format!("offered {}", format_offer_lines(&turn.offers)),
         _ if turn.text.is_empty() => "asks for an offer".to_owned(),
         _ => turn.text.clone(),
     }

@@ -3,13 +3,13 @@
 use ratatui::layout::Rect;
 
 use super::model::{ThreadState, Thread};
-use super::offer::format_offers;
 use super::{Inbox, InboxPane, InboxView, sending};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::grouped_number;
+use novamind_rules::format_offer_lines;
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
 use novamind_tui::theme::Role;
@@ -194,7 +194,7 @@ pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
             TableCell::from_text(state.label()).with_role(role)
         }
         _ if thread.last_offer().is_empty() => TableCell::from_text("–").with_role(Role::Dim),
-        _ => TableCell::from_text(format_offers(thread.last_offer())),
+        _ => TableCell::from_text(format_offer_lines(thread.last_offer())),
     };
     vec![
         TableCell::from_text(if marked { "●" } else { "" }).with_role(Role::Changed),

@@ -14,6 +14,7 @@ mod layers;
 mod lesson;
 mod orders;
 mod overlay;
+mod own_commands;
 mod pages;
 mod pause_screen;
 mod playback;
@@ -37,6 +38,7 @@ use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
 use super::keys::KeyBindings;
+use super::own_commands::{OwnCommands, ProgramCall};
 use super::playback::PlaybackViewer;
 use super::screens::menu::StartMenu;
 use super::screens::{Screen, Screens};
@@ -64,6 +66,7 @@ use novamind_worker::screen_queries::Reading;
 pub use busy::BusyState;
 use exit::ExitTarget;
 pub use layers::Layer;
+pub use own_commands::own_commands_refusal;
 use layers::Layers;
 pub use pause_screen::PauseScreen;
 pub use settings::Settings;
@@ -84,6 +87,8 @@ pub enum Order {
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a named query. The strings are the name, the title and the statement of the query.
     SaveQuery(Configuration, [String; 3]),
+    /// Run an external program of the user.
+    RunProgram(ProgramCall),
     /// Redraw the whole window.
     Redraw,
     /// Capture the mouse (`true`) or leave the mouse to the terminal (`false`).
@@ -193,6 +198,10 @@ pub struct App {
     themes: Vec<Theme>,
     configuration: Configuration,
     library: QueryLibrary,
+    /// Commands of the user.
+    own_commands: OwnCommands,
+    /// Lines of an own command that are being executed.
+    own_lines: own_commands::LineQueue,
     resume_command: String,
     /// The part of the program that the user is in.
     pub stage: Stage,
@@ -241,8 +250,13 @@ impl App {
         let menu = Box::new(StartMenu::new(&settings.configuration));
         let library = QueryLibrary::load(&settings.configuration);
         let column_layouts = Preferences::load(&settings.configuration).tables;
+        let own_commands = OwnCommands::load(&settings.configuration, &settings.keys, &library);
+        let status = own_commands.problems.first();
+        let status = status.map(|problem| StatusMessage { text: problem.clone(), is_error: true });
         App {
             library,
+            own_commands,
+            own_lines: own_commands::LineQueue::default(),
             theme: settings.theme,
             keys: settings.keys,
             glyphs: settings.glyphs,
@@ -260,7 +274,7 @@ impl App {
             explained_term: None,
             code_check: None,
             drafts: drafts::DraftState::default(),
-            status: None,
+            status,
             busy: None,
             pending_chords: Vec::new(),
             opponents: settings.opponents,

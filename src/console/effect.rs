@@ -22,7 +22,8 @@ impl Effect {
             Effect::ConfirmCall { .. }
             | Effect::ConfirmCalls { .. }
             | Effect::ConfirmCommand(_)
-            | Effect::SendCommand(_) => true,
+            | Effect::SendCommand(_)
+            | Effect::RunLines(_) => true,
             _ => false,
         }
     }
@@ -128,6 +129,10 @@ pub enum Effect {
         /// Description of the consequences, shown to the user.
         text: String,
     },
+    /// Run the own command with this index.
+    RunOwnCommand(usize),
+    /// Execute the confirmed lines of the own command with this index.
+    RunLines(usize),
     /// Ask for confirmation before a step of the lesson, counted from 0, is retried.
     TryStepAgain(usize),
     /// Open the debrief.

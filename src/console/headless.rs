@@ -13,6 +13,7 @@ use super::app::{App, Order, Settings};
 use super::effect::Effect;
 use super::files;
 use super::frame;
+use super::own_commands;
 use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Access, PlaybackPosition, SeekTarget};
 use novamind_study::Study;
@@ -278,6 +279,10 @@ impl Headless {
                 Order::SaveQuery(configuration, query) => {
                     self.pending_responses += 1;
                     files::save_query_in_background(configuration, query, self.sender.clone());
+                }
+                Order::RunProgram(call) => {
+                    self.pending_responses += 1;
+                    own_commands::run_in_background(call, self.sender.clone());
                 }
                 Order::Copy(text) => self.clipboard.push(text),
                 Order::Exit(code, text) => self.exit = Some((code, text)),

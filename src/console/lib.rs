@@ -21,6 +21,7 @@ pub mod headless;
 pub mod keys;
 mod lesson;
 pub mod manual;
+pub mod own_commands;
 mod playback;
 mod projector;
 pub mod screens;
@@ -166,6 +167,7 @@ impl Console {
                 Order::SaveQuery(configuration, query) => {
                     files::save_query_in_background(configuration, query, self.sender.clone());
                 }
+                Order::RunProgram(call) => own_commands::run_in_background(call, self.sender.clone()),
                 Order::Redraw => self.screen.clear()?,
                 Order::Mouse(taken) => self.screen.set_mouse_capture(taken),
                 Order::Exit(code, text) => return Ok(Some((code, text))),

@@ -440,6 +440,25 @@ impl Interpreter {
     }
 }
 
+/// Parses a line that calls a tool. `next_week` and `query` are separate commands and not accepted.
+///
+/// # Errors
+/// The line is not a tool call. The message says what is wrong.
+pub fn parse_tool_call(line: &str) -> Result<(ToolId, Value), String> {
+    let parsed = grammar::parse_line(line).map_err(|problem| problem.text)?;
+    let ParsedLine::Call { word, column, arguments } = parsed else {
+        return Err("write one call of a tool, for example set_prices B=30".to_owned());
+    };
+    let Some(tool) = find_tool(&word) else {
+        return Err(match COMMANDS.iter().any(|(name, _)| *name == grammar::current_name(&word)) {
+            true => format!("{word} is a command of plain mode. Only calls of tools are possible here."),
+            false => unknown_command(&word, column).text,
+        });
+    };
+    let arguments = parse_call_arguments(tool, &arguments).map_err(|problem| problem.text)?;
+    Ok((tool.spec().id, arguments))
+}
+
 /// Finds a tool by its name, with or without its module. `next_week` and `query` are separate commands.
 fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {

@@ -25,6 +25,7 @@ mod support;
 mod tables;
 mod tasks;
 mod tour;
+mod validity;
 mod what_if;
 mod why;
 mod xray;

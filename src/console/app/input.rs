@@ -70,6 +70,7 @@ impl App {
             None if !typing && self.keys.meaning(&scopes, &[chord]) == KeyMeaning::Prefix => {
                 self.pending_chords.push(chord);
             }
+            None if !typing && self.handle_own_key(&[chord]) => {}
             None => self.forward_key(&key),
         }
     }
@@ -89,6 +90,7 @@ impl App {
                 self.pending_chords.clear();
                 self.handle_action(action);
             }
+            KeyMeaning::Unbound if self.handle_own_key(&self.pending_chords.clone()) => {}
             KeyMeaning::Unbound => {
                 let pressed = format_sequence(&std::mem::take(&mut self.pending_chords));
                 if !chord.is_escape() {
@@ -279,6 +281,7 @@ impl App {
         if let Some(screen) = ScreenId::ALL.into_iter().find(|screen| screen.action() == action) {
             if let Stage::Run(run) = &mut self.stage {
                 run.clear_breadcrumbs();
+                run.screens.get_mut(screen).show_first_view();
             }
             return self.show_screen(screen);
         }
@@ -288,7 +291,7 @@ impl App {
                     let palette = CommandPalette::new(&self.keys, &run.company, &self.library);
                     let palette = match &self.study {
                         Some(visit) => palette.for_participant(visit.has_tour()),
-                        None => palette,
+                        None => palette.with_own_commands(&self.own_commands, &run.company),
                     };
                     self.open_dialog(palette);
                 }

@@ -151,6 +151,8 @@ impl App {
                 let confirm = ConfirmDialog::new("send by rules", text, calls.collect());
                 self.push_layer(Layer::Dialog(Box::new(confirm)));
             }
+            Effect::RunOwnCommand(at) => self.run_own_command(at),
+            Effect::RunLines(at) => self.run_lines(at),
             Effect::Explain(subject) => self.open_subject(subject),
             Effect::TryStepAgain(step) => self.confirm_retry(step),
             Effect::ShowDebrief => self.open_debrief(),

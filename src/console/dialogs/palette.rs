@@ -7,8 +7,10 @@ use super::{Dialog, DialogResponse};
 use crate::action::{ACTIONS, Action, Scope};
 use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
+use crate::app::own_commands_refusal;
 use crate::keys::KeyBindings;
 use crate::lesson::closed_reason;
+use crate::own_commands::{COMMANDS_FILE, OwnCommand, OwnCommands};
 use novamind_glossary::Subject;
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_session::JournalEntry;
@@ -67,7 +69,7 @@ impl PaletteEntry {
 
     /// Returns the rank of the entry's kind: actions before queries, and queries before texts.
     fn kind_rank(&self) -> usize {
-        ["tool", "command", "group", "query", "table", "term"]
+        ["tool", "command", "own", "group", "query", "table", "term"]
             .iter()
             .position(|kind| *kind == self.kind)
             .unwrap_or(usize::MAX)
@@ -131,6 +133,33 @@ impl CommandPalette {
         self
     }
 
+    /// Adds the commands of the user.
+    pub fn with_own_commands(mut self, own: &OwnCommands, company: &DisplayedCompany) -> CommandPalette {
+        let refusal = own_commands_refusal(company, false);
+        let entry = |(at, command): (usize, &OwnCommand)| PaletteEntry {
+            kind: "own",
+            code: "",
+            title: command.name.clone(),
+            doc: match refusal {
+                Some(reason) => format!("unavailable ({reason}): {}", command.describe()),
+                None => command.describe(),
+            },
+            keys: command.key_label(),
+            effect: Effect::RunOwnCommand(at),
+        };
+        self.entries.extend(own.commands.iter().enumerate().map(entry));
+        self.entries.extend(own.problems.iter().map(|problem| PaletteEntry {
+            kind: "error",
+            code: "",
+            title: COMMANDS_FILE.to_owned(),
+            doc: problem.clone(),
+            keys: String::new(),
+            effect: Effect::ShowText(COMMANDS_FILE.to_owned(), problem.clone()),
+        }));
+        self.update_matches();
+        self
+    }
+
     fn update_matches(&mut self) {
         let typed = self.field.text().trim();
         let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));
@@ -165,7 +194,7 @@ impl CommandPalette {
             }
             let closeness = entry.match_rank(typed, !letters.is_empty());
             // A tool, command or group whose name is exactly the typed text ranks before all other names.
-            let whole = entry.kind_rank() < 3 && entry.title.eq_ignore_ascii_case(typed);
+            let whole = entry.kind_rank() < 4 && entry.title.eq_ignore_ascii_case(typed);
             let tier = match closeness {
                 _ if whole => 1,
                 MatchRank::Prefix | MatchRank::Word => 2,

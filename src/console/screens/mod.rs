@@ -12,6 +12,7 @@ use ratatui::layout::Rect;
 use super::action::{Action, Scope};
 use super::context::{Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
+use super::own_commands::ListRows;
 use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::{ColumnLayout, Table};
@@ -118,6 +119,9 @@ pub trait ScreenState {
         0
     }
 
+    /// Called when the user selects the screen by its key, also while the screen is shown. Opens the same view each time.
+    fn show_first_view(&mut self) {}
+
     /// Returns the recorded kind and the recorded name of the open object.
     fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         None
@@ -173,6 +177,9 @@ pub trait Screen: ScreenState {
 
     /// Arranges the columns of all tables of the screen that have a name.
     fn set_layouts(&mut self, layouts: &BTreeMap<String, ColumnLayout>);
+
+    /// Returns the selected rows of the focused list, or all its displayed rows, if the focused pane has a list.
+    fn list_rows(&self, all: bool) -> Option<ListRows>;
 
     /// Handles an action of one of the screen's scopes.
     fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect>;

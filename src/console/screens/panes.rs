@@ -12,6 +12,7 @@ use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
+use crate::own_commands::ListRows;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::{ColumnLayout, Table, TextField};
 
@@ -78,6 +79,13 @@ pub trait Pane<S> {
     /// Returns the figure that is selected in the pane, if any.
     fn figure(&self, _: &S, _: &ScreenContext<'_>) -> Option<Figure> {
         None
+    }
+
+    /// Returns the selected rows of the pane, or all displayed rows, if the pane has a list.
+    fn list_rows(&self, screen: &S, all: bool) -> Option<ListRows> {
+        let table = self.table(screen)?;
+        let selected = table.selected();
+        Some(ListRows::from_table(table, |row| all || selected == Some(row)))
     }
 
     /// Handles an action of one of the pane's scopes.
@@ -319,6 +327,10 @@ impl<S: PaneScreen> Screen for S {
                 table.set_layout(layout.clone());
             }
         }
+    }
+
+    fn list_rows(&self, all: bool) -> Option<ListRows> {
+        active_pane(self).list_rows(self, all)
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {

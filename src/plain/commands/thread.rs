@@ -9,7 +9,7 @@ use super::{Interpreter, argument_error, optional_count};
 use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_report::pluralize;
-use novamind_rules::{LostThread, Subscription, ThreadContext, Turn, parse_offer};
+use novamind_rules::{LostThread, Subscription, ThreadContext, Turn};
 use novamind_session::identifiers::Plan;
 use novamind_tools::Rejection;
 
@@ -150,7 +150,7 @@ fn subscription(rows: &QueryResult) -> Option<Subscription> {
 /// Formats a turn as one line. Returns `None` for an opening turn without a message.
 fn describe_turn(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
-    let (offers, price) = parse_offer(text_at(row, 6));
+    let Turn { offers, price, .. } = Turn::from_row(row);
     let text = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
         ("agent", _) => format!("you offered {}", describe_offer(&offers)),
@@ -190,7 +190,7 @@ fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32)
 }
 
 fn turn_to_json(row: &[Cell]) -> Value {
-    let (offers, price) = parse_offer(text_at(row, 6));
+    let Turn { offers, price, .. } = Turn::from_row(row);
     json!({
         "turn": number_at(row, 3),
         "sender": text_at(row, 4),

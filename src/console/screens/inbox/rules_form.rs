@@ -39,10 +39,10 @@ pub struct RulesForm {
 }
 
 impl RulesForm {
-    /// Opens the editor with the last rules, otherwise with rules from the list prices.
-    pub fn new(before: Option<&str>, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) -> RulesForm {
+    /// Opens the editor with rules.
+    pub fn new(rules: &str, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) -> RulesForm {
         let mut ruling = RulesForm {
-            field: TextField::with_text(before.map_or_else(|| default_rules(company), str::to_owned)),
+            field: TextField::with_text(rules),
             is_typing: true,
             batch: Err(RuleError { text: String::new(), column: 1 }),
         };
@@ -72,11 +72,17 @@ pub fn draw_small_layout(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, con
 
 impl Inbox {
     pub(super) fn open_rules(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let rules = self.last_rules.clone().unwrap_or_else(|| default_rules(company));
+        self.show_rules(&rules, company)
+    }
+
+    /// Opens rules with their preview.
+    pub fn show_rules(&mut self, rules: &str, company: &DisplayedCompany) -> Vec<Effect> {
         let threads = self.waiting_threads(company);
         if threads.is_empty() {
             return vec![Effect::ShowError("No thread is waiting for an answer".to_owned())];
         }
-        self.rules_form = Some(RulesForm::new(self.last_rules.as_deref(), &threads, company, self));
+        self.rules_form = Some(RulesForm::new(rules, &threads, company, self));
         self.focus = InboxPane::Offer;
         self.scroll = 0;
         Vec::new()

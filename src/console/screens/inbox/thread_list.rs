@@ -7,6 +7,7 @@ use super::{Inbox, InboxPane, InboxView, sending};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
+use crate::own_commands::ListRows;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::grouped_number;
 use novamind_rules::format_offer_lines;
@@ -78,6 +79,15 @@ impl Pane<Inbox> for ThreadListPane {
             inbox.table.handle_action(action, context.page_rows);
         }
         Vec::new()
+    }
+
+    fn list_rows(&self, inbox: &Inbox, all: bool) -> Option<ListRows> {
+        let selected = inbox.table.selected();
+        let is_wanted = |row: usize| match inbox.marked.is_empty() {
+            true => selected == Some(row),
+            false => inbox.thread_in_row(row).is_some_and(|number| inbox.marked.contains(&number)),
+        };
+        Some(ListRows::from_table(&inbox.table, |row| all || is_wanted(row)))
     }
 
     fn handle_click(&self, inbox: &mut Inbox, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {

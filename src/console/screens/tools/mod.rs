@@ -250,6 +250,11 @@ impl ScreenState for Tools {
         Vec::new()
     }
 
+    /// Shows the list of tools. Forms keep their drafts, and enter opens the last form again.
+    fn show_first_view(&mut self) {
+        self.set_focused_pane(ToolsPane::List);
+    }
+
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         (self.focus == ToolsPane::Form).then(|| self.selected_tool().map(|spec| spec.name().to_owned())).flatten()
     }

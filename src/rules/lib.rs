@@ -20,7 +20,7 @@ mod turn;
 pub use batch::{RuleBatch, RuleOutcome, calls_for_waiting_threads};
 pub use filter::Filter;
 pub use grammar::{Rule, RuleError, parse};
-pub use lost_thread::{LossCause, LostThread, Subscription};
+pub use lost_thread::{LossCause, LostThread, MIN_TURNS_PARAMETER, Subscription};
 pub use plan_economics::{OfferLineEconomics, OfferTotals, PlanEconomics};
 pub use seat_usage::{SEAT_USAGE_SQL, SeatUsage};
 pub use thread::{LAST_MESSAGES_SQL, RequestedPlans, ThreadContext, first_plan_in};

@@ -8,6 +8,9 @@ use super::turn::{Turn, format_offer_lines};
 use novamind_base::formatting::{dollars_and_cents, percent};
 use novamind_session::identifiers::Plan;
 
+/// Parameter with the lowest number of turns that an enterprise can have.
+pub const MIN_TURNS_PARAMETER: &str = "customer_generation.max_negotiation_turns_min";
+
 /// Words of a message that names alternatives, a budget or a deadline.
 const STATEMENT_WORDS: [&str; 12] = [
     "alternative", "vendor", "competitor", "other options", "somebody else", "asked others", "a switch", "compare",
@@ -51,12 +54,20 @@ pub struct LostThread {
 impl LostThread {
     /// Returns how a thread of a kind was lost. Returns `None` if the thread ended with a deal or a rejection by the
     /// player, or if the enterprise can still answer. The thread must not be waiting for the player.
-    pub fn from_turns(turns: &[Turn], kind: &str, subscription: &Subscription) -> Option<LostThread> {
+    ///
+    /// `min_turns` is the lowest number of turns that an enterprise can have, or `None` in runs whose player must not
+    /// know more than the texts of the tools.
+    pub fn from_turns(
+        turns: &[Turn],
+        kind: &str,
+        subscription: &Subscription,
+        min_turns: Option<u32>,
+    ) -> Option<LostThread> {
         let last = turns.last().filter(|last| last.closing_reason.is_empty())?;
         let is_open = matches!(subscription.status.as_str(), "lead" | "subscribed");
         match last.sender.as_str() {
             "agent" if is_open => None,
-            "agent" => Some(declined(turns, last, kind, subscription)),
+            "agent" => Some(declined(turns, last, kind, subscription, min_turns)),
             _ => Some(unanswered(turns, last, kind, subscription)),
         }
     }
@@ -81,7 +92,13 @@ fn unanswered(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
     LostThread { cause: LossCause::Unanswered, summary, facts }
 }
 
-fn declined(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscription) -> LostThread {
+fn declined(
+    turns: &[Turn],
+    last: &Turn,
+    kind: &str,
+    subscription: &Subscription,
+    min_turns: Option<u32>,
+) -> LostThread {
     let end = subscription.end_day.map_or(String::new(), |day| format!(" on day {day}"));
     let offers = format_offer_lines(&last.offers);
     let summary =
@@ -92,11 +109,16 @@ fn declined(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscription
     facts.extend(lateness_fact(turns, last));
     let count = turns.iter().filter(|turn| !turn.offers.is_empty()).count();
     let offers = if count == 1 { "your only offer".to_owned() } else { format!("the last of your {count} offers") };
-    facts.push(format!(
-        "It was {offers}, in turn {} of the thread. An enterprise falls silent when its turns are used up, or if no \
-         price is acceptable to it. The record does not show which.",
-        last.number
-    ));
+    let reason = match (min_turns.filter(|min| last.number < *min), last.offers.as_slice()) {
+        (Some(min), [(plan, _)]) => format!(
+            "An enterprise has at least {min} turns, so it had not used them up: no price of plan {plan} was acceptable to \
+             it, because it requires more quality."
+        ),
+        _ => "An enterprise falls silent when its turns are used up, or if no price is acceptable to it. The record does \
+              not show which."
+            .to_owned(),
+    };
+    facts.push(format!("It was {offers}, in turn {} of the thread. {reason}", last.number));
     LostThread { cause: LossCause::Declined, summary, facts }
 }
 
@@ -232,7 +254,7 @@ mod tests {
     const COUNTER: &str = "We compared your proposal with our budget. We need $20.00 a seat for plan B.";
 
     fn facts(turns: &[Turn], kind: &str, subscription: &Subscription) -> (LossCause, String) {
-        let lost = LostThread::from_turns(turns, kind, subscription).expect("a lost thread");
+        let lost = LostThread::from_turns(turns, kind, subscription, Some(2)).expect("a lost thread");
         (lost.cause, format!("{}\n{}", lost.describe("Acme #7"), lost.facts.join("\n")))
     }
 
@@ -257,6 +279,9 @@ mod tests {
         assert!(facts(&turns, "new_lead", &lost(26)).1.contains("Your offer had no plan B."));
         let (_, first) = facts(&turns[..2], "new_lead", &lost(20));
         assert!(first.contains("It named no price in this thread.") && first.contains("your only offer"), "{first}");
+        assert!(first.contains("no price of plan B was acceptable to it"), "{first}");
+        let hidden = LostThread::from_turns(&turns[..2], "new_lead", &lost(20), None).expect("a lost thread");
+        assert!(hidden.facts.concat().contains("does not show which"), "{hidden:?}");
     }
 
     #[test]
@@ -295,11 +320,11 @@ mod tests {
     fn open_and_closed_threads_are_not_lost() {
         let lead = Subscription { status: "lead".to_owned(), ..Subscription::default() };
         let turns = [turn(0, 8, "system"), offer(1, 14, Plan::B, 30.0)];
-        assert_eq!(LostThread::from_turns(&turns, "new_lead", &lead), None);
+        assert_eq!(LostThread::from_turns(&turns, "new_lead", &lead, Some(2)), None);
         for reason in ["accepted", "agent_rejected"] {
             let end = Turn { closing_reason: reason.to_owned(), ..turn(2, 20, "system") };
-            assert_eq!(LostThread::from_turns(&[end], "new_lead", &lost(20)), None);
+            assert_eq!(LostThread::from_turns(&[end], "new_lead", &lost(20), Some(2)), None);
         }
-        assert_eq!(LostThread::from_turns(&[], "new_lead", &lost(20)), None);
+        assert_eq!(LostThread::from_turns(&[], "new_lead", &lost(20), Some(2)), None);
     }
 }

@@ -124,11 +124,9 @@ impl App {
         if !is_accepted {
             self.own_lines.lines.clear();
             let reason = self.status.as_ref().map_or(String::new(), |status| status.text.clone());
-            let rest = match left {
-                0 => String::new(),
-                left => format!("; {} not executed", format_count(left as f64, "more line")),
-            };
-            return self.show_error(format!("{name}, line {}: {reason}{rest}", count - left));
+            // The part that the footer could cut off is the reason, which the form of the tool also shows.
+            let rest = if left == 0 { String::new() } else { format!(", {left} not executed") };
+            return self.show_error(format!("{name}: rejected line {} of {count}{rest}: {reason}", count - left));
         }
         match left {
             0 => self.show_status(format!("{name}: {} done", format_count(count as f64, "line"))),

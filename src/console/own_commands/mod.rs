@@ -16,7 +16,7 @@ use super::action::Scope;
 use super::keys::{KeyBindings, KeyMeaning};
 use novamind_base::similar_names;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::query_library::QueryLibrary;
+use novamind_record::folder::query_library::{QueryHeader, QueryLibrary};
 use novamind_tools::ToolId;
 use novamind_tui::chord::{Chord, format_sequence, parse_sequence};
 
@@ -111,7 +111,10 @@ impl OwnCommand {
     /// Describes what the command does, in one line.
     pub fn describe(&self) -> String {
         match &self.action {
-            OwnAction::Query(sql) => format!("runs {}", single_line(sql)),
+            OwnAction::Query(sql) => match QueryHeader::parse(sql).title {
+                Some(title) => format!("runs the query {title}"),
+                None => format!("runs {}", single_line(sql)),
+            },
             OwnAction::Rules(rules) => format!("opens the rules {}", single_line(rules)),
             OwnAction::Lines(lines) => {
                 let lines: Vec<&str> = lines.iter().map(|(line, ..)| line.as_str()).collect();

@@ -66,7 +66,7 @@ fn run_program(call: ProgramCall) -> Result<(String, String), String> {
             Ok((format!("{name}{}", describe_status(status)), describe_output(&output, &errors)))
         }
         Ok(None) => Err(format!(
-            "{name}: stopped after {seconds} s. The run has not changed. To allow more time, set timeout in commands.toml."
+            "{name} was stopped after {seconds} s; the run has not changed. To allow more time, set timeout in commands.toml."
         )),
         Err(error) => Err(format!("{name}: {error}")),
     }
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn program_is_killed_at_its_time_limit() {
         let problem = run_program(call("sleep 600 & wait", "", 1)).expect_err("a time limit");
-        assert!(problem.contains("stopped after 1 s. The run has not changed."), "{problem}");
+        assert!(problem.contains("stopped after 1 s; the run has not changed."), "{problem}");
     }
 
     #[test]

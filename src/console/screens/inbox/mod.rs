@@ -30,7 +30,7 @@ use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
 use novamind_base::formatting::parse_number;
 use novamind_database::QueryResult;
-use novamind_rules::{ThreadContext, SeatUsage};
+use novamind_rules::{MIN_TURNS_PARAMETER, ThreadContext, SeatUsage};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};
@@ -143,7 +143,11 @@ pub struct Inbox {
 impl Inbox {
     fn update_threads(&mut self, company: &DisplayedCompany) {
         let place = self.list_position();
-        self.threads.merge_waiting(self.waiting_threads(company), &company.company_names);
+        // The texts of the tools, which agents read, do not state the number of turns.
+        let is_shown = !company.is_baseline() || !company.is_running();
+        let min_turns = company.numbers.value(MIN_TURNS_PARAMETER).filter(|_| is_shown);
+        let waiting = self.waiting_threads(company);
+        self.threads.merge_waiting(waiting, &company.company_names, min_turns.map(|turns| turns as u32));
         let threads = self.threads.threads.iter();
         let open: BTreeSet<u32> =
             threads.filter(|thread| thread.state.is_open()).map(|thread| thread.number).collect();

@@ -165,8 +165,14 @@ impl ThreadStore {
         self.enterprises.get(&customer)
     }
 
-    /// Merges the threads that wait for the player into the list, and sorts the list.
-    pub fn merge_waiting(&mut self, waiting: Vec<ThreadContext>, names: &EnterpriseNames) {
+    /// Merges the threads that wait for the player into the list, and sorts the list. For `min_turns`, see
+    /// [`LostThread::from_turns`].
+    pub fn merge_waiting(
+        &mut self,
+        waiting: Vec<ThreadContext>,
+        names: &EnterpriseNames,
+        min_turns: Option<u32>,
+    ) {
         let mut left = self.recorded.clone();
         let mut threads: Vec<Thread> = waiting.into_iter().map(|thread_context| thread_from_waiting(thread_context, &mut left)).collect();
         // Only the newest thread of an enterprise can be open.
@@ -176,7 +182,7 @@ impl ThreadStore {
             thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
             let subscription = firm.map(Enterprise::subscription);
             thread.loss = subscription
-                .and_then(|subscription| LostThread::from_turns(&thread.messages, &thread.kind, &subscription));
+                .and_then(|subscription| LostThread::from_turns(&thread.messages, &thread.kind, &subscription, min_turns));
             thread.state = closed_or_waiting_state(&thread);
             if !newest.insert(thread.customer) && thread.state == ThreadState::WaitingForCustomer {
                 thread.state = ThreadState::Lost(None);

@@ -66,8 +66,8 @@ use novamind_worker::screen_queries::Reading;
 pub use busy::BusyState;
 use exit::ExitTarget;
 pub use layers::Layer;
-pub use own_commands::own_commands_refusal;
 use layers::Layers;
+pub use own_commands::own_commands_refusal;
 pub use pause_screen::PauseScreen;
 pub use settings::Settings;
 

@@ -40,7 +40,9 @@ fn describe_deal(deal: &Value, names: &EnterpriseNames) -> Option<String> {
 pub fn parse_deal(deal: &Value) -> Option<(u32, Vec<(&str, f64)>)> {
     let part = |name: &str, at: usize| deal.get(name).or_else(|| deal.get(at));
     let customer = u32::try_from(part("customer_id", 0).unwrap_or(deal).as_u64()?).ok()?;
-    let Some(offerings) = part("offerings", 1).and_then(Value::as_array) else { return Some((customer, Vec::new())) };
+    let Some(offerings) = part("offerings", 1).and_then(Value::as_array) else {
+        return Some((customer, Vec::new()));
+    };
     let offerings: Option<Vec<(&str, f64)>> = offerings.iter().map(parse_offering).collect();
     Some((customer, offerings?))
 }

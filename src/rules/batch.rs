@@ -238,7 +238,11 @@ mod tests {
             quotas: [1_000.0, 1_000.0, 5_000.0],
             unit_costs: [0.001, 0.01, 0.1],
             usage: SeatUsage::default(),
-            estimated_usage: ["E1", "E2"].into_iter().filter_map(Group::parse).map(|group| (group, (1, 10.0))).collect(),
+            estimated_usage: ["E1", "E2"]
+                .into_iter()
+                .filter_map(Group::parse)
+                .map(|group| (group, (1, 10.0)))
+                .collect(),
         }
     }
 

@@ -13,8 +13,18 @@ pub const MIN_TURNS_PARAMETER: &str = "customer_generation.max_negotiation_turns
 
 /// Words of a message that names alternatives, a budget or a deadline.
 const STATEMENT_WORDS: [&str; 12] = [
-    "alternative", "vendor", "competitor", "other options", "somebody else", "asked others", "a switch", "compare",
-    "budget", "beyond our frame", "afford", "deadline",
+    "alternative",
+    "vendor",
+    "competitor",
+    "other options",
+    "somebody else",
+    "asked others",
+    "a switch",
+    "compare",
+    "budget",
+    "beyond our frame",
+    "afford",
+    "deadline",
 ];
 const MAX_STATEMENTS: usize = 2;
 
@@ -101,14 +111,14 @@ fn declined(
 ) -> LostThread {
     let end = subscription.end_day.map_or(String::new(), |day| format!(" on day {day}"));
     let offers = format_offer_lines(&last.offers);
-    let summary =
-        format!("declined your offer {offers} of day {}{end}, without a message.", last.day);
+    let summary = format!("declined your offer {offers} of day {}{end}, without a message.", last.day);
     let mut facts = vec![price_fact(turns, last)];
     facts.extend(terms_fact(turns, last, kind, subscription));
     facts.extend(statements(turns));
     facts.extend(lateness_fact(turns, last));
     let count = turns.iter().filter(|turn| !turn.offers.is_empty()).count();
-    let offers = if count == 1 { "your only offer".to_owned() } else { format!("the last of your {count} offers") };
+    let offers =
+        if count == 1 { "your only offer".to_owned() } else { format!("the last of your {count} offers") };
     let reason = match (min_turns.filter(|min| last.number < *min), last.offers.as_slice()) {
         (Some(min), [(plan, _)]) => format!(
             "An enterprise has at least {min} turns, so it had not used them up: no price of plan {plan} was acceptable to \
@@ -189,14 +199,18 @@ fn terms_fact(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
 
 /// Quotes sentences of the enterprise about alternatives, its budget or a deadline, the latest first.
 fn statements(turns: &[Turn]) -> Vec<String> {
-    let messages = turns.iter().rev().filter(|turn| turn.sender == "customer" && turn.closing_reason.is_empty());
+    let messages =
+        turns.iter().rev().filter(|turn| turn.sender == "customer" && turn.closing_reason.is_empty());
     let quoted = messages.flat_map(|turn| {
         let names = |sentence: &&str| {
             let lower = sentence.to_lowercase();
             STATEMENT_WORDS.iter().any(|word| lower.contains(word))
         };
         let found: Vec<&str> = sentences(&turn.text).into_iter().filter(names).collect();
-        found.into_iter().map(|sentence| format!("It wrote on day {}: “{sentence}”", turn.day)).collect::<Vec<_>>()
+        found
+            .into_iter()
+            .map(|sentence| format!("It wrote on day {}: “{sentence}”", turn.day))
+            .collect::<Vec<_>>()
     });
     quoted.take(MAX_STATEMENTS).collect()
 }
@@ -219,7 +233,10 @@ fn lateness_fact(turns: &[Turn], last: &Turn) -> Option<String> {
     let before = turns.len().checked_sub(2).map(|at| &turns[at]).filter(|turn| turn.sender == "customer")?;
     let days = last.day.saturating_sub(before.day);
     (days > 1).then(|| {
-        format!("Your offer came {days} days after its message of day {}. Late answers cost relationship.", before.day)
+        format!(
+            "Your offer came {days} days after its message of day {}. Late answers cost relationship.",
+            before.day
+        )
     })
 }
 
@@ -278,7 +295,10 @@ mod tests {
         turns[3] = offer(3, 21, Plan::C, 5.0);
         assert!(facts(&turns, "new_lead", &lost(26)).1.contains("Your offer had no plan B."));
         let (_, first) = facts(&turns[..2], "new_lead", &lost(20));
-        assert!(first.contains("It named no price in this thread.") && first.contains("your only offer"), "{first}");
+        assert!(
+            first.contains("It named no price in this thread.") && first.contains("your only offer"),
+            "{first}"
+        );
         assert!(first.contains("no price of plan B was acceptable to it"), "{first}");
         let hidden = LostThread::from_turns(&turns[..2], "new_lead", &lost(20), None).expect("a lost thread");
         assert!(hidden.facts.concat().contains("does not show which"), "{hidden:?}");
@@ -297,9 +317,14 @@ mod tests {
         let mut turns = vec![turn(0, 40, "system"), threat, offer(2, 42, Plan::B, 40.0)];
         let (_, words) = facts(&turns, "churn_prevention", &subscriber);
         assert!(words.contains("It paid $40.00 for plan B. Your offer was not lower."), "{words}");
-        assert!(words.contains("It wrote on day 40: “For this price we have asked others for quotes.”"), "{words}");
+        assert!(
+            words.contains("It wrote on day 40: “For this price we have asked others for quotes.”"),
+            "{words}"
+        );
         turns[2] = offer(2, 42, Plan::B, 30.0);
-        assert!(facts(&turns, "churn_prevention", &subscriber).1.contains("Your lowest price was $10.00 lower."));
+        assert!(
+            facts(&turns, "churn_prevention", &subscriber).1.contains("Your lowest price was $10.00 lower.")
+        );
         turns[1] = text("Could we bring our 9 seats from plan B to plan A?");
         let (_, words) = facts(&turns, "plan_change", &subscriber);
         assert!(words.contains("It asked for plan A on day 40. Your offer had no plan A."), "{words}");
@@ -310,10 +335,17 @@ mod tests {
         let turns = [turn(0, 8, "system"), offer(1, 14, Plan::B, 30.0), ask(2, 18, COUNTER, 20.0)];
         let (cause, text) = facts(&turns, "new_lead", &lost(25));
         assert_eq!(cause, LossCause::Unanswered);
-        assert!(text.contains("no answer from you to its message of day 18: the thread ended on day 25."), "{text}");
+        assert!(
+            text.contains("no answer from you to its message of day 18: the thread ended on day 25."),
+            "{text}"
+        );
         assert!(text.contains("It asked $20.00 for plan B on day 18."), "{text}");
-        let cancelled = Subscription { status: "cancelled".to_owned(), end_day: Some(90), ..Subscription::default() };
-        assert!(!facts(&turns, "churn_prevention", &cancelled).1.contains("90"), "the recorded end can be later");
+        let cancelled =
+            Subscription { status: "cancelled".to_owned(), end_day: Some(90), ..Subscription::default() };
+        assert!(
+            !facts(&turns, "churn_prevention", &cancelled).1.contains("90"),
+            "the recorded end can be later"
+        );
     }
 
     #[test]

@@ -95,7 +95,9 @@ pub struct OfferLineEconomics {
 impl OfferLineEconomics {
     /// Returns the estimated share of the payment that remains after compute.
     pub fn margin(&self) -> Option<f64> {
-        self.compute_cost.filter(|_| self.monthly_revenue > 0.0).map(|compute| 1.0 - compute / self.monthly_revenue)
+        self.compute_cost
+            .filter(|_| self.monthly_revenue > 0.0)
+            .map(|compute| 1.0 - compute / self.monthly_revenue)
     }
 
     /// Returns the price as a share of the list price.
@@ -106,7 +108,9 @@ impl OfferLineEconomics {
     /// Describes the price compared with the list price and with the compute cost.
     pub fn describe(&self) -> String {
         let mut parts = vec![match (self.list_share(), self.list_price) {
-            (Some(share), Some(list)) => format!("{} of the list price {}", percent(share, 0), dollars_and_cents(list)),
+            (Some(share), Some(list)) => {
+                format!("{} of the list price {}", percent(share, 0), dollars_and_cents(list))
+            }
             _ => "the plan has no list price".to_owned(),
         }];
         parts.push(format!("{} a month", dollars(self.monthly_revenue)));
@@ -181,7 +185,8 @@ impl OfferTotals {
         let mut words = format!("{} {noun}, {} {seats}", count(self.thread_count), count(self.seats));
         if self.thread_count > 0 && !rejects {
             words += &format!(", at most {} a month", dollars(self.monthly_revenue));
-            if let Some((low, high)) = self.list_shares.map(|(low, high)| (percent(low, 0), percent(high, 0))) {
+            if let Some((low, high)) = self.list_shares.map(|(low, high)| (percent(low, 0), percent(high, 0)))
+            {
                 let range = if low == high { low } else { format!("{low} to {high}") };
                 words += &format!(", prices {range} of list");
             }
@@ -236,7 +241,10 @@ mod tests {
         assert_eq!((line.monthly_revenue, line.compute_cost), (1_000.0, Some(1_200.0)));
         assert_eq!((line.list_share(), line.quota_shortfall), (Some(0.25), None));
         let text = line.describe();
-        assert!(text.starts_with("plan B at $10.00 per seat: 25% of the list price $40.00, $1,000 a month"), "{text}");
+        assert!(
+            text.starts_with("plan B at $10.00 per seat: 25% of the list price $40.00, $1,000 a month"),
+            "{text}"
+        );
         assert!(text.ends_with("estimated margin after compute -20%: a loss"), "{text}");
         let capped = economics.offer_line("E1", 100, (Plan::C, 60.0));
         assert_eq!(capped.compute_cost, Some(1_000.0 * 30.0 * 0.1), "all seats share one quota");
@@ -254,7 +262,10 @@ mod tests {
             totals.add_offer(&[economics.offer_line("E1", 100, (Plan::B, price))], 100);
         }
         let text = totals.describe(false);
-        assert!(text.contains("at most $4,600 a month, prices 25% to 90% of list, margin after compute 48%"), "{text}");
+        assert!(
+            text.contains("at most $4,600 a month, prices 25% to 90% of list, margin after compute 48%"),
+            "{text}"
+        );
         assert!(!totals.describe(true).contains("a month"));
     }
 }

@@ -693,10 +693,12 @@ set_model_tiers A=2 B=3 C=4
 set_targeted_ad_spend {"targeted_spend": {"linkedin": {"E1": 2000}}}
 set_targeted_dev_spend {"targeted_spend": {"E1": 2000}}
 "#;
-    let offer = "check send_enterprise_deal [[8, [[\"B\", 10.2]]]]\nsend_enterprise_deal [[8, [[\"B\", 34]]]]\n";
+    let offer =
+        "check send_enterprise_deal [[8, [[\"B\", 10.2]]]]\nsend_enterprise_deal [[8, [[\"B\", 34]]]]\n";
     let other = "send_enterprise_deal [[9, [[\"B\", 60]]]]\n";
     let lines =
-        [setup, &week.repeat(6), offer, &week.repeat(4), other, &week.repeat(3), "thread 1\nthread 2\n"].concat();
+        [setup, &week.repeat(6), offer, &week.repeat(4), other, &week.repeat(3), "thread 1\nthread 2\n"]
+            .concat();
     let (text, code) = play(runs.path(), &["--seed", "7", "--days", "140"], &lines);
     assert_eq!(code, 0, "{text}");
     for part in [

@@ -49,7 +49,9 @@ impl App {
     }
 
     pub(super) fn run_own_command(&mut self, at: usize) {
-        let (Some(command), Some(run)) = (self.own_commands.commands.get(at).cloned(), self.run()) else { return };
+        let (Some(command), Some(run)) = (self.own_commands.commands.get(at).cloned(), self.run()) else {
+            return;
+        };
         if let Some(reason) = own_commands_refusal(&run.company, self.has_participant()) {
             return self.show_error(format!("{}: {reason}", command.name));
         }
@@ -66,7 +68,8 @@ impl App {
             }
             OwnAction::Lines(lines) => {
                 let texts: Vec<&str> = lines.iter().map(|(line, ..)| line.as_str()).collect();
-                let text = format!("Execute {}?\n{}", format_count(lines.len() as f64, "line"), texts.join("\n"));
+                let text =
+                    format!("Execute {}?\n{}", format_count(lines.len() as f64, "line"), texts.join("\n"));
                 let confirm = ConfirmDialog::new(command.name, text, vec![Effect::RunLines(at)]);
                 self.push_layer(Layer::Dialog(Box::new(confirm)));
             }
@@ -77,7 +80,9 @@ impl App {
         let Stage::Run(run) = &self.stage else { return };
         let rows = run.screens.get(run.screen).list_rows(program.gets_all_rows);
         let Some(rows) = rows.filter(|rows| !rows.is_empty()) else {
-            return self.show_error(format!("{name}: no row is selected. Choose a list with tab, then press the key again."));
+            return self.show_error(format!(
+                "{name}: no row is selected. Choose a list with tab, then press the key again."
+            ));
         };
         let input = if program.gets_json { rows.to_json() } else { rows.to_csv() };
         let run = run.company.observation.run.clone();
@@ -126,7 +131,8 @@ impl App {
             let reason = self.status.as_ref().map_or(String::new(), |status| status.text.clone());
             // The part that the footer could cut off is the reason, which the form of the tool also shows.
             let rest = if left == 0 { String::new() } else { format!(", {left} not executed") };
-            return self.show_error(format!("{name}: rejected line {} of {count}{rest}: {reason}", count - left));
+            return self
+                .show_error(format!("{name}: rejected line {} of {count}{rest}: {reason}", count - left));
         }
         match left {
             0 => self.show_status(format!("{name}: {} done", format_count(count as f64, "line"))),

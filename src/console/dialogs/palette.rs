@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, DialogResponse};
 use crate::action::{ACTIONS, Action, Scope};
+use crate::app::own_commands_refusal;
 use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
-use crate::app::own_commands_refusal;
 use crate::keys::KeyBindings;
 use crate::lesson::closed_reason;
 use crate::own_commands::{COMMANDS_FILE, OwnCommand, OwnCommands};

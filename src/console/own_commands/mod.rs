@@ -209,7 +209,8 @@ impl OwnCommands {
                 return Err(format!("key: {shown} already means {other} ({place}). Choose another key."));
             }
         }
-        let clash = |bound: &[Chord]| !bound.is_empty() && (bound.starts_with(&chords) || chords.starts_with(bound));
+        let clash =
+            |bound: &[Chord]| !bound.is_empty() && (bound.starts_with(&chords) || chords.starts_with(bound));
         match self.commands.iter().find(|other| clash(&other.keys)) {
             Some(other) => Err(format!("key: {shown} already means {}. Choose another key.", other.name)),
             None => Ok(chords),
@@ -248,7 +249,8 @@ fn read_action(entry: CommandEntry, library: &QueryLibrary) -> Result<OwnAction,
             let known = library.queries().iter().find(|query| query.name == name);
             let unknown = || {
                 let similar = similar_names(&name, library.queries().iter().map(|query| query.name.as_str()));
-                let hint = similar.first().map_or(String::new(), |similar| format!(" Did you mean {similar}?"));
+                let hint =
+                    similar.first().map_or(String::new(), |similar| format!(" Did you mean {similar}?"));
                 format!("there is no query {name}.{hint} `novamind query --list` lists the queries.")
             };
             Ok(OwnAction::Query(known.ok_or_else(unknown)?.sql.clone()))
@@ -269,7 +271,8 @@ fn read_action(entry: CommandEntry, library: &QueryLibrary) -> Result<OwnAction,
             if command.first().is_none_or(|program| program.trim().is_empty()) {
                 return Err("program is empty. Write the program and each argument as one text.".to_owned());
             }
-            let one_of = |value: Option<String>, key: &str, first: &str, second: &str| match value.as_deref() {
+            let one_of = |value: Option<String>, key: &str, first: &str, second: &str| match value.as_deref()
+            {
                 None => Ok(false),
                 Some(value) if value == first => Ok(false),
                 Some(value) if value == second => Ok(true),
@@ -371,7 +374,10 @@ lines = ["set_prices A=16 B=34", "set_capacity_tier 1"]
             ("[[commands]]\nname = \"a\"\nsql = \"x\"\nkey = \"hyper-x\"", "is not a key"),
             ("[[commands]]\nname = \"a\"\nsql = \"x\"\ntimeout = 3", "belong to a program"),
             ("[[commands]]\nname = \"a\"\nprogram = []", "program is empty"),
-            ("[[commands]]\nname = \"a\"\nprogram = [\"x\"]\nrows = \"some\"", "Set it to \"selected\" or \"all\""),
+            (
+                "[[commands]]\nname = \"a\"\nprogram = [\"x\"]\nrows = \"some\"",
+                "Set it to \"selected\" or \"all\"",
+            ),
             ("[[commands]]\nname = \"a\"\nprogram = [\"x\"]\ntimeout = 0", "Set it to 1 to 3600 seconds"),
             ("[[commands]]\nname = \"a\"\nrules = \"acept rest\"", "rules: "),
             ("[[commands]]\nname = \"a\"\nlines = [\"set_price A=3\"]", "lines: set_price A=3: "),
@@ -386,7 +392,11 @@ lines = ["set_prices A=16 B=34", "set_capacity_tier 1"]
         }
         let own = parse(&format!("{VALID}\n[[commands]]\nname = \"Answer\"\nsql = \"x\"\n"));
         assert_eq!(own.commands.len(), 4);
-        assert!(own.problems[0].starts_with("line 23: there are two commands named Answer"), "{:?}", own.problems);
+        assert!(
+            own.problems[0].starts_with("line 23: there are two commands named Answer"),
+            "{:?}",
+            own.problems
+        );
         let own = parse(&format!("{VALID}\n[[commands]]\nname = \"b\"\nkey = \"ctrl-g\"\nsql = \"x\"\n"));
         assert!(own.problems[0].contains("already means Count rows"), "{:?}", own.problems);
     }

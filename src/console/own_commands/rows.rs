@@ -39,7 +39,8 @@ impl ListRows {
     /// Formats the rows as a JSON list of objects.
     pub fn to_json(&self) -> String {
         let object = |row: &Vec<TableCell>| {
-            let value = |cell: &TableCell| cell.number.map_or_else(|| Value::from(cell.text.as_str()), json_number);
+            let value =
+                |cell: &TableCell| cell.number.map_or_else(|| Value::from(cell.text.as_str()), json_number);
             let fields = self.columns.iter().cloned().zip(row.iter().map(value));
             Value::Object(fields.collect::<Map<String, Value>>())
         };

@@ -29,15 +29,20 @@ impl Interpreter {
     /// Returns the offers in the arguments of a call. Offers that cannot be read are omitted.
     pub(super) fn planned_offers(&mut self, tool: ToolId, arguments: &Value) -> PlannedOffers {
         let deals = arguments.get("deals").and_then(Value::as_array);
-        let Some(deals) = deals.filter(|_| tool == ToolId::SendEnterpriseDeal) else { return PlannedOffers::default() };
+        let Some(deals) = deals.filter(|_| tool == ToolId::SendEnterpriseDeal) else {
+            return PlannedOffers::default();
+        };
         let deals: Vec<(u32, Vec<(Plan, f64)>)> = deals.iter().filter_map(read_deal).collect();
         let Ok((waiting, economics)) = ThreadContext::read_all(&mut self.session) else {
             return PlannedOffers::default();
         };
         let waiting: BTreeMap<u32, ThreadContext> =
             waiting.into_iter().map(|thread| (thread.waiting.customer, thread)).collect();
-        let others: Vec<u32> =
-            deals.iter().map(|(customer, _)| *customer).filter(|customer| !waiting.contains_key(customer)).collect();
+        let others: Vec<u32> = deals
+            .iter()
+            .map(|(customer, _)| *customer)
+            .filter(|customer| !waiting.contains_key(customer))
+            .collect();
         let others = self.groups_and_seats(&others);
         let offer = |(customer, lines): &(u32, Vec<(Plan, f64)>)| {
             let thread = waiting.get(customer);
@@ -46,7 +51,12 @@ impl Interpreter {
                 None => others.get(customer).copied()?,
             };
             let lines = lines.iter().map(|line| economics.offer_line(group, seats, *line)).collect();
-            Some(PlannedOffer { customer: *customer, seats, lines, request: thread.and_then(describe_request) })
+            Some(PlannedOffer {
+                customer: *customer,
+                seats,
+                lines,
+                request: thread.and_then(describe_request),
+            })
         };
         PlannedOffers(deals.iter().filter_map(offer).collect())
     }
@@ -57,10 +67,13 @@ impl Interpreter {
             return BTreeMap::new();
         }
         let list = customers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
-        let mut rows = |sql: String| self.session.query_unrecorded(&sql).map(|found| found.rows).unwrap_or_default();
+        let mut rows =
+            |sql: String| self.session.query_unrecorded(&sql).map(|found| found.rows).unwrap_or_default();
         // Queries that name the table of customers have no column of seats.
-        let seats = rows(format!("SELECT customer_id, seat_count FROM subscriptions WHERE customer_id IN ({list})"));
-        let groups = rows(format!("SELECT customer_id, group_id FROM customers WHERE customer_id IN ({list})"));
+        let seats =
+            rows(format!("SELECT customer_id, seat_count FROM subscriptions WHERE customer_id IN ({list})"));
+        let groups =
+            rows(format!("SELECT customer_id, group_id FROM customers WHERE customer_id IN ({list})"));
         let seats: BTreeMap<u32, u32> =
             seats.iter().map(|row| (number_at(row, 0) as u32, number_at(row, 1) as u32)).collect();
         let found = groups.iter().filter_map(|row| {

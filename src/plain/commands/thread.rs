@@ -8,8 +8,8 @@ use super::inbox::{describe_offer, describe_request};
 use super::{Interpreter, argument_error, optional_count};
 use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_database::{Cell, QueryResult, number_at, text_at};
-use novamind_report::pluralize;
 use novamind_record::mode::Mode;
+use novamind_report::pluralize;
 use novamind_rules::{LostThread, MIN_TURNS_PARAMETER, Subscription, ThreadContext, Turn};
 use novamind_session::identifiers::Plan;
 use novamind_tools::Rejection;
@@ -85,7 +85,8 @@ impl Interpreter {
         lines.extend(turns.rows.iter().filter_map(|row| Some(names.insert_names(&describe_turn(row)?))));
         // The texts of the tools, which agents read, do not state the number of turns.
         let is_shown = self.session.manifest().mode != Mode::Baseline || self.session.ended().is_some();
-        let min_turns = self.session.numbers().value(MIN_TURNS_PARAMETER).filter(|_| is_shown).map(|turns| turns as u32);
+        let min_turns =
+            self.session.numbers().value(MIN_TURNS_PARAMETER).filter(|_| is_shown).map(|turns| turns as u32);
         let lost = company.as_ref().filter(|_| waiting.is_none()).and_then(|company| {
             let turns: Vec<Turn> = turns.rows.iter().map(|row| Turn::from_row(row)).collect();
             LostThread::from_turns(&turns, text_at(first, 2), &subscription(company)?, min_turns)

@@ -1,28 +1,28 @@
 //! Negotiations with enterprises: waiting threads, messages, and offers to one enterprise or to several at once.
 
 mod estimate;
-mod thread_list;
 mod model;
 mod offer;
 mod offer_pane;
 mod outcomes;
-mod sending;
 mod preview;
 mod rules_form;
+mod sending;
 #[cfg(test)]
 mod tests;
 mod thread;
+mod thread_list;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::estimate::plan_economics;
-use self::thread_list::{columns, thread_row};
-use self::model::{ThreadStore, ThreadState, Thread};
-use self::offer::{OfferDraft, MAX_TERMS, PlanChoice};
+use self::model::{Thread, ThreadState, ThreadStore};
+use self::offer::{MAX_TERMS, OfferDraft, PlanChoice};
 use self::outcomes::FirstOfferOutcomes;
 use self::rules_form::RulesForm;
+use self::thread_list::{columns, thread_row};
 use super::ScreenState;
 use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
@@ -30,12 +30,12 @@ use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
 use novamind_base::formatting::parse_number;
 use novamind_database::QueryResult;
-use novamind_rules::{MIN_TURNS_PARAMETER, ThreadContext, SeatUsage};
+use novamind_rules::{MIN_TURNS_PARAMETER, SeatUsage, ThreadContext};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::Table;
-use novamind_tui::widgets::field::{TextField, NUMBER_HINT};
+use novamind_tui::widgets::field::{NUMBER_HINT, TextField};
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
@@ -272,8 +272,11 @@ impl Inbox {
             let thread = self.threads.threads.get(*self.rows.get(*row)?)?;
             thread.state.is_open().then_some(thread.number)
         };
-        let rows: Vec<usize> =
-            if all { self.table.visible_rows().to_vec() } else { self.table.selected().into_iter().collect() };
+        let rows: Vec<usize> = if all {
+            self.table.visible_rows().to_vec()
+        } else {
+            self.table.selected().into_iter().collect()
+        };
         let numbers: Vec<u32> = rows.iter().filter_map(open).collect();
         let unmark = numbers.iter().all(|number| self.marked.contains(number));
         for number in numbers {
@@ -292,7 +295,8 @@ impl Inbox {
 
     fn cycle_basis(&mut self, lists: [f64; 3]) {
         let term = self.current_offer().0[self.selected_term.min(MAX_TERMS - 1)];
-        let price = self.selected_thread().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
+        let price =
+            self.selected_thread().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
         self.edit_term(|term| term.cycle_basis(price));
     }
 }
@@ -449,7 +453,9 @@ impl PaneScreen for Inbox {
                 let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
                 return Some(effect.into_iter().collect());
             }
-            Action::InboxSql => return Some(self.selected_thread().map(sending::open_thread_query).into_iter().collect()),
+            Action::InboxSql => {
+                return Some(self.selected_thread().map(sending::open_thread_query).into_iter().collect());
+            }
             _ => return None,
         }
         Some(Vec::new())

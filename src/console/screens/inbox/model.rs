@@ -174,15 +174,19 @@ impl ThreadStore {
         min_turns: Option<u32>,
     ) {
         let mut left = self.recorded.clone();
-        let mut threads: Vec<Thread> = waiting.into_iter().map(|thread_context| thread_from_waiting(thread_context, &mut left)).collect();
+        let mut threads: Vec<Thread> = waiting
+            .into_iter()
+            .map(|thread_context| thread_from_waiting(thread_context, &mut left))
+            .collect();
         // Only the newest thread of an enterprise can be open.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
             let firm = self.enterprises.get(&thread.customer);
             thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
             let subscription = firm.map(Enterprise::subscription);
-            thread.loss = subscription
-                .and_then(|subscription| LostThread::from_turns(&thread.messages, &thread.kind, &subscription, min_turns));
+            thread.loss = subscription.and_then(|subscription| {
+                LostThread::from_turns(&thread.messages, &thread.kind, &subscription, min_turns)
+            });
             thread.state = closed_or_waiting_state(&thread);
             if !newest.insert(thread.customer) && thread.state == ThreadState::WaitingForCustomer {
                 thread.state = ThreadState::Lost(None);
@@ -259,7 +263,10 @@ fn parse_enterprises(rows: &QueryResult) -> BTreeMap<u32, Enterprise> {
             plan: text(8),
             price: number_at(row, 9),
             since_day: number_at(row, 10) as u32,
-            end_day: row.get(11).filter(|cell| !matches!(cell, Cell::Null)).map(|_| number_at(row, 11) as u32),
+            end_day: row
+                .get(11)
+                .filter(|cell| !matches!(cell, Cell::Null))
+                .map(|_| number_at(row, 11) as u32),
         };
         (number_at(row, 0) as u32, firm)
     };

@@ -45,7 +45,8 @@ pub struct OfferTerm {
     pub value: f64,
 }
 
-const UNUSED_TERM: OfferTerm = OfferTerm { plan: PlanChoice::Unused, basis: PriceBasis::ListPrice, value: 100.0 };
+const UNUSED_TERM: OfferTerm =
+    OfferTerm { plan: PlanChoice::Unused, basis: PriceBasis::ListPrice, value: 100.0 };
 
 impl OfferTerm {
     pub fn plan_label(&self) -> &'static str {
@@ -109,7 +110,11 @@ impl OfferDraft {
 
     /// Returns an offer of the plan that the enterprise named, at its asked price.
     pub fn at_asked_price() -> OfferDraft {
-        OfferDraft([OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 }, UNUSED_TERM, UNUSED_TERM])
+        OfferDraft([
+            OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 },
+            UNUSED_TERM,
+            UNUSED_TERM,
+        ])
     }
 
     /// Returns the initial offer to an enterprise: the asked price, otherwise the list price of the plan that the
@@ -117,7 +122,11 @@ impl OfferDraft {
     pub fn initial_for(thread: &Thread) -> OfferDraft {
         match (thread.asked_plan(), thread.asked_price()) {
             (Some(_), Some(_)) => OfferDraft::at_asked_price(),
-            (Some(plan), None) => OfferDraft([OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM]),
+            (Some(plan), None) => OfferDraft([
+                OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM },
+                UNUSED_TERM,
+                UNUSED_TERM,
+            ]),
             (None, _) => OfferDraft::at_list_price(),
         }
     }
@@ -172,7 +181,8 @@ mod tests {
         assert_eq!(OfferDraft::at_list_price().resolve(&silent, LIST_PRICES), Ok(vec![(Plan::B, 32.0)]));
         let mut offer = OfferDraft::at_list_price();
         offer.0[0].value = 90.0;
-        offer.0[1] = OfferTerm { plan: PlanChoice::Fixed(Plan::C), basis: PriceBasis::AskedPrice, value: 150.0 };
+        offer.0[1] =
+            OfferTerm { plan: PlanChoice::Fixed(Plan::C), basis: PriceBasis::AskedPrice, value: 150.0 };
         assert_eq!(offer.resolve(&asking, LIST_PRICES), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
         assert_eq!(
             offer.resolve(&silent, LIST_PRICES),
@@ -181,7 +191,11 @@ mod tests {
         );
         offer.0[2] = OfferTerm { plan: PlanChoice::Fixed(Plan::C), ..UNUSED_TERM };
         assert!(offer.resolve(&asking, LIST_PRICES).is_err_and(|why| why.contains("plan C would be free")));
-        assert!(OfferDraft([UNUSED_TERM; 3]).resolve(&asking, LIST_PRICES).is_err_and(|why| why.contains("no plan")));
+        assert!(
+            OfferDraft([UNUSED_TERM; 3])
+                .resolve(&asking, LIST_PRICES)
+                .is_err_and(|why| why.contains("no plan"))
+        );
     }
 
     #[test]

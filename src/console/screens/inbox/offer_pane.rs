@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 
 use super::estimate::plan_economics;
 use super::model::Thread;
-use super::offer::{OfferDraft, MAX_TERMS, PlanChoice};
+use super::offer::{MAX_TERMS, OfferDraft, PlanChoice};
 use super::sending::{self, offer_economics, summary};
 use super::{Inbox, list_prices};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number, percent};
+use crate::screens::panes::{Pane, PaneBorder, PanePlacement};
+use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, percent};
 use novamind_rules::PlanEconomics;
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
@@ -40,7 +40,9 @@ impl Pane<Inbox> for OfferPane {
 
     fn hints(&self, inbox: &Inbox) -> Vec<Action> {
         match (&inbox.value_field, &inbox.rules_form) {
-            (_, Some(ruling)) if !ruling.is_typing => vec![Action::InboxRules, Action::SendOffer, Action::Close],
+            (_, Some(ruling)) if !ruling.is_typing => {
+                vec![Action::InboxRules, Action::SendOffer, Action::Close]
+            }
             (Some(_), _) | (_, Some(_)) => vec![Action::Commit, Action::SendOffer, Action::Discard],
             (None, None) => super::OFFER_HINTS.to_vec(),
         }
@@ -52,7 +54,9 @@ impl Pane<Inbox> for OfferPane {
 
     fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
-            Action::Up | Action::CommitPrevious => inbox.selected_term = inbox.selected_term.saturating_sub(1),
+            Action::Up | Action::CommitPrevious => {
+                inbox.selected_term = inbox.selected_term.saturating_sub(1)
+            }
             Action::Down | Action::CommitDown | Action::CommitNext => {
                 inbox.selected_term = (inbox.selected_term + 1).min(MAX_TERMS - 1);
             }
@@ -113,7 +117,13 @@ impl Pane<Inbox> for OfferPane {
         PaneBorder { title, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    fn draw(
+        &self,
+        inbox: &Inbox,
+        canvas: &mut Canvas<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
+    ) {
         if let Some(ruling) = &inbox.rules_form {
             return inbox.draw_rules(ruling, canvas, placement);
         }
@@ -162,14 +172,20 @@ fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> V
         None => Vec::new(),
     };
     let lists = list_prices(context.company);
-    let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", dollars_and_cents(price)));
+    let list =
+        ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", dollars_and_cents(price)));
     notes.push((format!("list {}", list.collect::<Vec<_>>().join(" · ")), Role::Dim));
     notes
 }
 
 /// Returns the notes on an offer: quota shortfalls, the asked price, and the basis of the compute estimate. If the
 /// compute columns do not fit, the notes contain the estimate.
-fn offer_notes(thread: &Thread, offers: &[(Plan, f64)], width: u16, economics: &PlanEconomics) -> Vec<(String, Role)> {
+fn offer_notes(
+    thread: &Thread,
+    offers: &[(Plan, f64)],
+    width: u16,
+    economics: &PlanEconomics,
+) -> Vec<(String, Role)> {
     let priced = offer_economics(thread, offers, economics);
     let mut notes = Vec::new();
     for (plan, (quota, wanted)) in priced.iter().filter_map(|line| Some((line.plan, line.quota_shortfall?))) {
@@ -184,7 +200,14 @@ fn offer_notes(thread: &Thread, offers: &[(Plan, f64)], width: u16, economics: &
     if let Some((_, price)) = thread.asked_price() {
         let best = offers.iter().map(|(_, value)| value - price).fold(f64::INFINITY, f64::min);
         let sign = if best < 0.0 { "-" } else { "+" };
-        notes.push((format!("asked price {}; difference {sign}{}", dollars_and_cents(price), dollars_and_cents(best.abs())), Role::Text));
+        notes.push((
+            format!(
+                "asked price {}; difference {sign}{}",
+                dollars_and_cents(price),
+                dollars_and_cents(best.abs())
+            ),
+            Role::Text,
+        ));
     }
     let Some((units, source)) = economics.usage_per_seat(&thread.group) else {
         notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));
@@ -198,14 +221,22 @@ fn offer_notes(thread: &Thread, offers: &[(Plan, f64)], width: u16, economics: &
     for line in priced {
         if let (Some(compute), Some(margin)) = (line.compute_cost, line.margin()) {
             let role = if margin < 0.0 { Role::Bad } else { Role::Text };
-            let text = format!("{} est. compute {}/mo, margin {}", line.plan, dollars(compute), percent(margin, 0));
+            let text =
+                format!("{} est. compute {}/mo, margin {}", line.plan, dollars(compute), percent(margin, 0));
             notes.push((text, role));
         }
     }
     notes
 }
 
-fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, offer: &OfferDraft, at: usize, context: &ScreenContext<'_>) {
+fn draw_term(
+    inbox: &Inbox,
+    canvas: &mut Canvas<'_>,
+    placement: PanePlacement,
+    offer: &OfferDraft,
+    at: usize,
+    context: &ScreenContext<'_>,
+) {
     let row = placement.area;
     let lists = list_prices(context.company);
     let term = &offer.0[at];

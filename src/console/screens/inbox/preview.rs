@@ -6,7 +6,7 @@ use super::Inbox;
 use super::sending::{PlannedOffer, max_monthly_revenue};
 use crate::context::ScreenContext;
 use crate::screens::panes::{PaneBorder, PanePlacement};
-use novamind_base::formatting::{dollars_and_cents, dollars};
+use novamind_base::formatting::{dollars, dollars_and_cents};
 use novamind_rules::format_offer_lines;
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::theme::Role;

@@ -10,7 +10,7 @@ use crate::context::ScreenContext;
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, PanePlacement, draw_pane};
 use novamind_base::formatting::{dollars_and_cents, json_number};
-use novamind_rules::{ThreadContext, RuleBatch, RuleError, RuleOutcome};
+use novamind_rules::{RuleBatch, RuleError, RuleOutcome, ThreadContext};
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, row_rects};
@@ -40,7 +40,12 @@ pub struct RulesForm {
 
 impl RulesForm {
     /// Opens the editor with rules.
-    pub fn new(rules: &str, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) -> RulesForm {
+    pub fn new(
+        rules: &str,
+        threads: &[ThreadContext],
+        company: &DisplayedCompany,
+        inbox: &Inbox,
+    ) -> RulesForm {
         let mut ruling = RulesForm {
             field: TextField::with_text(rules),
             is_typing: true,
@@ -135,7 +140,8 @@ impl Inbox {
     /// Returns the tool calls of the last rules for the waiting threads, and a summary. Returns `None` if there are no calls.
     pub fn last_rule_answers(&self, company: &DisplayedCompany) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
-        let batch = RuleBatch::new(rules, self.waiting_threads(company), &plan_economics(company, &self.usage));
+        let batch =
+            RuleBatch::new(rules, self.waiting_threads(company), &plan_economics(company, &self.usage));
         let calls = batch.tool_calls();
         (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
     }

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::model::{ThreadState, Thread};
 use super::estimate::plan_economics;
+use super::model::{Thread, ThreadState};
 use super::{Inbox, list_prices};
 use crate::context::Figure;
 use crate::effect::Effect;
@@ -144,8 +144,11 @@ impl Inbox {
         };
         let done: BTreeSet<u32> = results.iter().filter_map(DealResult::sent_customer).collect();
         if offered && self.marked.is_empty() && self.current_offer().is_reusable() {
-            self.last_offer =
-                self.selected_thread().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last_offer.take());
+            self.last_offer = self
+                .selected_thread()
+                .and_then(|thread| self.drafts.get(&thread.number))
+                .cloned()
+                .or(self.last_offer.take());
         }
         let of_done = self.threads.threads.iter().filter(|thread| done.contains(&thread.customer));
         for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {

@@ -1,11 +1,13 @@
 use serde_json::{Value, json};
 
-use super::sending::offer_economics;
 use super::outcomes::OutcomesPane;
+use super::sending::offer_economics;
 use super::*;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, new_company, session_with_negotiations, screen_text, loaded_screen, draw_at_all_sizes};
+use crate::test_kit::{
+    draw_at_all_sizes, handle_action, loaded_screen, new_company, screen_text, session_with_negotiations,
+};
 use novamind_database::{Cell as Datum, number_at};
 use novamind_record::trajectory::record::Via;
 use novamind_session::WaitingThread;
@@ -64,7 +66,11 @@ fn crowded_company(threads: u32) -> (DisplayedCompany, QueryResult, QueryResult)
         firms.push(firm);
     }
     turns.reverse();
-    (company, QueryResult { rows: turns, ..QueryResult::default() }, QueryResult { rows: firms, ..QueryResult::default() })
+    (
+        company,
+        QueryResult { rows: turns, ..QueryResult::default() },
+        QueryResult { rows: firms, ..QueryResult::default() },
+    )
 }
 
 fn crowded_screen() -> (Inbox, DisplayedCompany) {
@@ -109,9 +115,7 @@ fn press(screen: &mut Inbox, company: &DisplayedCompany, keys: &str) -> (Vec<Eff
 
 fn sent_deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
-        [Effect::ConfirmCall { arguments, .. }] => {
-            arguments["deals"].as_array().expect("deals").clone()
-        }
+        [Effect::ConfirmCall { arguments, .. }] => arguments["deals"].as_array().expect("deals").clone(),
         other => panic!("no tool call: {other:?}"),
     }
 }
@@ -292,7 +296,10 @@ fn empty_inbox_explains_how_leads_arrive() {
     for action in
         [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(THREAD_ACTIONS)
     {
-        assert!(matches!(&handle_action(&mut screen, action, &company)[..], [Effect::ShowError(_)]), "{action:?}");
+        assert!(
+            matches!(&handle_action(&mut screen, action, &company)[..], [Effect::ShowError(_)]),
+            "{action:?}"
+        );
     }
     draw_at_all_sizes(&mut screen, &company);
 }
@@ -306,7 +313,9 @@ fn answered_enterprise_stays_in_the_list() {
     let first = screen.selected_thread().expect("a thread").clone();
     assert_eq!(first.messages.first().map(|turn| turn.sender.as_str()), Some("system"));
     assert!(screen.threads.enterprise(first.customer).is_some_and(|firm| firm.group == first.group));
-    let [Effect::EditSql(sql)] = &handle_action(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
+    let [Effect::EditSql(sql)] = &handle_action(&mut screen, Action::InboxSql, &before)[..] else {
+        panic!("no query")
+    };
     assert_eq!(session.query(sql).expect("rows").rows.len(), first.messages.len());
     let [Effect::ConfirmCall { tool, arguments, text }] =
         &handle_action(&mut screen, Action::SendOffer, &before)[..]
@@ -325,7 +334,9 @@ fn answered_enterprise_stays_in_the_list() {
     assert_eq!(thread.last_offer(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
     let effects = handle_action(&mut screen, Action::SendOffer, &after);
-    assert!(matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses up another turn")));
+    assert!(
+        matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses up another turn"))
+    );
 }
 
 #[test]

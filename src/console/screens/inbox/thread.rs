@@ -2,12 +2,12 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{ThreadState, Thread};
-use super::{Inbox, InboxPane, sending, preview};
+use super::model::{Thread, ThreadState};
+use super::{Inbox, InboxPane, preview, sending};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
+use crate::screens::panes::{Pane, PaneBorder, PanePlacement, draw_framed};
 use novamind_base::formatting::dollars_and_cents;
 use novamind_rules::{Turn, format_offer_lines};
 use novamind_tui::canvas::{Canvas, row_rects};
@@ -34,7 +34,8 @@ impl Pane<Inbox> for ThreadPane {
 
     fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         // A thread is shown from its end, a preview from its start.
-        let back = if inbox.marked.is_empty() && inbox.rules_form.is_none() { Action::Up } else { Action::Down };
+        let back =
+            if inbox.marked.is_empty() && inbox.rules_form.is_none() { Action::Up } else { Action::Down };
         inbox.scroll = match action {
             Action::Open => {
                 inbox.focus = InboxPane::Offer;
@@ -64,7 +65,13 @@ impl Pane<Inbox> for ThreadPane {
         }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    fn draw(
+        &self,
+        inbox: &Inbox,
+        canvas: &mut Canvas<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
+    ) {
         match (&inbox.rules_form, inbox.marked.is_empty()) {
             (Some(ruling), _) => inbox.draw_rules_preview(ruling, canvas, placement, context),
             (None, true) => MessagesPane.draw(inbox, canvas, placement, context),
@@ -101,7 +108,8 @@ impl Pane<Inbox> for MessagesPane {
 
     fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         let Some(thread) = inbox.selected_thread() else { return };
-        let inside = Rect { x: placement.area.x + 1, width: placement.area.width.saturating_sub(2), ..placement.area };
+        let inside =
+            Rect { x: placement.area.x + 1, width: placement.area.width.saturating_sub(2), ..placement.area };
         if placement.focused {
             canvas.page_rows = inside.height.max(1);
         }
@@ -126,7 +134,12 @@ fn message_lines(inbox: &Inbox, thread: &Thread, width: usize) -> Vec<(String, R
             text += &format!(" · main concern: {concern}");
         }
         let terms = match firm.status.as_str() {
-            "subscribed" => format!("plan {} at {} since day {}", firm.plan, dollars_and_cents(firm.price), firm.since_day),
+            "subscribed" => format!(
+                "plan {} at {} since day {}",
+                firm.plan,
+                dollars_and_cents(firm.price),
+                firm.since_day
+            ),
             "lead" => format!("not a customer; asked for an offer on day {}", firm.since_day),
             other => format!("{other}; arrived on day {}", firm.since_day),
         };

@@ -2,19 +2,19 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{ThreadState, Thread};
+use super::model::{Thread, ThreadState};
 use super::{Inbox, InboxPane, InboxView, sending};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::own_commands::ListRows;
-use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use crate::screens::panes::{Pane, PaneBorder, PanePlacement};
 use novamind_base::formatting::grouped_number;
 use novamind_rules::format_offer_lines;
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_tui::widgets::{Table, TableCell, TableColumn};
 
 /// Width of names in a narrow list. The number next to the name identifies the enterprise.
 const NAME_WIDTH: u16 = 14;
@@ -116,7 +116,13 @@ impl Pane<Inbox> for ThreadListPane {
         PaneBorder { title, note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    fn draw(
+        &self,
+        inbox: &Inbox,
+        canvas: &mut Canvas<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
+    ) {
         if inbox.rows.is_empty() {
             draw_empty_state(inbox, canvas, placement.area, context);
         } else {
@@ -187,7 +193,9 @@ pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
             };
             TableCell::from_number(f64::from(left), format!("{mark}{left} d")).with_role(role)
         }
-        (_, Some(turn)) => TableCell::from_number(f64::from(turn.day), format!("day {}", turn.day)).with_role(Role::Dim),
+        (_, Some(turn)) => {
+            TableCell::from_number(f64::from(turn.day), format!("day {}", turn.day)).with_role(Role::Dim)
+        }
         (_, None) => TableCell::from_text("–").with_role(Role::Dim),
     };
     let table_cell = match (thread.asked_price(), thread.asked_plan()) {
@@ -216,7 +224,12 @@ pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
         table_cell,
         TableCell::from_text(thread.kind_label()),
         end,
-        number_cell(thread.waiting_thread.as_ref().map(|thread_context| f64::from(thread_context.waiting.offers_so_far))),
+        number_cell(
+            thread
+                .waiting_thread
+                .as_ref()
+                .map(|thread_context| f64::from(thread_context.waiting.offers_so_far)),
+        ),
         number_cell(thread.waiting_thread.as_ref().and_then(|context| context.required_quota)),
     ]
 }

@@ -160,11 +160,6 @@ impl Table {
         self.update_visible_rows();
     }
 
-    /// Returns the columns of the table.
-    pub fn columns(&self) -> &[TableColumn] {
-        &self.columns
-    }
-
     /// Returns all rows in their original order.
     pub fn rows(&self) -> &[Vec<TableCell>] {
         &self.rows

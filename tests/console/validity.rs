@@ -55,11 +55,11 @@ const ELEMENTS: [Element; 9] = [
     Element {
         name: "what-if",
         keys: "; b",
-        content: "futures",
+        content: "You made no decisions",
         baseline: NO_RESIMULATION,
         study: NO_RESIMULATION,
-        sandbox: Shown("What if"),
-        finished: Shown("What if"),
+        sandbox: Shown("You made no decisions in week"),
+        finished: Shown("What if, decisions of week"),
     },
     Element {
         name: "Fit curve",

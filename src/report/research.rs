@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use novamind_base::formatting::{grouped_number, quality};
+use novamind_base::formatting::grouped_number;
 use novamind_session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
 /// Describes the expected duration and gain of a project before it is started.
@@ -62,9 +62,9 @@ pub fn format_mean_days(means: &ResearchMeans) -> String {
     format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped_number(means.days, 0))
 }
 
-/// Formats the mean gain of a tier in quality: `+0.040`, or `≥0.040` if only a lower bound is known.
-pub fn format_mean_gain(means: &ResearchMeans) -> String {
-    format!("{}{}", if means.are_lower_bounds { "≥" } else { "+" }, quality(means.gain))
+/// Formats the mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
+pub fn format_mean_gain(means: &ResearchMeans, decimals: usize) -> String {
+    format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }
 
 /// Returns the result of `list_research_projects` for display, with means that include the minimum duration and gain.
@@ -73,7 +73,7 @@ pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     let tiers = shown.get_mut("tiers").and_then(Value::as_array_mut).into_iter().flatten();
     for (tier, means) in tiers.filter_map(Value::as_object_mut).zip(means) {
         tier.insert("mean_days".to_owned(), format_mean_days(means).into());
-        tier.insert("mean_quality_boost".to_owned(), format_mean_gain(means).into());
+        tier.insert("mean_quality_boost".to_owned(), format_mean_gain(means, 4).into());
     }
     shown
 }
@@ -145,7 +145,7 @@ mod tests {
             let session = run(500, mode);
             let means = session.company().research_means();
             assert_eq!(means[4], session.company().research_outlook(5).means);
-            [0, 1, 2, 4].map(|at| (format_mean_days(&means[at]), format_mean_gain(&means[at])))
+            [0, 1, 2, 4].map(|at| (format_mean_days(&means[at]), format_mean_gain(&means[at], 4)))
         };
         let words = |days: &str, gain: &str| (days.to_owned(), gain.to_owned());
         assert_eq!(

@@ -33,7 +33,8 @@ fn has_cut_number(line: &str) -> bool {
     line.match_indices('…').any(|(at, sign)| {
         let before = line[..at].trim_end_matches(['k', 'M', 'B', '%', '.', ',']);
         let next = line[at + sign.len()..].chars().next();
-        before.ends_with(|letter: char| letter.is_ascii_digit()) || next.is_some_and(|next| next.is_ascii_digit())
+        before.ends_with(|letter: char| letter.is_ascii_digit())
+            || next.is_some_and(|next| next.is_ascii_digit())
     })
 }
 
@@ -60,7 +61,10 @@ fn no_screen_or_dialog_cuts_a_number() {
                 console.size = size;
                 let screen = console.screen();
                 cut.extend(
-                    screen.lines().filter(|line| has_cut_number(line)).map(|line| format!("{open} {size:?}: {line}")),
+                    screen
+                        .lines()
+                        .filter(|line| has_cut_number(line))
+                        .map(|line| format!("{open} {size:?}: {line}")),
                 );
             }
             console.size = (120, 40);
@@ -82,7 +86,8 @@ fn focused_pane(screen: &str) -> Option<FocusedPane> {
     let top = lines.iter().position(|line| line.contains(&'┏'))?;
     let left = lines[top].iter().position(|letter| *letter == '┏')?;
     let right = left + lines[top][left..].iter().position(|letter| *letter == '┓')?;
-    let inside = lines[top + 1..].iter().take_while(|line| line.get(left).is_some_and(|letter| *letter != '┗'));
+    let inside =
+        lines[top + 1..].iter().take_while(|line| line.get(left).is_some_and(|letter| *letter != '┗'));
     let cell = |line: &[char], at: usize| line.get(at).copied().unwrap_or(' ');
     let (mut rows, mut right_border) = (Vec::new(), String::new());
     for line in inside {
@@ -168,7 +173,8 @@ const PRECISE_SHARES: [&str; 1] = ["error rate"];
 fn unit_and_decimals(cell: &str) -> Option<(&'static str, usize)> {
     let text = cell.trim_start_matches(['▲', '▼', '!', ' ', '+', '-', '±', '≥']);
     let (text, is_money) = text.strip_prefix('$').map_or((text, false), |amount| (amount, true));
-    let end = text.find(|letter: char| !letter.is_ascii_digit() && !",.".contains(letter)).unwrap_or(text.len());
+    let end =
+        text.find(|letter: char| !letter.is_ascii_digit() && !",.".contains(letter)).unwrap_or(text.len());
     let (number, rest) = text.split_at(end);
     let unit = match (is_money, rest.trim()) {
         (true, "") => "$",
@@ -177,14 +183,20 @@ fn unit_and_decimals(cell: &str) -> Option<(&'static str, usize)> {
         (false, "") => "",
         _ => return None,
     };
-    number.chars().any(|letter| letter.is_ascii_digit()).then(|| (unit, number.split_once('.').map_or(0, |it| it.1.len())))
+    number
+        .chars()
+        .any(|letter| letter.is_ascii_digit())
+        .then(|| (unit, number.split_once('.').map_or(0, |it| it.1.len())))
 }
 
 /// Returns whether a heading names a unit.
 fn names_a_unit(heading: &str) -> bool {
-    ["$", "%", "/", "day", "week", "ms", "units", "minutes", "seats", "score", "tier", "required", "targeted", "true"]
-        .iter()
-        .any(|unit| heading.contains(unit))
+    [
+        "$", "%", "/", "day", "week", "ms", "units", "minutes", "seats", "score", "tier", "required",
+        "targeted", "true",
+    ]
+    .iter()
+    .any(|unit| heading.contains(unit))
 }
 
 #[test]
@@ -246,8 +258,11 @@ fn quality_has_three_decimals_on_every_screen() {
                 .flat_map(|name| line.match_indices(name).map(|(at, name)| &line[at + name.len()..]))
                 .collect();
             for text in shown {
-                let number: String =
-                    text.trim_start().chars().take_while(|letter| letter.is_ascii_digit() || *letter == '.').collect();
+                let number: String = text
+                    .trim_start()
+                    .chars()
+                    .take_while(|letter| letter.is_ascii_digit() || *letter == '.')
+                    .collect();
                 if let Some((_, fraction)) = number.split_once('.') {
                     seen += 1;
                     assert_eq!(fraction.len(), 3, "{line}");
@@ -279,7 +294,8 @@ fn week_report_in_the_smallest_window_scrolls_to_its_end() {
 #[test]
 fn layout_of_columns_is_remembered() {
     let runs = tempfile::tempdir().expect("a folder");
-    let configuration = || Configuration { folder: Some(runs.path().join("configuration")), ..Configuration::bundled() };
+    let configuration =
+        || Configuration { folder: Some(runs.path().join("configuration")), ..Configuration::bundled() };
     let folder = runs.path().join("runs");
     copy_played_run(COMPANIES[0].0, COMPANIES[0].1, COMPANIES[0].2, &folder);
     let open = || {
@@ -293,7 +309,11 @@ fn layout_of_columns_is_remembered() {
         screen.lines().find(|line| line.contains("group  ")).unwrap_or_else(|| panic!("{screen}")).to_owned()
     };
     let mut console = open();
-    assert!(head(&mut console).contains("group  name") && head(&mut console).contains("+"), "{}", console.screen());
+    assert!(
+        head(&mut console).contains("group  name") && head(&mut console).contains("+"),
+        "{}",
+        console.screen()
+    );
     // Hides the kind of the groups and moves their names one place to the right.
     console.press("C down down space up J");
     console.assert_shows("Columns of Groups");

@@ -11,11 +11,11 @@ use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::action_items::item_screen;
 use crate::screens::overview::figures::{self, METRICS};
-use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
-use novamind_report::{WeekReport, figure_label};
 use novamind_report::action_items::ActionItem;
 use novamind_report::week::MovedFigure;
+use novamind_report::{WeekReport, figure_label};
 use novamind_session::{IntervalPosition, ScoredForecast};
 use novamind_tools::Forecast;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, truncate_to_width};
@@ -126,7 +126,10 @@ impl Dialog for WeekReportDialog {
         for (at, place) in places.iter().enumerate().take(selectable) {
             let row = place.checked_sub(from).filter(|row| *row < usize::from(inside.height));
             if let Some(row) = row {
-                canvas.register_click(Rect { y: inside.y + row as u16, height: 1, ..inside }, Click::Row(0, at));
+                canvas.register_click(
+                    Rect { y: inside.y + row as u16, height: 1, ..inside },
+                    Click::Row(0, at),
+                );
             }
         }
         let close = context.hint(Action::Cancel);

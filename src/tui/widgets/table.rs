@@ -36,12 +36,24 @@ pub struct TableColumn {
 impl TableColumn {
     /// Returns a left-aligned column for text.
     pub fn text(title: impl Into<String>) -> TableColumn {
-        TableColumn { title: title.into(), align: Align::Left, max_width: 40, min_width: u16::MAX, is_indivisible: false }
+        TableColumn {
+            title: title.into(),
+            align: Align::Left,
+            max_width: 40,
+            min_width: u16::MAX,
+            is_indivisible: false,
+        }
     }
 
     /// Returns a right-aligned column for numbers.
     pub fn numeric(title: impl Into<String>) -> TableColumn {
-        TableColumn { title: title.into(), align: Align::Right, max_width: 24, min_width: u16::MAX, is_indivisible: true }
+        TableColumn {
+            title: title.into(),
+            align: Align::Right,
+            max_width: 24,
+            min_width: u16::MAX,
+            is_indivisible: true,
+        }
     }
 
     /// Shows the column either completely or not at all.

@@ -286,7 +286,7 @@ mod tests {
         }
         assert_eq!(
             (format_exact(0.51), format_exact(0.0031), format_exact(0.0)),
-            ("0.510".into(), "0.00310".into(), "0.000".into())
+            ("0.510".into(), "0.003".into(), "0.000".into())
         );
     }
 }

@@ -8,7 +8,7 @@ use super::{Product, ProductPane};
 use crate::context::Figure;
 use crate::effect::Effect;
 use crate::screens::panes::PanePlacement;
-use novamind_base::formatting::{compact_number, dollars, quality_change, short_dollars};
+use novamind_base::formatting::{QUALITY_DECIMALS, compact_number, dollars, quality_change, short_dollars};
 use novamind_report::research::{format_mean_days, format_mean_gain};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width, row_rects};
@@ -229,7 +229,7 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacem
             truncate_to_width(&offer.name, 17),
             short_dollars(offer.cost),
             format_mean_days(&offer.means),
-            format_mean_gain(&offer.means),
+            format_mean_gain(&offer.means, QUALITY_DECIMALS),
             remarks
         );
         canvas.draw_text(row, text.trim_end(), role);

@@ -9,7 +9,7 @@ use novamind_world::customers::choice::PlanOffer;
 use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::market::lead_sample::{LeadChoices, LeadSample};
-use novamind_world::params::Params;
+use novamind_world::params::{Params, ServicePenalty};
 use novamind_world::random::Streams;
 
 /// Number of simulated leads per market.
@@ -186,6 +186,11 @@ impl CurveExplorer {
     /// Returns whether the curve shows true traits, in which case figures have no range.
     pub fn shows_true_values(&self) -> bool {
         matches!(self.basis, CurveBasis::Truth { .. })
+    }
+
+    /// Returns whether overload and outages affect the decisions of leads. The explorer does not include this effect.
+    pub fn omits_service(&self) -> bool {
+        self.markets[0].params.fidelity.service_penalty == ServicePenalty::Everywhere
     }
 
     /// Returns the expected decisions of leads about `plans`, with current discounts.

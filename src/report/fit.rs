@@ -158,9 +158,7 @@ pub struct Fit {
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
     let delivered = |group: Group| quality.iter().find(|delivered_quality| delivered_quality.group == group);
-    let of = |estimates: &Estimates| {
-        Some(group_fit(session, estimates, delivered(estimates.group)?, weeks))
-    };
+    let of = |estimates: &Estimates| Some(group_fit(session, estimates, delivered(estimates.group)?, weeks));
     session.company().estimates().iter().filter_map(of).collect()
 }
 

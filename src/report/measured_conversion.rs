@@ -51,7 +51,7 @@ impl MeasuredConversion {
             taken: if group.is_enterprise() { flow.requests } else { flow.signups },
             leads: flow.leads,
             weeks: (!recent.is_empty()).then(|| (last + 1 - recent.len() as u32, last)),
-            changed_on: days.by_ref().last(),
+            changed_on: days.next_back(),
             is_enterprise: group.is_enterprise(),
         }
     }
@@ -129,7 +129,11 @@ mod tests {
         let mut session = play_weeks(5);
         session.call("set_prices", &json!({"A": 19}), Via::Script).expect("a price");
         let measured = MeasuredConversion::of_group(&session, group("S1"));
-        assert!(measured.describe().ends_with("; you changed the plans on day 35"), "{}", measured.describe());
+        assert!(
+            measured.describe().ends_with("; you changed the plans on day 35"),
+            "{}",
+            measured.describe()
+        );
         advance_weeks(&mut session, 4);
         let measured = MeasuredConversion::of_group(&session, group("S1"));
         assert_eq!(measured.changed_on, None, "all leads saw the new price");
@@ -144,7 +148,9 @@ mod tests {
         assert_eq!(measured.describe(), "not measured: no leads in week 1");
         let asked = MeasuredConversion { taken: 2, leads: 8, is_enterprise: true, ..measured };
         assert_eq!(asked.describe(), "measured 25.0%: 2 of 8 leads asked for an offer in week 1");
-        assert_eq!((asked.describe_briefly(), measured.describe_briefly()),
-            ("measured 25% of 8 leads".to_owned(), "not measured yet".to_owned()));
+        assert_eq!(
+            (asked.describe_briefly(), measured.describe_briefly()),
+            ("measured 25% of 8 leads".to_owned(), "not measured yet".to_owned())
+        );
     }
 }

@@ -5,8 +5,8 @@ use serde_json::{Map, Value, json};
 use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, format_whole, pluralize};
 use novamind_base::formatting::{json_number, percent};
-use novamind_session::{ModelTier, PlanRevenue};
 use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{ModelTier, PlanRevenue};
 use novamind_tools::ToolId;
 
 /// Runway in weeks below which low cash is reported.
@@ -135,8 +135,7 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
         let PlanRevenue { subscriptions, seats, monthly } = revenue;
         let units: u64 = Group::all().map(|group| groups[group].last_usage[plan]).sum();
         let a_month = units as f64 * DAYS_PER_MONTH;
-        let now =
-            situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+        let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
         let cost = a_month * now.unit_cost;
         if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost <= MIN_COST_SHARE * monthly {
             return None;

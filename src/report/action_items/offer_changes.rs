@@ -59,6 +59,10 @@ impl<'a> OfferChange<'a> {
         let now = situation.session.company().current_arguments(tool);
         let is_restored =
             arguments.iter().all(|(key, value)| now.get(key).and_then(Value::as_f64) == value.as_f64());
-        if is_restored { ActionTarget::Group(group) } else { ActionTarget::Call(tool, Value::Object(arguments)) }
+        if is_restored {
+            ActionTarget::Group(group)
+        } else {
+            ActionTarget::Call(tool, Value::Object(arguments))
+        }
     }
 }

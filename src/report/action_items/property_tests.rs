@@ -48,7 +48,8 @@ fn quotas() -> impl Strategy<Value = (&'static str, Value)> {
 
 fn spending() -> impl Strategy<Value = Vec<(&'static str, Value)>> {
     let group = || prop::sample::select(vec!["S1", "S2", "S3", "E1", "E2"]);
-    let channel = || prop::sample::select(vec!["content_marketing", "social_media", "search_ads", "linkedin"]);
+    let channel =
+        || prop::sample::select(vec!["content_marketing", "social_media", "search_ads", "linkedin"]);
     let ads = prop::collection::vec((channel(), group(), 100_u32..4_000), 1..5);
     (0_u32..1_500, 0_u32..800, ads, group(), 0_u32..6_000, 0_u32..6).prop_map(
         |(operations, development, ads, developed, targeted, capacity)| {
@@ -139,7 +140,9 @@ fn check_item(need: &ActionItem, session: &mut Session) {
         Problem::Overload => check_overload(need, &said, &proposed),
         Problem::Backlog => check_backlog(need, &said, &proposed),
         Problem::Outages => {
-            let (&[_, spend, share], &[more, reduced]) = (&said[..], &proposed[..]) else { panic!("{need:#?}") };
+            let (&[_, spend, share], &[more, reduced]) = (&said[..], &proposed[..]) else {
+                panic!("{need:#?}")
+            };
             assert!(more > spend && reduced <= share / 2.0 + 0.1, "{need:#?}");
         }
         Problem::LeadCost(..) => check_lead_cost(need),

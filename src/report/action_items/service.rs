@@ -75,7 +75,10 @@ fn diagnose_overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: 
             (text, set_tier(largest))
         }
         (None, _) => (
-            format!("Tier {} is the largest tier. Only lower quotas or fewer subscribers reduce usage.", now.tier),
+            format!(
+                "Tier {} is the largest tier. Only lower quotas or fewer subscribers reduce usage.",
+                now.tier
+            ),
             ActionTarget::Call(ToolId::SetUsageQuotas, Value::Null),
         ),
     };

@@ -10,7 +10,8 @@ use crate::dialogs::Dialog;
 use novamind_base::formatting::price_to_cents;
 use novamind_insight::{LEAD_SAMPLE_SIZE, PlanPoint};
 use novamind_report::curve::{
-    describe_basis, describe_outcome, describe_outcome_briefly, describe_plan, format_quality,
+    describe_basis, describe_conversion_briefly, describe_omissions, describe_outcome, describe_plan,
+    format_quality,
 };
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
@@ -20,6 +21,7 @@ use novamind_tui::theme::Role;
 const MAX_PAGE_WIDTH: u16 = 140;
 const MIN_ROWS_FOR_PLAN_LINES: u16 = 12;
 const MIN_ROWS_FOR_LEGEND: u16 = 14;
+const MIN_ROWS_FOR_OMISSIONS: u16 = 9;
 
 impl CurveDialog {
     pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
@@ -45,7 +47,7 @@ impl CurveDialog {
                     canvas.draw_text(row, &line, Role::Bad);
                 }
             }
-            Some(Ok(opened)) => self.draw_explorer(canvas, inside, opened),
+            Some(Ok(opened)) => self.draw_explorer(canvas, inside, opened, context),
         }
         canvas.draw_pane_keys(dialog_area, &self.key_hints(context));
     }
@@ -66,11 +68,23 @@ impl CurveDialog {
         drags + &context.hints(&self.hints())
     }
 
-    fn draw_explorer(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &CurveExploration) {
+    fn draw_explorer(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        opened: &CurveExploration,
+        context: &ScreenContext<'_>,
+    ) {
         let is_low = area.height < MIN_ROWS_FOR_PLAN_LINES;
-        let outcome = match is_low {
-            true => vec![describe_outcome_briefly(&opened.outcome)],
-            false => wrap(&describe_outcome(&opened.outcome), area.width as usize),
+        let (width, measured) =
+            (area.width as usize, context.company.fit(self.group).map(|fit| fit.measured));
+        let outcome: Vec<String> = match (is_low, measured) {
+            (true, measured) => wrap(&describe_conversion_briefly(&opened.outcome, measured.as_ref()), width),
+            (false, None) => wrap(&describe_outcome(&opened.outcome), width),
+            (false, Some(measured)) => [describe_outcome(&opened.outcome), measured.describe()]
+                .iter()
+                .flat_map(|text| wrap(text, width))
+                .collect(),
         };
         let legend = legend_lines(opened, area);
         let plans = if is_low { 1 } else { Plan::ALL.len() as u16 }.min(area.height);
@@ -140,16 +154,19 @@ fn plan_line(opened: &CurveExploration, plan: Plan) -> String {
     if changes.is_empty() { words } else { format!("{words} ({})", changes.join(", ")) }
 }
 
-/// Returns the lines of the legend that fit into the area.
+/// Returns the lines of the legend that fit into the area, and what the estimates leave out.
 fn legend_lines(opened: &CurveExploration, area: Rect) -> Vec<String> {
+    let width = area.width as usize;
+    let omissions = wrap(&describe_omissions(&opened.explorer), width);
     if area.height < MIN_ROWS_FOR_LEGEND {
-        return Vec::new();
+        let fits = area.height >= MIN_ROWS_FOR_OMISSIONS;
+        return if fits { omissions } else { Vec::new() };
     }
     let unit = if opened.explorer.group.is_enterprise() { "price per seat" } else { "price" };
     let mut words =
         format!("x: {unit}, y: quality · line: half of the leads accept · shaded: 10 to 90 % accept");
     if !opened.explorer.shows_true_values() {
-        words += " · dim lines: bounds of the line's error range · spread and slope are assumed; studies measure means";
+        words += " · dim lines: bounds of the line's error range";
     }
-    wrap(&words, area.width as usize)
+    [omissions, wrap(&words, width)].concat()
 }

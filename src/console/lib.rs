@@ -12,6 +12,7 @@ mod attention;
 pub mod benchmark;
 mod consent;
 pub mod context;
+mod curve_chart;
 mod dialogs;
 pub mod effect;
 mod files;

@@ -29,6 +29,7 @@ pub mod lead_costs;
 pub mod lesson;
 pub mod logbook;
 mod markdown;
+pub mod measured_conversion;
 pub mod measures;
 pub mod opponents;
 mod outline;

@@ -43,7 +43,7 @@ pub use figures::cash_rate::CashRate;
 pub use figures::changes::{Decisions, SettingChange};
 pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::{Estimates, true_value_range};
-pub use figures::groups::{GroupWeek, PaidLeads};
+pub use figures::groups::{GroupWeek, PaidLeads, PlanRevenue};
 pub use figures::journal::JournalEntry;
 pub use figures::naive::{Coverage, ErrorIntervals, GrowthStage, Hindcast, hindcasts};
 pub use figures::scored_forecast::{ForecastScore, IntervalPosition, ScoredForecast, submitted_forecasts};

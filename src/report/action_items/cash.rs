@@ -4,13 +4,21 @@ use serde_json::{Map, Value, json};
 
 use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, format_whole, pluralize};
-use novamind_base::formatting::json_number;
-use novamind_session::ModelTier;
+use novamind_base::formatting::{json_number, percent};
 use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{ModelTier, PlanRevenue};
 use novamind_tools::ToolId;
 
 /// Runway in weeks below which low cash is reported.
 const MIN_RUNWAY_WEEKS: f64 = 8.0;
+
+/// Minimum number of subscriptions of a plan whose margin is reported. Usage rates have a standard deviation of about
+/// 40 % of their mean, so the mean of ten has a standard error of about 13 %; the loss of fewer subscriptions can be the
+/// usage of one of them.
+const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
+/// Minimum ratio of compute to revenue of a plan that loses money. Usage includes customers who cancelled on the last
+/// day, and revenue does not.
+const MIN_COST_SHARE: f64 = 1.02;
 
 /// Reports a problem if cash lasts less than eight weeks at the current rate.
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
@@ -117,68 +125,78 @@ fn sum_numbers(arguments: &Value) -> f64 {
     }
 }
 
-/// Finds plans whose individual subscribers cost more in compute than they pay.
+/// Finds plans whose subscribers cost more in compute than they pay, by the definition of the gross margin: revenue of
+/// the subscriptions that could use the product on the last day, and compute of the last day's usage times 30.
 pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let Some(groups) = situation.last_group_week() else { return Vec::new() };
-    let models = &situation.terms.models;
+    let revenue_by_plan = situation.session.company().plan_revenue();
     let of_plan = |plan: Plan| {
-        let people = || Group::all().filter(|group| !group.is_enterprise());
-        let subscribers: u32 = people().map(|group| groups[group].subscribers[plan]).sum();
-        let revenue: f64 = people().map(|group| groups[group].revenue[plan]).sum();
-        let units: u64 = people().map(|group| groups[group].last_usage[plan]).sum();
+        let revenue = revenue_by_plan[plan];
+        let PlanRevenue { subscriptions, seats, monthly } = revenue;
+        let units: u64 = Group::all().map(|group| groups[group].last_usage[plan]).sum();
         let a_month = units as f64 * DAYS_PER_MONTH;
-        let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+        let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
         let cost = a_month * now.unit_cost;
-        if subscribers == 0 || cost <= revenue {
+        if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost <= MIN_COST_SHARE * monthly {
             return None;
         }
-        let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue);
+        let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue)?;
+        let margin = match monthly > 0.0 {
+            true => format!(", a gross margin of {}", percent(1.0 - cost / monthly, 0)),
+            false => String::new(),
+        };
         Some(ActionItem {
             problem: Problem::Margin,
             text: format!(
-                "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage.",
-                pluralize(subscribers, "individual"),
-                format_money(revenue),
+                "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage{margin}.",
+                pluralize(seats as u32, "seat"),
+                format_money(monthly),
                 format_money(cost)
             ),
             proposal: Some(proposal),
             target: place,
-            at_risk: (cost - revenue) * RISK_DAYS / DAYS_PER_MONTH,
+            at_risk: (cost - monthly) * RISK_DAYS / DAYS_PER_MONTH,
             is_urgent: true,
         })
     };
     Plan::ALL.into_iter().filter_map(of_plan).collect()
 }
 
-/// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a smaller quota.
+/// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a quota at which
+/// compute cannot exceed the revenue. Returns `None` if the current quota already limits compute to the revenue.
 fn propose_cheaper_setting(
     situation: &DiagnosisContext<'_>,
     plan: Plan,
     now: &ModelTier,
     units: f64,
-    revenue: f64,
-) -> (String, ActionTarget) {
-    let lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
-    let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
+    PlanRevenue { subscriptions, monthly: revenue, .. }: PlanRevenue,
+) -> Option<(String, ActionTarget)> {
+    let held = situation.settings.quotas[plan].units();
+    let compute_at = |quota: f64| f64::from(subscriptions) * quota * DAYS_PER_MONTH * now.unit_cost;
+    // The quota may have been lowered after the last day.
+    if compute_at(held) <= revenue {
+        return None;
+    }
+    let mut lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
+    if let Some(model) = lower.find(|model| units * model.unit_cost < revenue) {
         let cost = format_money(units * model.unit_cost);
         let text =
             format!("Model tier {} costs {cost} at the same usage and delivers lower quality.", model.tier);
-        (text, ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })))
-    });
-    covered.into_iter().next().unwrap_or_else(|| {
-        let held = situation.settings.quotas[plan].units();
-        let quota = (held * revenue / (units * now.unit_cost)).floor();
-        let quotas: Map<String, Value> = Plan::ALL
-            .into_iter()
-            .map(|of| {
-                let kept = situation.settings.quotas[of].units();
-                (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
-            })
-            .collect();
-        let text = format!(
-            "A quota below today's {} units a day limits the usage of these subscribers.",
-            format_whole(held)
-        );
-        (text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)))
-    })
+        return Some((text, ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier }))));
+    }
+    let quota = (revenue / compute_at(1.0)).floor();
+    let quotas: Map<String, Value> = Plan::ALL
+        .into_iter()
+        .map(|of| {
+            let kept = situation.settings.quotas[of].units();
+            (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
+        })
+        .collect();
+    let text = format!(
+        "A quota of {} units a day limits compute to {} a month. The quota is {} now.",
+        format_whole(quota),
+        format_money(compute_at(quota)),
+        format_whole(held)
+    );
+    Some((text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas))))
 }

@@ -13,7 +13,8 @@ use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
 const MIN_WEEKLY_LEADS: u32 = 20;
-const MIN_CONVERSION: f64 = 0.1;
+/// Conversion below which a group counts as a group without sales.
+pub(super) const MIN_CONVERSION: f64 = 0.1;
 /// Minimum share of the estimated usage that a sufficient quota covers.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
 /// Age at which an estimate counts as outdated, days.
@@ -480,11 +481,14 @@ fn propose_better_quality(
     let days = ((floor - delivered) / gain).ceil();
     // Settings stay in force for at least a week.
     let cost = PROPOSED_DEVELOPMENT_SPEND * days.max(7.0);
+    let duration = pluralize(days as u32, "day");
+    let price = match days < 7.0 {
+        true => format!("{duration}. A week costs {}.", format_money(cost)),
+        false => format!("{duration}, for {} in total.", format_money(cost)),
+    };
     let reached = format!(
-        "Development for {group} at {} a day reaches the required quality in {}, for {} in total.",
-        format_money(PROPOSED_DEVELOPMENT_SPEND),
-        pluralize(days as u32, "day"),
-        format_money(cost)
+        "Development for {group} at {} a day reaches the estimate of the required quality, {floor:.4}, in {price}",
+        format_money(PROPOSED_DEVELOPMENT_SPEND)
     );
     let text = match cost > at_risk {
         true => {

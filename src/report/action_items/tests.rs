@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::*;
+use crate::test_kit::advance_weeks;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -40,13 +41,6 @@ fn play_company(seed: u64, cash: f64, calls: &[(&str, Value)], weeks: usize) -> 
     }
     advance_weeks(&mut session, weeks);
     session
-}
-
-fn advance_weeks(session: &mut Session, weeks: usize) {
-    for _ in 0..weeks {
-        let forecasts = session.company().naive_forecasts();
-        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    }
 }
 
 /// Returns the first action item, after checking that the tool accepts the proposed arguments.

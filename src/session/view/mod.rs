@@ -19,7 +19,7 @@ use crate::figures::cash_rate::CashRate;
 use crate::figures::changes::{Decisions, SettingChange, daily_cost};
 use crate::figures::dashboard::{DeliveredQuality, delivered_quality};
 use crate::figures::estimates::Estimates;
-use crate::figures::groups::GroupWeek;
+use crate::figures::groups::{GroupWeek, PlanRevenue, plan_revenue};
 use crate::figures::naive;
 use crate::figures::scored_forecast::{ForecastScore, submitted_forecasts};
 use crate::figures::week::Forecasts;
@@ -30,7 +30,7 @@ use novamind_record::trajectory::record::{CalculationOutput, RunEndReason};
 use novamind_tools::{GetGroupInsights, PublicPost, Tool, ToolContext, ToolKind, find};
 use novamind_voice::EnterpriseNames;
 use novamind_world::customers::customer_numbers::CustomerNumbers;
-use novamind_world::identifiers::{ByGroup, Channel, Group};
+use novamind_world::identifiers::{ByGroup, ByPlan, Channel, Group};
 use novamind_world::market::surges::week_end;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
@@ -103,6 +103,11 @@ impl<'a> CompanyView<'a> {
     /// Returns the figures of all groups for every simulated week.
     pub fn group_weeks(&self) -> &'a [ByGroup<GroupWeek>] {
         &self.history.group_weeks
+    }
+
+    /// Returns the revenue of the subscriptions of each plan that could use the product on the last day.
+    pub fn plan_revenue(&self) -> ByPlan<PlanRevenue> {
+        plan_revenue(&self.simulation.world)
     }
 
     /// Returns the distinct SQL statements of this run, newest last.

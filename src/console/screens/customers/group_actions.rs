@@ -52,8 +52,11 @@ impl Pane<Customers> for GroupActionsPane {
         let Some(group) = customers.group(context.company) else { return Vec::new() };
         match action {
             Action::Open => return vec![action_effect(customers.group_state.action, group)],
-            Action::Left => customers.change_group(|open| open.saturating_sub(1), context.company),
-            Action::Right => customers.change_group(|open| open + 1, context.company),
+            Action::Left | Action::Right => {
+                let step = |open: usize| if action == Action::Left { open.saturating_sub(1) } else { open + 1 };
+                customers.change_group(step, context.company);
+                return customers.request_curve(context.company);
+            }
             action => customers.group_state.action = move_index(customers.group_state.action, ACTION_COUNT - 1, action),
         }
         Vec::new()

@@ -40,6 +40,7 @@ impl Pane<Customers> for CustomerGroupsPane {
         if action == Action::Open {
             customers.open_group = customers.table.selected();
             customers.group_state = OpenGroupState::default();
+            return customers.request_curve(context.company);
         } else {
             customers.table.handle_action(action, context.page_rows);
         }

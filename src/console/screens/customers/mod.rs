@@ -3,6 +3,7 @@
 mod cohorts;
 mod columns;
 pub mod costs;
+mod group_curve;
 mod facts;
 mod fit;
 mod groups;
@@ -22,6 +23,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::cohorts::Cohorts;
 use self::columns::{columns, group_row};
+use self::group_curve::GroupCurve;
 use self::model::CustomerData;
 use self::open_group::OpenGroupState;
 use super::ScreenState;
@@ -87,6 +89,7 @@ pub struct Customers {
     /// Index of the open group in the list of known groups.
     open_group: Option<usize>,
     group_state: OpenGroupState,
+    curve: GroupCurve,
 }
 
 impl Customers {
@@ -101,6 +104,12 @@ impl Customers {
     /// Returns the open group, or the group selected in the list.
     fn group(&self, company: &DisplayedCompany) -> Option<Group> {
         company.observation.known_groups.get(self.open_group.or(self.table.selected())?).copied()
+    }
+
+    /// Requests the curve of the open group if it is missing or outdated.
+    fn request_curve(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let group = self.open_group.and_then(|open| company.observation.known_groups.get(open).copied());
+        group.map_or_else(Vec::new, |group| self.curve.request(group))
     }
 
     fn change_group(&mut self, other: impl Fn(usize) -> usize, company: &DisplayedCompany) {
@@ -155,7 +164,17 @@ impl ScreenState for Customers {
     }
 
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.curve.set_outdated();
         self.rebuild_tables(context.company);
+    }
+
+    fn request_data(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
+        self.request_curve(context.company)
+    }
+
+    fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.curve.take_answer();
+        Vec::new()
     }
 
     fn open_item_title(&self, context: &ScreenContext<'_>) -> Option<String> {

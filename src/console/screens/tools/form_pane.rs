@@ -123,6 +123,8 @@ impl Pane<Tools> for FormPane {
         let rest = area_below(below, sheet.height + gap.min(sheet.height));
         let used = draw_outcome(&outcome.lines, canvas, rest, context);
         let below = area_below(rest, used + 1);
+        let used = tools.price_curve.draw(form, canvas, below);
+        let below = area_below(below, used);
         let used = draw_earlier(&form.earlier_calls, canvas, below);
         draw_manual(form.spec, canvas, area_below(below, used), context);
     }
@@ -162,7 +164,7 @@ fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenConte
     let terms = cost_and_effect_text(form.spec, &context.company.numbers, context.company.observation.day);
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
-    let outcome_with_detail = |detail| outcome_lines(form, &tools.leads, &tools.sales, context, (width, detail));
+    let outcome_with_detail = |detail| outcome_lines(form, tools, context, (width, detail));
     // One row is reserved for the note that the text is truncated.
     let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
         head.len() + values + gap + outcome.required_lines < area.height as usize && !outcome.is_truncated(width)

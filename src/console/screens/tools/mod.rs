@@ -9,6 +9,7 @@ mod grid;
 mod list_pane;
 mod margins;
 mod outcome;
+mod price_curve;
 mod reference;
 mod sheet;
 #[cfg(test)]
@@ -39,6 +40,7 @@ use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
 use outcome::ChannelLeads;
+use price_curve::PriceCurve;
 
 /// Panes of the tools screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -62,6 +64,7 @@ pub struct Tools {
     forms: BTreeMap<ToolId, ToolForm>,
     leads: ChannelLeads,
     sales: PlanSales,
+    price_curve: PriceCurve,
 }
 
 impl Tools {
@@ -208,13 +211,22 @@ impl ScreenState for Tools {
     }
 
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.price_curve.set_outdated();
         for form in self.forms.values_mut() {
             form.update(context.company);
         }
         self.form(context.company);
     }
 
+    fn request_data(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
+        match context.company.has_tool(ToolId::SetPrices) {
+            true => self.price_curve.request(context.company),
+            false => Vec::new(),
+        }
+    }
+
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.price_curve.take_answer();
         self.forms.values_mut().for_each(ToolForm::take_preview);
         Vec::new()
     }

@@ -410,6 +410,37 @@ fn small_window_shows_all_values_and_plan_margins() {
 }
 
 #[test]
+fn form_of_prices_shows_the_curve_and_both_conversions_at_the_drafted_prices() {
+    use novamind_insight::CurveExplorer;
+    use novamind_worker::page_questions::EstimatedCurveQuestion;
+
+    let (session, company, mut screen) = played_screen::<Tools>(6);
+    let keys = KeyBindings::bundled();
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let asked = screen.request_data(&context);
+    let group = crate::test_kit::only_question::<EstimatedCurveQuestion>(&asked).0;
+    let leads = |fit: &novamind_report::fit::Fit| fit.measured.leads;
+    let most = company.fits.iter().filter(|fit| !fit.group.is_enterprise()).map(leads).max();
+    assert_eq!(company.fit(group).map(leads), most, "the group with the most leads");
+    assert!(screen.request_data(&context).is_empty());
+    screen.price_curve.set_answer(CurveExplorer::from_estimates(&session, group));
+    screen.prefill(ToolId::SetPrices, &json!({}), &company);
+    let current = screen_text(&screen, &company, 200, 57);
+    screen.prefill(ToolId::SetPrices, &json!({"A": 400, "B": 401, "C": 402}), &company);
+    let drafted = screen_text(&screen, &company, 200, 57);
+    for text in [&current, &drafted] {
+        for words in ["participation curve of", "measured ", "The estimate leaves out", "half"] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+    assert!(drafted.contains("at the drafted prices: estimated 0%"), "{drafted}");
+    assert!(!current.contains("estimated 0%"), "{current}");
+    let small = screen_text(&screen, &company, 80, 21);
+    assert!(small.contains("paid $"), "margins have precedence: {small}");
+    draw_at_all_sizes(&mut screen, &company);
+}
+
+#[test]
 fn code_keeps_its_lines_when_pasted() {
     let keys = ["enter", "#", "space", "p", "enter", "x"];
     let (tools, _) = form_after_keys(ToolId::PythonExec, &keys);

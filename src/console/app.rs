@@ -33,7 +33,7 @@ use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
 use super::attention::{EditSource, PresenceWatch, Stopwatch, TypingLog};
-use super::context::{ScreenContext, ScreenId};
+use super::context::{EditorDocument, ScreenContext, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
@@ -62,7 +62,6 @@ use novamind_worker::screen_queries::Reading;
 
 pub use busy::BusyState;
 use exit::ExitTarget;
-pub use external_editor::EditorDocument;
 pub use layers::Layer;
 use layers::Layers;
 pub use pause_screen::PauseScreen;

@@ -357,7 +357,11 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
     if app.is_editing_text() {
-        canvas.draw_text(Rect { x: row.x, width: EDIT_MODE.width() as u16, ..row }, EDIT_MODE, Role::ActiveTab);
+        canvas.draw_text(
+            Rect { x: row.x, width: EDIT_MODE.width() as u16, ..row },
+            EDIT_MODE,
+            Role::ActiveTab,
+        );
         x += EDIT_MODE.width() as u16;
     }
     let mut actions = footer_actions(app).into_iter().peekable();

@@ -9,7 +9,8 @@ use crossterm::event::Event;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use super::app::{App, EditorDocument, Order, Settings};
+use super::app::{App, Order, Settings};
+use super::context::EditorDocument;
 use super::effect::Effect;
 use super::files;
 use novamind_record::trajectory::record::DetachCause;
@@ -245,10 +246,7 @@ impl Headless {
                     | Response::DatabaseCurrent
                     | Response::Study(StudyResponse::QuestionsDue(_))
             ),
-            Message::Input(_)
-            | Message::Signal(_)
-            | Message::EditorClosed(_)
-            | Message::RedrawDue => false,
+            Message::Input(_) | Message::Signal(_) | Message::EditorClosed(_) | Message::RedrawDue => false,
         };
         self.pending_responses -= u32::from(is_answer).min(self.pending_responses);
     }

@@ -20,6 +20,7 @@ mod files;
 mod forecast_fan;
 mod frame;
 pub mod headless;
+mod input_gate;
 pub mod keys;
 mod lesson;
 pub mod manual;
@@ -33,7 +34,6 @@ pub mod themes;
 mod tour;
 
 use std::io;
-#[cfg(unix)]
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -41,7 +41,8 @@ use std::time::Duration;
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
 #[cfg(unix)]
-use external_editor::{InputGate, OpenEditor};
+use external_editor::OpenEditor;
+use input_gate::InputGate;
 use novamind_tui::terminal::{TerminalScreen, set_panic_note};
 use novamind_worker::Workers;
 use novamind_worker::message::Message;
@@ -74,13 +75,8 @@ pub fn run_console(settings: Settings, start: Option<Effect>) -> io::Result<(u8,
         app.start(effect);
     }
     let screen = TerminalScreen::open()?;
-    #[cfg(unix)]
     let gate = Arc::new(InputGate::default());
-    spawn_input_threads(
-        sender.clone(),
-        #[cfg(unix)]
-        &gate,
-    );
+    spawn_input_threads(sender.clone(), &gate);
     let mut console = Console {
         app,
         workers,
@@ -88,7 +84,6 @@ pub fn run_console(settings: Settings, start: Option<Effect>) -> io::Result<(u8,
         messages,
         sender,
         resume_command: again,
-        #[cfg(unix)]
         gate,
         #[cfg(unix)]
         editor: None,
@@ -110,7 +105,6 @@ struct Console {
     sender: Sender<Message>,
     resume_command: String,
     /// Pauses the thread that reads keys while the editor uses the terminal.
-    #[cfg(unix)]
     gate: Arc<InputGate>,
     #[cfg(unix)]
     editor: Option<OpenEditor>,
@@ -248,13 +242,10 @@ fn inject_panic(message: &Message) {
 ///
 /// While the user's editor is open, keys are not read. The terminal sends the signals of ctrl-c and ctrl-\\ to the
 /// editor and to the console; the console ignores them.
-fn spawn_input_threads(sender: Sender<Message>, #[cfg(unix)] gate: &Arc<InputGate>) {
-    let keys = sender.clone();
-    #[cfg(unix)]
-    let (key_gate, gate) = (gate.clone(), gate.clone());
+fn spawn_input_threads(sender: Sender<Message>, gate: &Arc<InputGate>) {
+    let (keys, key_gate) = (sender.clone(), gate.clone());
     std::thread::spawn(move || {
         while let Ok(event) = crossterm::event::read() {
-            #[cfg(unix)]
             if key_gate.is_closed() && matches!(event, crossterm::event::Event::Resize(..)) {
                 // The event is the one that interrupts the read.
                 key_gate.pass();
@@ -263,12 +254,13 @@ fn spawn_input_threads(sender: Sender<Message>, #[cfg(unix)] gate: &Arc<InputGat
             if keys.send(Message::Input(event)).is_err() {
                 return;
             }
-            #[cfg(unix)]
             key_gate.pass();
         }
         // The terminal was closed: report a hangup signal.
         let _ = keys.send(Message::Signal(1));
     });
+    #[cfg(unix)]
+    let gate = gate.clone();
     #[cfg(unix)]
     std::thread::spawn(move || {
         use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};

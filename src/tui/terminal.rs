@@ -41,7 +41,8 @@ impl TerminalSettings {
     pub fn restore(&self) {
         if let Some(settings) = &self.0 {
             // Errors are ignored, because the terminal may be closed already.
-            let _ = std::process::Command::new("stty").arg(settings).stderr(std::process::Stdio::null()).status();
+            let _ =
+                std::process::Command::new("stty").arg(settings).stderr(std::process::Stdio::null()).status();
         }
     }
 }

@@ -46,7 +46,10 @@ fn edits_have_a_mode_and_a_cursor() {
         console.press(open);
         let screen = console.screen();
         assert!(console.app.is_editing_text(), "{open}: no edit\n{screen}");
-        assert!(screen.lines().last().is_some_and(|row| row.starts_with(" EDIT ")), "{open}: no mode\n{screen}");
+        assert!(
+            screen.lines().last().is_some_and(|row| row.starts_with(" EDIT ")),
+            "{open}: no mode\n{screen}"
+        );
         assert!(console.cursor.is_some(), "{open}: no cursor\n{screen}");
         for size in [(60, 16), (80, 24), (200, 60)] {
             console.size = size;
@@ -56,7 +59,10 @@ fn edits_have_a_mode_and_a_cursor() {
         console.size = (120, 40);
         console.press(close);
         let screen = console.screen();
-        assert!(!console.app.is_editing_text() && !footer(&mut console).contains("EDIT"), "{open}:\n{screen}");
+        assert!(
+            !console.app.is_editing_text() && !footer(&mut console).contains("EDIT"),
+            "{open}:\n{screen}"
+        );
         assert!(console.cursor.is_none(), "{open}: a cursor without an edit\n{screen}");
     }
 }
@@ -84,11 +90,18 @@ fn digits_show_screens_from_every_pane() {
 fn leaving_a_screen_ends_the_edit() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    for (edit, back) in [("9 i 'SELECT'", "9"), ("0 tab e 'note'", "0"), ("5 p 'post'", "5"), ("8 enter enter '7'", "8")] {
+    for (edit, back) in
+        [("9 i 'SELECT'", "9"), ("0 tab e 'note'", "0"), ("5 p 'post'", "5"), ("8 enter enter '7'", "8")]
+    {
         console.press(edit);
         assert!(console.app.is_editing_text(), "{edit}");
         console.press("ctrl-p 'Overview' enter");
-        assert_eq!(console.app.run().expect("a run").screen.record_name(), "overview", "{}", console.screen());
+        assert_eq!(
+            console.app.run().expect("a run").screen.record_name(),
+            "overview",
+            "{}",
+            console.screen()
+        );
         console.press(back);
         assert!(!console.app.is_editing_text(), "{edit}:\n{}", console.screen());
     }
@@ -207,7 +220,10 @@ fn texts_are_edited_in_another_editor() {
     // An editor that fails changes nothing.
     console.press("tab e f8");
     assert!(console.editor_document.take().is_some());
-    close_editor(&mut console, Err("Your editor ended with an error (exit status: 1), so the draft is unchanged."));
+    close_editor(
+        &mut console,
+        Err("Your editor ended with an error (exit status: 1), so the draft is unchanged."),
+    );
     console.assert_shows("exit status: 1");
     console.press("esc");
     console.assert_shows("from an editor");

@@ -340,7 +340,8 @@ fn parameters_are_set_only_in_debug_runs_after_confirmation() {
 fn hidden_table_queries_are_recorded_as_inspections() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_on_xray_screen(runs.path(), 3, (120, 40));
-    console.press("9 enter 'SELECT' _ 'count(*)' _ 'AS' _ 'days' _ 'FROM' _ 'hidden.pmi' shift-tab end right");
+    console
+        .press("9 enter 'SELECT' _ 'count(*)' _ 'AS' _ 'days' _ 'FROM' _ 'hidden.pmi' shift-tab end right");
     let mut complaints = Vec::new();
     let text = snapshot_text(&mut console, &mut complaints);
     insta::assert_snapshot!("xray-sql", text);

@@ -36,7 +36,12 @@ impl App {
         }
     }
 
-    pub(super) fn record_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
+    pub(super) fn record_presence(
+        &mut self,
+        event: PresenceEvent,
+        idle_ms: Option<u64>,
+        window: Option<(u16, u16)>,
+    ) {
         if self.is_played() {
             self.record(move |session| session.activity().record_presence(event, idle_ms, window));
         }

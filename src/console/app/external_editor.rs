@@ -4,15 +4,6 @@ use super::{App, Order, Stage};
 use crate::attention::EditSource;
 use crate::dialogs::text_dialog::TextDialog;
 
-/// A text that can be edited in another program.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct EditorDocument {
-    /// The text.
-    pub text: String,
-    /// Extension of the file, from which editors derive the highlighting.
-    pub extension: &'static str,
-}
-
 impl App {
     pub(super) fn open_external_editor(&mut self) {
         if let Some(reason) = self.external_editor_rejection() {
@@ -31,7 +22,8 @@ impl App {
         const WRONG_TEXT: &str = "your editor opens notes, posts, SQL and code only";
         let Stage::Run(run) = &self.stage else { return Some(WRONG_TEXT) };
         // What happens in another program is not recorded, so a session of a participant does not allow it.
-        let is_recorded = run.company.is_baseline() && run.company.is_running() || run.company.study.is_some();
+        let is_recorded =
+            run.company.is_baseline() && run.company.is_running() || run.company.study.is_some();
         if is_recorded || self.study.is_some() {
             return Some("not in a baseline run: your editor is not recorded");
         }

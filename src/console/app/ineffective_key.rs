@@ -78,7 +78,9 @@ impl App {
             .and_then(|action| self.keys.label(action))
             .unwrap_or_default();
         match chord {
-            _ if chord.is_printable() => format!("this field does not accept {key}; {leave} leaves the field"),
+            _ if chord.is_printable() => {
+                format!("this field does not accept {key}; {leave} leaves the field")
+            }
             _ if chord.is_deletion() => "there is no character to delete here".to_owned(),
             _ if chord.is_movement() => "the text ends here".to_owned(),
             _ => format!("{key} does nothing while you type; {leave} leaves the field"),
@@ -90,7 +92,8 @@ impl App {
             Option::<ListAction>::from(action),
             None | Some(ListAction::Close | ListAction::Filter | ListAction::Sort)
         );
-        let rows = self.run().filter(|_| self.layers.is_empty()).map(|run| run.screens.get(run.screen).row_counts());
+        let rows =
+            self.run().filter(|_| self.layers.is_empty()).map(|run| run.screens.get(run.screen).row_counts());
         match rows.flatten() {
             Some((0, 0)) if action.entry().scope != Scope::Global => {
                 format!("{key} ({}): the list is empty", action.entry().title)
@@ -138,16 +141,18 @@ impl App {
         let run = self.run().filter(|_| self.layers.is_empty())?;
         let context = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
         let panes = run.screens.get(run.screen).pane_keys(&context);
-        panes.into_iter().skip(1).filter(|pane| !pane.scopes.first().is_some_and(|scope| scope.is_text())).find_map(
-            |pane| match self.keys.meaning(&pane.scopes, chords) {
+        panes
+            .into_iter()
+            .skip(1)
+            .filter(|pane| !pane.scopes.first().is_some_and(|scope| scope.is_text()))
+            .find_map(|pane| match self.keys.meaning(&pane.scopes, chords) {
                 KeyMeaning::Action(action) => {
                     let name = pane.title.split(" · ").next().unwrap_or_default();
                     let tab = self.keys.label(Action::FocusNext).unwrap_or_default();
                     Some(format!("{key} ({}) works in {name}; {tab} changes panes", action.entry().title))
                 }
                 _ => None,
-            },
-        )
+            })
     }
 
     fn is_help_available(&self) -> bool {

@@ -8,8 +8,7 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::app::EditorDocument;
-use super::context::{Figure, PaneKeys, ScreenContext, ScreenId};
+use super::context::{EditorDocument, Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
 use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;

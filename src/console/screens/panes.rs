@@ -8,8 +8,7 @@ use ratatui::layout::Rect;
 
 use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
-use crate::app::EditorDocument;
-use crate::context::{Figure, PaneKeys, ScreenContext};
+use crate::context::{EditorDocument, Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::{Table, TextField};

@@ -5,8 +5,7 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::app::EditorDocument;
-use crate::context::ScreenContext;
+use crate::context::{EditorDocument, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tui::canvas::Canvas;

@@ -5,8 +5,7 @@ use ratatui::layout::Rect;
 
 use super::{POST_TOOL, Social, SocialPane};
 use crate::action::{Action, Scope};
-use crate::app::EditorDocument;
-use crate::context::{Figure, ScreenContext};
+use crate::context::{EditorDocument, Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
 use novamind_tui::canvas::Canvas;

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::earlier_calls;
 use super::sheet::{CellPosition, ToolSheet};
 use crate::action::Action;
-use crate::app::EditorDocument;
+use crate::context::EditorDocument;
 use crate::attention::CELL_SEPARATOR;
 use crate::effect::Effect;
 use novamind_base::formatting::{dollars, parse_number};

@@ -424,7 +424,8 @@ impl App {
         if let Stage::Run(run) = &mut self.stage {
             // Leaving a screen ends an edit, so that digits show screens after the user has returned.
             let left = run.screens.get_mut(run.screen);
-            left.set_focus(left.focused_index());
+            let pane = left.focused_index();
+            left.set_focus(pane);
             run.previous_screen = Some(run.screen);
             run.set_screen(screen);
         }

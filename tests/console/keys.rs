@@ -83,7 +83,7 @@ fn digits_show_screens_from_every_pane() {
         }
     }
     console.press("8");
-    console.assert_hides("draft");
+    console.assert_hides("* 1 draft");
 }
 
 #[test]

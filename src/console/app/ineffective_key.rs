@@ -95,14 +95,14 @@ impl App {
         let rows =
             self.run().filter(|_| self.layers.is_empty()).map(|run| run.screens.get(run.screen).row_counts());
         match rows.flatten() {
+            _ if action == Action::Close => "there is nothing to close here".to_owned(),
             Some((0, 0)) if action.entry().scope != Scope::Global => {
                 format!("{key} ({}): the list is empty", action.entry().title)
             }
-            Some((0, _)) if action.entry().scope != Scope::Global && action != Action::Close => {
+            Some((0, _)) if action.entry().scope != Scope::Global => {
                 format!("{key} ({}): no row matches the filter", action.entry().title)
             }
             _ if is_movement => "there is nothing more in this direction".to_owned(),
-            _ if action == Action::Close => "there is nothing to close here".to_owned(),
             _ => format!("{key} ({}) changes nothing here", action.entry().title),
         }
     }

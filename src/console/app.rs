@@ -8,7 +8,9 @@ mod busy;
 mod columns;
 mod drafts;
 mod exit;
+mod external_editor;
 mod guide;
+mod ineffective_key;
 mod input;
 mod layers;
 mod lesson;
@@ -33,7 +35,7 @@ use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
 use super::attention::{EditSource, PresenceWatch, Stopwatch, TypingLog};
-use super::context::{ScreenContext, ScreenId};
+use super::context::{EditorDocument, ScreenContext, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
@@ -89,6 +91,8 @@ pub enum Order {
     SaveQuery(Configuration, [String; 3]),
     /// Run an external program of the user.
     RunProgram(ProgramCall),
+    /// Open a text in the user's editor.
+    OpenEditor(EditorDocument),
     /// Redraw the whole window.
     Redraw,
     /// Capture the mouse (`true`) or leave the mouse to the terminal (`false`).
@@ -224,6 +228,9 @@ pub struct App {
     pub busy: Option<BusyState>,
     /// Chords of an unfinished key sequence.
     pub pending_chords: Vec<Chord>,
+    /// Whether a text is open in the user's editor.
+    is_editing_externally: bool,
+    key_effects: ineffective_key::KeyEffects,
     opponents: PlayOpponentsFn,
     exit_target: Option<ExitTarget>,
     /// The initial screen of the run that is being opened, if not the default.
@@ -277,6 +284,8 @@ impl App {
             status,
             busy: None,
             pending_chords: Vec::new(),
+            is_editing_externally: false,
+            key_effects: ineffective_key::KeyEffects::default(),
             opponents: settings.opponents,
             exit_target: None,
             initial_screen: None,
@@ -306,6 +315,7 @@ impl App {
                 delivery.deliver();
                 self.take_answers();
             }
+            Message::EditorClosed(result) => self.finish_external_edit(result),
             Message::Signal(number) => self.exit_run(ExitTarget::Signal(number)),
             Message::RedrawDue => {
                 if self.busy.as_ref().is_some_and(|busy| busy.is_stopping_script) {
@@ -358,6 +368,11 @@ impl App {
         };
         scopes.push(Scope::Global);
         scopes
+    }
+
+    /// Returns whether keys type characters: the focused pane or dialog is in edit mode.
+    pub fn is_editing_text(&self) -> bool {
+        self.scopes().first().is_some_and(|scope| scope.is_text())
     }
 
     /// Returns the actions to show in the footer.
@@ -429,6 +444,10 @@ impl App {
     fn switch_screen(&mut self, screen: ScreenId) {
         self.record_view();
         if let Stage::Run(run) = &mut self.stage {
+            // Leaving a screen ends an edit, so that digits show screens after the user has returned.
+            let left = run.screens.get_mut(run.screen);
+            let pane = left.focused_index();
+            left.set_focus(pane);
             run.previous_screen = Some(run.screen);
             run.set_screen(screen);
         }

@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 
 use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, PaneKeys, ScreenContext};
+use crate::context::{EditorDocument, Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
 use crate::own_commands::ListRows;
 use novamind_tui::canvas::{Canvas, Click};
@@ -66,11 +66,6 @@ pub trait Pane<S> {
         }
     }
 
-    /// Returns whether a digit starts a number in the pane instead of switching screens.
-    fn accepts_digits(&self, _: &S) -> bool {
-        false
-    }
-
     /// Returns the actions to show in the footer.
     fn hints(&self, _: &S) -> Vec<Action> {
         Vec::new()
@@ -115,6 +110,16 @@ pub trait Pane<S> {
         if let Some(table) = self.table_mut(screen) {
             table.edit_filter(edit);
         }
+    }
+
+    /// Returns the text of the pane that can be edited in another program, if any.
+    fn editor_document(&self, _: &S) -> Option<EditorDocument> {
+        None
+    }
+
+    /// Replaces the text of the pane with the text that another program returned.
+    fn replace_document(&self, _: &mut S, _: &str) -> Vec<Effect> {
+        Vec::new()
     }
 
     /// Handles a click on a row. A second click on the same row opens the row.
@@ -188,7 +193,7 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Returns the focused pane.
     fn focused_pane(&self) -> Self::PaneId;
 
-    /// Moves the focus to a pane.
+    /// Moves the focus to a pane, and ends an edit in any pane. The typed text is kept as a draft.
     fn set_focused_pane(&mut self, name: Self::PaneId);
 
     /// Returns the overlay that temporarily covers the panes and receives all keys. For clicks on rows of the overlay,
@@ -256,10 +261,6 @@ impl<S: PaneScreen> Screen for S {
         active_pane(self).scopes(self)
     }
 
-    fn accepts_digits(&self) -> bool {
-        active_pane(self).accepts_digits(self)
-    }
-
     fn hints(&self) -> Vec<Action> {
         active_pane(self).hints(self)
     }
@@ -296,6 +297,10 @@ impl<S: PaneScreen> Screen for S {
     fn escape_depth(&self) -> usize {
         let filtered = active_pane(self).table(self).is_some_and(Table::is_filtered);
         usize::from(self.overlay().is_some()) + usize::from(filtered) + self.screen_escape_depth()
+    }
+
+    fn row_counts(&self) -> Option<(usize, usize)> {
+        active_pane(self).table(self).map(|table| (table.visible_rows().len(), table.rows().len()))
     }
 
     fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
@@ -349,6 +354,14 @@ impl<S: PaneScreen> Screen for S {
 
     fn paste(&mut self, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         active_pane(self).paste(self, text, context)
+    }
+
+    fn editor_document(&self) -> Option<EditorDocument> {
+        active_pane(self).editor_document(self)
+    }
+
+    fn replace_document(&mut self, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).replace_document(self, text)
     }
 
     fn handle_click(&mut self, pane: usize, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {

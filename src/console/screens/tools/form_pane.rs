@@ -10,7 +10,7 @@ use super::outcome::{DetailLevel, OutcomeLines, outcome_lines};
 use super::sheet::ArgumentBlock;
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, ScreenContext};
+use crate::context::{EditorDocument, Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tools::{ParameterNumbers, ToolSpec, ToolId, EffectTiming, describe};
@@ -24,10 +24,6 @@ pub struct FormPane;
 impl Pane<Tools> for FormPane {
     fn scopes(&self, tools: &Tools) -> Vec<Scope> {
         tools.visible_form().map_or(vec![Scope::Form, Scope::List], ToolForm::scopes)
-    }
-
-    fn accepts_digits(&self, tools: &Tools) -> bool {
-        tools.visible_form().is_some_and(ToolForm::accepts_digits)
     }
 
     fn hints(&self, tools: &Tools) -> Vec<Action> {
@@ -79,6 +75,15 @@ impl Pane<Tools> for FormPane {
 
     fn paste(&self, tools: &mut Tools, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         tools.form(context.company).map_or(Vec::new(), |form| form.paste(text))
+    }
+
+    fn editor_document(&self, tools: &Tools) -> Option<EditorDocument> {
+        tools.visible_form().and_then(ToolForm::code_document)
+    }
+
+    fn replace_document(&self, tools: &mut Tools, text: &str) -> Vec<Effect> {
+        let form = tools.selected_tool().and_then(|spec| tools.forms.get_mut(&spec.id));
+        form.map_or(Vec::new(), |form| form.replace_code(text))
     }
 
     fn handle_click(&self, tools: &mut Tools, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {

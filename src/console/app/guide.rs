@@ -107,7 +107,6 @@ impl App {
         let facts = TourFacts {
             company: &run.company,
             screen: run.screen,
-            accepts_digits: !layer.is_open && run.screens.get(run.screen).accepts_digits(),
             is_typing: scopes.first().is_some_and(|scope| scope.is_text()),
             scopes,
             has_dialog: layer.is_open,

@@ -35,8 +35,6 @@ pub struct TourFacts<'a> {
     pub screen: ScreenId,
     /// Key scopes of the focused pane or dialog, the innermost first.
     pub scopes: Vec<Scope>,
-    /// Whether digits start a number in the focused pane.
-    pub accepts_digits: bool,
     /// Whether keys type characters.
     pub is_typing: bool,
     /// Whether a dialog is open.
@@ -176,7 +174,9 @@ impl Router<'_> {
 
     /// Returns the key of an action. Prefers a key that works in the focused pane.
     fn key(&self, action: Action) -> KeyPress {
-        let is_usable = |key: &String| !self.facts.accepts_digits || !key.starts_with(|first: char| first.is_ascii_digit());
+        // In panes with number cells, a letter is safer than a digit, which may start a number.
+        let has_number_cells = self.facts.scopes.contains(&Scope::Form);
+        let is_usable = |key: &String| !has_number_cells || !key.starts_with(|first: char| first.is_ascii_digit());
         let working = self.keys.working_keys(action, &self.facts.scopes).into_iter().find(is_usable);
         let label = working.or_else(|| self.keys.label(action)).unwrap_or_default();
         KeyPress::Key(label)

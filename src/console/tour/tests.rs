@@ -23,7 +23,6 @@ fn facts(company: &DisplayedCompany) -> TourFacts<'_> {
         company,
         screen: ScreenId::Overview,
         scopes: vec![Scope::List, Scope::Global],
-        accepts_digits: false,
         is_typing: false,
         has_dialog: false,
         dialog: None,
@@ -194,7 +193,7 @@ fn covering_dialog_is_closed_before_keys_are_shown() {
         let notations: Vec<String> = tour.key_groups().iter().map(KeyGroup::notation).collect();
         assert_eq!(notations, ["esc"], "{}", tour.title());
     }
-    let number_pane = TourFacts { accepts_digits: true, ..facts(&company) };
+    let number_pane = TourFacts { scopes: vec![Scope::Form, Scope::List, Scope::Global], ..facts(&company) };
     let mut tour = Tour { step: Some(2), ..Tour::default() };
     tour.update(&number_pane, &keys);
     assert_eq!(tour.key_groups()[0].notation(), "g u", "a digit would start a number");

@@ -139,7 +139,7 @@ pub enum Effect {
     ShowDebrief,
     /// Open the explanation of a subject.
     Explain(Subject),
-    /// Open the practice run with the tour.
+    /// Open the run of the tour, with the tour.
     StartTour,
     /// Show the pages of a study to participants.
     StartStudy(Box<Study>),

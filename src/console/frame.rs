@@ -115,7 +115,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let warned = draw_time_limit(app, canvas, Rect { y: area.y + 2 + banner, height: 2, ..area });
     let banner = banner + warned;
     let body = Rect { y: area.y + 2 + banner, height: area.height - 3 - banner, ..area };
-    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, &run.company.numbers, area.width)));
+    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(area.width)));
     let strip = u16::from(run.playback.is_some());
     let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
     let body = Rect { height: body.height.saturating_sub(below), ..body };
@@ -151,7 +151,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     }
     draw_layers(app, run, canvas, body, &screen_context);
     if let Some((tour, height)) = tour {
-        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys, &run.company.numbers);
+        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys);
     }
 }
 

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
 
-use super::{Dialog, DialogResponse};
+use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
@@ -66,6 +66,10 @@ type SectionLines<'a> = Vec<Line<'a>>;
 impl Dialog for WeekReportDialog {
     fn record_name(&self) -> String {
         "week report".to_owned()
+    }
+
+    fn tour_view(&self) -> Option<DialogView> {
+        Some(DialogView::new(DialogContent::WeekReport, true))
     }
 
     fn scopes(&self) -> Vec<Scope> {

@@ -103,6 +103,11 @@ impl DecisionList {
         self.selected
     }
 
+    /// Returns whether there are decisions to edit, or the decisions are not loaded yet.
+    pub(super) fn has_rows(&self) -> bool {
+        self.recorded.is_none() || !self.rows().is_empty()
+    }
+
     pub(super) fn position_label(&self) -> String {
         format!("alternative {} of {} · ‹ › week", self.current + 1, self.alternatives.len())
     }

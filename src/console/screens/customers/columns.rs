@@ -70,6 +70,12 @@ fn visible_columns(company: &DisplayedCompany) -> impl Iterator<Item = &'static 
     COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, GroupColumn::TrueValue(_)))
 }
 
+/// Returns the index of the column with cancellations.
+pub fn cancellations_column(company: &DisplayedCompany) -> usize {
+    let is_wanted = |(what, ..): &(GroupColumn, &str, &str)| *what == GroupColumn::Cancellations;
+    visible_columns(company).position(is_wanted).unwrap_or_default()
+}
+
 pub fn columns(company: &DisplayedCompany) -> Vec<TableColumn> {
     let column = |(what, head, _): &(GroupColumn, &str, &str)| match what {
         GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Trend => TableColumn::text(*head),

@@ -31,6 +31,7 @@ use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::effect::Effect;
+use crate::tour::CustomersFacts;
 use novamind_database::QueryResult;
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
@@ -99,6 +100,32 @@ impl Customers {
         self.open_group = company.observation.known_groups.iter().position(|known_group| *known_group == group);
         self.group_state = OpenGroupState::default();
         self.select_open();
+    }
+
+    /// Returns the position of the user for the tour, whose example is the first known group.
+    pub fn tour_facts(&self, company: &DisplayedCompany) -> CustomersFacts {
+        let index = |panes: &[CustomersPane], pane| panes.iter().position(|other| *other == pane).unwrap_or(0);
+        let steps = |panes: &[CustomersPane], from, to| {
+            (index(panes, to) + panes.len() - index(panes, from)) % panes.len()
+        };
+        let to_list = steps(&LIST_PANES, self.focus, CustomersPane::Groups);
+        let opened = OpenGroupState::default().focus;
+        let row = |wanted: Option<usize>| {
+            let rows = self.table.visible_rows().iter();
+            rows.enumerate().find(|(_, row)| Some(**row) == wanted).map_or(0, |(at, _)| at as isize)
+        };
+        CustomersFacts {
+            is_group_open: self.open_group.is_some(),
+            panes_to_goal: match self.open_group {
+                Some(_) => steps(&GROUP_PANES, self.group_state.focus, CustomersPane::Fit),
+                None => to_list,
+            },
+            panes_to_fit: steps(&GROUP_PANES, opened, CustomersPane::Fit),
+            panes_to_list: to_list,
+            rows_to_example: row(Some(0)) - row(self.table.selected()),
+            columns_to_cancellations: columns::cancellations_column(company) as isize
+                - self.table.selected_column() as isize,
+        }
     }
 
     /// Returns the open group, or the group selected in the list.

@@ -236,6 +236,21 @@ impl Inbox {
         }
     }
 
+    /// Returns the unsent offers to waiting threads as text, by thread. The offer to marked threads is one for each.
+    pub fn draft_offers(&self, company: &DisplayedCompany) -> BTreeMap<u32, String> {
+        let marked = self.bulk_offer.iter().flat_map(|offer| self.marked.iter().map(move |number| (number, offer)));
+        let all: BTreeMap<u32, &OfferDraft> =
+            self.drafts.iter().chain(marked).map(|(number, offer)| (*number, offer)).collect();
+        let is_waiting = |number: &u32| company.observation.waiting.iter().any(|waiting| waiting.thread == *number);
+        all.into_iter().filter(|(number, _)| is_waiting(number)).map(|(number, offer)| (number, offer.to_text())).collect()
+    }
+
+    /// Restores unsent offers. Ignores texts that are not offers.
+    pub fn restore_offers(&mut self, offers: &BTreeMap<u32, String>) {
+        let parsed = offers.iter().filter_map(|(number, text)| Some((*number, OfferDraft::parse(text)?)));
+        self.drafts.extend(parsed);
+    }
+
     fn edit_term(&mut self, change: impl FnOnce(&mut offer::OfferTerm)) {
         let mut offer = self.current_offer();
         change(&mut offer.0[self.selected_term.min(MAX_TERMS - 1)]);

@@ -7,6 +7,8 @@ use novamind_session::identifiers::Plan;
 /// Maximum number of terms in one offer.
 pub const MAX_TERMS: usize = 3;
 
+const TERM_SEPARATOR: &str = " + ";
+
 /// The plan of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlanChoice {
@@ -55,6 +57,21 @@ impl OfferTerm {
             PlanChoice::Fixed(plan) => plan.id(),
             PlanChoice::NamedByCustomer => "theirs",
         }
+    }
+
+    /// Returns the term as text: plan, value and unit, for example `B 90 % list`.
+    fn to_text(self) -> String {
+        format!("{} {} {}", self.plan_label(), self.value, self.basis.label())
+    }
+
+    fn parse(text: &str) -> Option<OfferTerm> {
+        let mut words = text.splitn(3, ' ');
+        let (plan, value, unit) = (words.next()?, words.next()?.parse().ok()?, words.next()?);
+        let plans = Plan::ALL.map(PlanChoice::Fixed).into_iter().chain([PlanChoice::Unused, PlanChoice::NamedByCustomer]);
+        let plan = plans.into_iter().find(|choice| OfferTerm { plan: *choice, ..UNUSED_TERM }.plan_label() == plan)?;
+        let bases = [PriceBasis::Dollars, PriceBasis::ListPrice, PriceBasis::AskedPrice];
+        let basis = bases.into_iter().find(|basis| basis.label() == unit)?;
+        Some(OfferTerm { plan, basis, value })
     }
 
     /// Returns the value of the term as text for the input field.
@@ -108,6 +125,21 @@ impl OfferDraft {
         OfferDraft([OfferTerm { plan: PlanChoice::Fixed(Plan::B), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
     }
 
+    /// Returns the used terms as text. [`OfferDraft::parse`] reads the text.
+    pub fn to_text(&self) -> String {
+        let used = self.0.iter().filter(|term| term.plan != PlanChoice::Unused);
+        used.map(|term| term.to_text()).collect::<Vec<_>>().join(TERM_SEPARATOR)
+    }
+
+    /// Parses the text of an offer. Returns `None` if the text is not an offer.
+    pub fn parse(text: &str) -> Option<OfferDraft> {
+        let mut offer = OfferDraft([UNUSED_TERM; MAX_TERMS]);
+        for (at, term) in text.split(TERM_SEPARATOR).enumerate() {
+            *offer.0.get_mut(at)? = OfferTerm::parse(term)?;
+        }
+        Some(offer)
+    }
+
     /// Returns an offer of the plan that the enterprise named, at its asked price.
     pub fn at_asked_price() -> OfferDraft {
         OfferDraft([
@@ -159,6 +191,23 @@ mod tests {
     use novamind_rules::Turn;
 
     const LIST_PRICES: [f64; 3] = [14.0, 32.0, 0.0];
+
+    #[test]
+    fn offer_is_restored_from_its_text() {
+        let term = |plan, basis, value| OfferTerm { plan, basis, value };
+        let offer = OfferDraft([
+            term(PlanChoice::Fixed(Plan::C), PriceBasis::Dollars, 38.25),
+            term(PlanChoice::NamedByCustomer, PriceBasis::AskedPrice, 90.0),
+            UNUSED_TERM,
+        ]);
+        assert_eq!(offer.to_text(), "C 38.25 $ + theirs 90 % ask");
+        for offer in [offer, OfferDraft::at_list_price(), OfferDraft::at_asked_price()] {
+            assert_eq!(OfferDraft::parse(&offer.to_text()), Some(offer));
+        }
+        for text in ["", "B", "B x % list", "D 1 $", "A 1 $ + A 1 $ + A 1 $ + A 1 $"] {
+            assert_eq!(OfferDraft::parse(text), None, "{text}");
+        }
+    }
 
     fn waiting_thread() -> Thread {
         let turn = Turn {

@@ -142,6 +142,13 @@ impl Sql {
         self.editor.text()
     }
 
+    /// Returns whether the screen shows rows of a named query.
+    pub fn shows_rows_of(&self, query: &str) -> bool {
+        let named = self.library.queries().iter().find(|named| named.name == query);
+        let is_shown = named.is_some_and(|named| self.results.statement().map(str::trim) == Some(named.sql.trim()));
+        is_shown && self.overlay.is_none() && self.running.is_none() && self.results.current().has_rows()
+    }
+
     /// Returns whether a statement is running.
     pub fn is_running(&self) -> bool {
         self.running.is_some()

@@ -110,6 +110,13 @@ impl ToolForm {
         self.draft_before_edit.is_some() || self.new_customer.is_some()
     }
 
+    /// Returns the text of the cell that the user types into, and whether the next character replaces the text.
+    pub fn typed_number(&self) -> Option<(String, bool)> {
+        self.draft_before_edit.as_ref()?;
+        let field = self.sheet.cell(self.focus)?.draft.as_ref()?;
+        Some((field.text().to_owned(), field.is_selected()))
+    }
+
     /// Returns the code editor, while it is open.
     pub fn code_editor(&self) -> Option<&TextEditor> {
         self.code_editor.as_deref()

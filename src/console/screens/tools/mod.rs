@@ -26,6 +26,7 @@ use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
 use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
+use crate::tour::FormFacts;
 use form::{ToolForm, format_json};
 use novamind_base::formatting::normalize_json_numbers;
 use novamind_database::QueryResult;
@@ -41,6 +42,7 @@ use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
 use outcome::ChannelLeads;
 use price_curve::PriceCurve;
+use sheet::CellPosition;
 
 /// Panes of the tools screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -135,6 +137,17 @@ impl Tools {
         self.form(company).map_or(Vec::new(), |form| {
             form.sheet.fill(arguments);
             form.check()
+        })
+    }
+
+    /// Returns the state of the form that has the focus, for the tour.
+    pub fn tour_facts(&self) -> Option<FormFacts> {
+        let form = self.visible_form().filter(|_| self.focus == ToolsPane::Form)?;
+        Some(FormFacts {
+            tool: Some(form.spec.id),
+            is_at_first_cell: form.focus == CellPosition::default(),
+            draft: form.sheet.cell(CellPosition::default()).and_then(|cell| Some(cell.draft.as_ref()?.text().to_owned())),
+            typed: form.typed_number(),
         })
     }
 

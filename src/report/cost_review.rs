@@ -87,15 +87,14 @@ mod tests {
         ] {
             session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         }
-        assert_eq!(
-            income_and_cost_lines(&session.company().observe()),
-            [
-                "Committed: $5,585 a day = $39,095 a week",
-                "One-time costs since the last week: $25,000",
-                "No income yet",
-                "Cash should last TBD",
-            ]
-        );
+        let lines = income_and_cost_lines(&session.company().observe());
+        let expected = [
+            "Committed: $5,585 a day = $39,095 a week",
+            "One-time costs since the last week: $25,000",
+            "No income yet",
+        ];
+        assert_eq!(lines[..3], expected);
+        assert!(lines[3].starts_with("Cash should last at least "), "{lines:?}");
         let played = test_kit::play_weeks(3);
         let lines = income_and_cost_lines(&played.company().observe());
         assert!(lines[0].starts_with("Committed: $") && !lines[0].contains("since"), "{lines:?}");

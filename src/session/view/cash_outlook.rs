@@ -71,3 +71,81 @@ impl CompanyView<'_> {
         open.map(|thread| thread.customer).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::create::{NewRun, Storage};
+    use crate::play::Session;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_record::trajectory::record::Via;
+
+    /// Plays eight weeks with sign-ups.
+    fn played_session() -> Session {
+        let new = NewRun { seed: Some(7), storage: Storage::Memory, ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+        for (tool, arguments) in [
+            ("set_prices", json!({ "A": 12, "B": 25, "C": 55 })),
+            ("set_usage_quotas", json!({ "A": 60_000, "B": 250_000, "C": 1_200_000 })),
+            ("set_targeted_dev_spend", json!({ "targeted_spend": { "S1": 6_000 } })),
+            ("set_targeted_ad_spend", json!({ "targeted_spend": { "content_marketing": { "S1": 3_000 } } })),
+        ] {
+            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        }
+        for _ in 0..8 {
+            let forecasts = session.company().naive_forecasts();
+            session.advance("test", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        }
+        session
+    }
+
+    #[test]
+    fn billing_calendar_follows_from_the_visible_tables() {
+        let session = played_session();
+        let calendar = session.company().billing_calendar();
+        let day = session.day();
+        let sql = format!(
+            "SELECT (billing_day_mod30 + 59 - {day} % 30) % 30 AS days, total(effective_price) FROM subscriptions \
+             JOIN customers USING (customer_id) WHERE status = 'subscribed' AND customer_type = 'small' GROUP BY 1"
+        );
+        let mut bills = vec![0.0; 30];
+        for row in &session.query(&sql).expect("bills").rows {
+            bills[novamind_database::number_at(row, 0) as usize] = novamind_database::number_at(row, 1);
+        }
+        assert!(bills.iter().sum::<f64>() > 1_000.0, "{bills:?}");
+        for (due, expected) in calendar.individuals.iter().zip(&bills) {
+            assert!((due - expected).abs() < 1e-6, "{:?} {bills:?}", calendar.individuals);
+        }
+        let sql = format!(
+            "SELECT total(effective_price) FROM subscriptions JOIN customers USING (customer_id) \
+             WHERE status = 'subscribed' AND customer_type = 'small' AND start_day > {day} - 7"
+        );
+        let new = novamind_database::number_at(&session.query(&sql).expect("sign-ups").rows[0], 0);
+        assert!(new > 0.0 && (calendar.signed_up[0] - new).abs() < 1e-6, "{:?} {new}", calendar.signed_up);
+    }
+
+    #[test]
+    fn runway_flows_and_forecasts_come_from_one_outlook() {
+        let session = played_session();
+        let (seen, naive) = (session.company().observe(), session.company().naive_forecasts());
+        let month = naive.all[1];
+        assert!((month.point - seen.outlook.expected_cash(28)).abs() < 0.01);
+        let flows = seen.expected_flows();
+        let change = 4.0 * (flows.income - flows.variable - 7.0 * seen.committed);
+        assert!((seen.cash + change - month.point).abs() < 0.02, "{change} {month:?}");
+        assert_eq!(seen.runway, seen.outlook.runway(seen.days_left()));
+        assert_eq!(seen.horizons_in_run, 4);
+    }
+
+    #[test]
+    fn horizons_beyond_the_last_day_are_not_asked_for() {
+        let new = NewRun { days: Some(84), storage: Storage::Memory, ..NewRun::default() };
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+        assert_eq!(session.company().horizons_in_run(), 3);
+        let forecasts = session.company().naive_forecasts();
+        session.advance("test", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+        assert_eq!(session.company().horizons_in_run(), 2);
+    }
+}

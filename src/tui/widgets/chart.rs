@@ -164,8 +164,11 @@ impl Plot<'_> {
         let band = || self.band.iter().flat_map(|band| &band.bounds);
         let x =
             axis_bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.required_values);
-        let [least, most] = axis_bounds(points().map(|point| point.1), self.y.required_values);
-        let limits = band_limits(least, most);
+        // A curve at zero has no shape that a band could flatten.
+        let limits = match points().all(|point| point.1 == 0.0) {
+            true => [f64::NEG_INFINITY, f64::INFINITY],
+            false => band_limits(axis_bounds(points().map(|point| point.1), self.y.required_values)),
+        };
         let ends = band().flat_map(|end| [end.1.max(limits[0]), end.2.min(limits[1])]);
         let y = axis_bounds(points().map(|point| point.1).chain(ends), self.y.required_values);
         let rows = ((area.height - 2) / 4).clamp(2, 6) as usize;
@@ -331,7 +334,7 @@ fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
 }
 
 /// Returns the values between which a band is drawn around curves with these values.
-fn band_limits(least: f64, most: f64) -> [f64; 2] {
+fn band_limits([least, most]: [f64; 2]) -> [f64; 2] {
     let distance = (MAX_BAND_DISTANCE * (most - least)).max(MIN_BAND_DISTANCE * most.abs().max(least.abs()));
     [least - distance, most + distance]
 }

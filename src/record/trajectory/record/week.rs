@@ -161,3 +161,17 @@ pub struct CalculationOutput {
     /// Output of the calculation, truncated to the length that the dashboard shows.
     pub output: String,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::is_naive_week;
+
+    #[test]
+    fn naive_forecasts_beyond_the_last_day_do_not_count() {
+        let filled = |naive: [bool; 4]| [7, 28, 84, 182].into_iter().zip(naive);
+        assert!(!is_naive_week(filled([false, false, true, true]), 83));
+        assert!(is_naive_week(filled([false, false, true, true]), 84));
+        assert!(is_naive_week(filled([true; 4]), 3), "no forecast ends within the run");
+        assert!(!is_naive_week(filled([false; 4]), 500));
+    }
+}

@@ -197,11 +197,10 @@ fn draw_time_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
 fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &DisplayedCompany) {
     let seen = &company.observation;
     let change = seen.cash_change;
-    let runway = match seen.whole_runway_weeks() {
-        // ASCII has no unambiguous symbol for infinity.
-        None if app.glyphs == Glyphs::Ascii => "endless".to_owned(),
-        None => "∞".to_owned(),
-        Some(weeks) => format!("{weeks} wk"),
+    let runway = match (seen.ended, seen.runway.describe_weeks()) {
+        (Some(_), _) => String::new(),
+        (None, Some(weeks)) => format!("   runway {weeks} wk"),
+        (None, None) => "   runway to end".to_owned(),
     };
     let poor = seen.runway_weeks.is_some_and(|weeks| weeks < 8.0);
     let wide = row.width >= 110;
@@ -216,7 +215,7 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
         (format!(" · wk {}/{}", seen.week, seen.last_day.div_ceil(7)), Role::Text),
         (format!("   cash {}", money(seen.cash)), if poor { Role::Warning } else { Role::Strong }),
         (format!(" {moved}"), if change < 0.0 { Role::Bad } else { Role::Good }),
-        (format!("   runway {runway}"), if poor { Role::Warning } else { Role::Text }),
+        (runway, if poor { Role::Warning } else { Role::Text }),
         (format!("   subs {}", count(seen.subscribers)), Role::Text),
         (format!("   seats {}", count(seen.seats)), Role::Text),
     ];

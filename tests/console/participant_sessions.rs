@@ -482,10 +482,10 @@ fn naive_forecasts_are_labeled() {
         console.press("enter");
         console.assert_shows("Required, and saved with the run.");
         console.press("'test' enter");
-        console.assert_shows("f fills empty cells: the cash flow of the last four");
+        console.assert_shows("f fills empty cells: billing dates, recent renewals");
         console.press("f");
         let screen = console.screen();
-        assert!(screen.contains("marked as naive forecasts") && !screen.contains("back-tests"), "{screen}");
+        assert!(screen.contains("marked as naive forecasts") && !screen.contains("back-test"), "{screen}");
         console.press("esc ; q");
     }
 }

@@ -6,7 +6,7 @@ use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem,
 use crate::formatting::{format_money, format_whole, pluralize};
 use novamind_base::formatting::{json_number, percent};
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{ModelTier, PlanRevenue};
+use novamind_session::{MAX_RUNWAY_DAYS, ModelTier, PlanRevenue};
 use novamind_tools::ToolId;
 
 /// Runway in weeks below which low cash is reported.
@@ -20,21 +20,20 @@ const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
 /// day, and revenue does not.
 const MIN_COST_SHARE: f64 = 1.02;
 
-/// Reports a problem if cash lasts less than eight weeks at the current rate.
+/// Reports a problem if cash is expected to last less than eight weeks.
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let seen = &situation.observation;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < MIN_RUNWAY_WEEKS)?;
-    let pace = &seen.pace;
-    let out = (pace.committed + pace.variable) * 7.0;
+    let flows = seen.expected_flows();
+    let out = seen.committed * 7.0 + flows.variable;
     let SpendingBudget { name, dollars, reduced_dollars: kept, target: place } = largest_budget(situation);
     let proposal = (dollars > 0.0).then(|| {
-        let net = pace.net_per_day() + dollars - kept;
-        let lasts = match (seen.cash.max(0.0) / -net / 7.0).round() {
-            weeks if net < 0.0 => format!("lasts {}", pluralize(weeks as u32, "week")),
-            _ => "no longer shrinks".to_owned(),
+        let lasts = match seen.outlook.runway_with_saving(dollars - kept, seen.days_left()) {
+            Some(weeks) => pluralize(weeks.round() as u32, "week"),
+            None => format!("more than {}", pluralize(seen.days_left().min(MAX_RUNWAY_DAYS) / 7, "week")),
         };
         format!(
-            "The largest budget is {name}, {} a day. At {} a day, cash {lasts}.",
+            "The largest budget is {name}, {} a day. At {} a day and with the same income, cash lasts {lasts}.",
             format_money(dollars),
             format_money(kept)
         )
@@ -42,9 +41,9 @@ pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<Action
     Some(ActionItem {
         problem: Problem::Runway,
         text: format!(
-            "Cash lasts {} at the current rate. Income is {} a week, costs are {}.",
+            "Cash is expected to last {}. In the next four weeks, income should be {} a week and costs {}.",
             pluralize(weeks as u32, "week"),
-            format_money(pace.income * 7.0),
+            format_money(flows.income),
             format_money(out)
         ),
         proposal,
@@ -67,9 +66,8 @@ struct SpendingBudget {
 fn largest_budget(situation: &DiagnosisContext<'_>) -> SpendingBudget {
     let settings = situation.session.settings();
     let (core, development) = (&settings.core, &settings.targeted_development);
-    let missing = situation.observation.cash.max(0.0) / (MIN_RUNWAY_WEEKS * 7.0)
-        + situation.observation.pace.net_per_day();
-    let kept = |dollars: f64| ((dollars + missing.min(0.0)).max(0.0)).floor();
+    let saving = situation.observation.outlook.required_saving((MIN_RUNWAY_WEEKS * 7.0) as u32);
+    let kept = |dollars: f64| (dollars - saving).max(0.0).floor();
     let scaled = |dollars: f64, total: f64| json_number((dollars * kept(total) / total.max(1e-9)).floor());
     let ads: Map<String, Value> = settings
         .targeted_ads

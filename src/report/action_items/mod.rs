@@ -174,7 +174,7 @@ impl<'a> DiagnosisContext<'a> {
 
     /// Returns the cost of the current settings over the next four weeks, dollars.
     fn upcoming_costs(&self) -> f64 {
-        self.observation.pace.committed * RISK_DAYS
+        self.observation.committed * RISK_DAYS
     }
 
     fn individuals(&self) -> impl Iterator<Item = &Estimates> {

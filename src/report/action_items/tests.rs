@@ -390,11 +390,14 @@ fn short_runway_is_the_first_action_item() {
     let need = assert_first_problem(
         &session,
         Problem::Runway,
-        &["Cash lasts", "The largest budget is targeted development"],
+        &["Cash is expected to last", "The largest budget is targeted development"],
     );
     let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
-    let text = format!("At {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
+    let text = format!(
+        "At {} a day and with the same income, cash lasts 8 weeks",
+        crate::formatting::format_money(proposed)
+    );
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");

@@ -182,14 +182,14 @@ fn escape_restores_the_previous_value() {
 #[test]
 fn copy_down_fills_the_column() {
     // The copied value is the value of the focused cell, or the value that was just accepted with enter.
-    for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
+    for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "enter", "4", "0", "enter", "="]] {
         let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, keys);
         let arguments = tools.visible_form().expect("a form").sheet.arguments().expect("numbers");
         let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
         assert_eq!(matrix.len(), 5);
         assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
     }
-    let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
+    let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "enter", "4", "0", "enter", "down", "="]);
     assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("empty")), "{effects:?}");
 }
 

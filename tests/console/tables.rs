@@ -6,7 +6,6 @@ use std::path::Path;
 
 use novamind::console::app::Stage;
 use novamind::console::context::{ScreenContext, ScreenId};
-use novamind::console::screens::Screen;
 use novamind::record::folder::configuration::Configuration;
 
 use super::company::copy_played_run;

@@ -76,7 +76,6 @@ impl CompanyView<'_> {
 mod tests {
     use serde_json::json;
 
-    use super::*;
     use crate::create::{NewRun, Storage};
     use crate::play::Session;
     use novamind_record::folder::configuration::Configuration;
@@ -103,7 +102,7 @@ mod tests {
 
     #[test]
     fn billing_calendar_follows_from_the_visible_tables() {
-        let session = played_session();
+        let mut session = played_session();
         let calendar = session.company().billing_calendar();
         let day = session.day();
         let sql = format!(

@@ -103,9 +103,9 @@ impl DecisionList {
         self.selected
     }
 
-    /// Returns whether there are decisions to edit, or the decisions are not loaded yet.
-    pub(super) fn has_rows(&self) -> bool {
-        self.recorded.is_none() || !self.rows().is_empty()
+    /// Returns whether a decision is selected, or the decisions are not loaded yet.
+    pub(super) fn is_decision_selected(&self) -> bool {
+        self.history.is_none() || matches!(self.rows().get(self.selected), Some(Row::Decision(_)))
     }
 
     pub(super) fn position_label(&self) -> String {

@@ -143,11 +143,9 @@ impl Dialog for BranchesPage {
     fn tour_view(&self) -> Option<DialogView> {
         let is_shown = matches!(self.page, BranchesView::Comparison(_));
         let actions = match self.page {
-            BranchesView::Decisions if self.decisions.is_typing() => vec![Action::Discard],
-            BranchesView::Decisions if !self.decisions.alternatives().is_empty() => {
-                vec![Action::SimulateBranches]
-            }
-            BranchesView::Decisions if self.decisions.has_rows() => {
+            BranchesView::Decisions if self.decisions.input.is_some() => vec![Action::Discard],
+            BranchesView::Decisions if self.decisions.has_changes() => vec![Action::SimulateBranches],
+            BranchesView::Decisions if self.decisions.is_decision_selected() => {
                 vec![Action::OmitDecision, Action::SimulateBranches]
             }
             BranchesView::Decisions => vec![Action::Left],

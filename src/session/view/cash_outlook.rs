@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn billing_calendar_follows_from_the_visible_tables() {
-        let session = played_session();
+        let mut session = played_session();
         let calendar = session.company().billing_calendar();
         let day = session.day();
         let sql = format!(

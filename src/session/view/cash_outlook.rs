@@ -76,7 +76,6 @@ impl CompanyView<'_> {
 mod tests {
     use serde_json::json;
 
-    use super::*;
     use crate::create::{NewRun, Storage};
     use crate::play::Session;
     use novamind_record::folder::configuration::Configuration;

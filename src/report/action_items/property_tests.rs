@@ -202,7 +202,7 @@ fn check_conversion_fall(need: &ActionItem, said: &[f64], group: Group, session:
 
 fn check_churn(need: &ActionItem, said: &[f64], group: Group, session: &Session) {
     let [gone, weeks, expected] = said[..3] else { panic!("{need:#?}") };
-    assert!(gone >= 1.5 * (expected - 0.5) && (2.0..=4.0).contains(&weeks), "{need:#?}");
+    assert!(gone >= 2.0 * (expected - 0.5) && (2.0..=4.0).contains(&weeks), "{need:#?}");
     let last = session.company().group_weeks().last().expect("a week");
     assert_eq!(f64::from(last[group].left), gone, "{need:#?}");
 }

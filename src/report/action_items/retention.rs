@@ -14,9 +14,9 @@ const BILLING_CYCLE_WEEKS: usize = 5;
 const COMPARED_WEEKS: usize = 4;
 /// Minimum number of earlier weeks for a comparison.
 const MIN_COMPARED_WEEKS: usize = 2;
-/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is an estimate, so a
-/// smaller excess can be the effect of more bills.
-const MIN_WAVE_RATIO: f64 = 1.5;
+/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is an estimate, and a
+/// healthy company in its tenth week has 1.9 times the usual cancellations.
+const MIN_WAVE_RATIO: f64 = 2.0;
 /// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
 /// Settings that influence whether a subscriber cancels on a billing day.

@@ -75,12 +75,22 @@ pub fn describe_conversion_briefly(outcome: &CurveOutcome, measured: Option<&Mea
     format!("estimated {conversion}{asked}{measured}")
 }
 
+/// Describes briefly what the estimated conversion leaves out: `leaves out market changes since day 0; spread assumed`.
+pub fn describe_omissions_briefly(explorer: &CurveExplorer) -> String {
+    let assumed = if explorer.shows_true_values() { "" } else { "; spread assumed" };
+    format!("leaves out {}{assumed}", market_changes(explorer))
+}
+
+fn market_changes(explorer: &CurveExplorer) -> String {
+    match explorer.basis {
+        CurveBasis::Truth { day } => format!("market changes after day {day}"),
+        CurveBasis::Estimates { as_of, .. } => format!("market changes since day {as_of}"),
+    }
+}
+
 /// Describes what the estimated conversion leaves out, in one sentence.
 pub fn describe_omissions(explorer: &CurveExplorer) -> String {
-    let mut omitted = match explorer.basis {
-        CurveBasis::Truth { day } => vec![format!("market changes after day {day}")],
-        CurveBasis::Estimates { as_of, .. } => vec![format!("market changes since day {as_of}")],
-    };
+    let mut omitted = vec![market_changes(explorer)];
     if !explorer.group.is_enterprise() {
         omitted.push("discounts for single channels".to_owned());
     }

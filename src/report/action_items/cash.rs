@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, format_whole, pluralize};
-use novamind_base::formatting::{json_number, percent};
+use novamind_base::formatting::json_number;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{MAX_RUNWAY_DAYS, ModelTier, PlanRevenue};
 use novamind_tools::ToolId;
@@ -16,9 +16,9 @@ const MIN_RUNWAY_WEEKS: f64 = 8.0;
 /// 40 % of their mean, so the mean of ten has a standard error of about 13 %; the loss of fewer subscriptions can be the
 /// usage of one of them.
 const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
-/// Minimum ratio of compute to revenue of a plan that loses money. Usage includes customers who cancelled on the last
-/// day, and revenue does not.
-const MIN_COST_SHARE: f64 = 1.02;
+/// Assumed largest ratio of the cancellations on the last day to a mean day of the week. Usage of the last day includes
+/// customers who cancelled on that day, and revenue does not.
+const MAX_LAST_DAY_RATIO: f64 = 3.0;
 
 /// Reports a problem if cash is expected to last less than eight weeks.
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
@@ -123,11 +123,16 @@ fn sum_numbers(arguments: &Value) -> f64 {
     }
 }
 
-/// Finds plans whose subscribers cost more in compute than they pay, by the definition of the gross margin: revenue of
-/// the subscriptions that could use the product on the last day, and compute of the last day's usage times 30.
+/// Finds plans whose subscribers cost more in compute than they pay: revenue of the subscriptions that could use the product
+/// on the last day, and compute of the last day's usage times 30. Every reported plan has a negative gross margin.
 pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let Some(groups) = situation.last_group_week() else { return Vec::new() };
     let revenue_by_plan = situation.session.company().plan_revenue();
+    let total: u32 = revenue_by_plan.iter().map(|revenue| revenue.subscriptions).sum();
+    let left: u32 = Group::all().map(|group| groups[group].left).sum();
+    let left_on_last_day = MAX_LAST_DAY_RATIO * f64::from(left) / 7.0;
+    // Lower bound of the share of the last day's customers who are still subscribed.
+    let remaining_share = 1.0 - left_on_last_day / (f64::from(total) + left_on_last_day).max(1.0);
     let of_plan = |plan: Plan| {
         let revenue = revenue_by_plan[plan];
         let PlanRevenue { subscriptions, seats, monthly } = revenue;
@@ -135,18 +140,14 @@ pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<Action
         let a_month = units as f64 * DAYS_PER_MONTH;
         let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
         let cost = a_month * now.unit_cost;
-        if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost <= MIN_COST_SHARE * monthly {
+        if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost * remaining_share <= monthly {
             return None;
         }
         let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue)?;
-        let margin = match monthly > 0.0 {
-            true => format!(", a gross margin of {}", percent(1.0 - cost / monthly, 0)),
-            false => String::new(),
-        };
         Some(ActionItem {
             problem: Problem::Margin,
             text: format!(
-                "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage{margin}.",
+                "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage.",
                 pluralize(seats as u32, "seat"),
                 format_money(monthly),
                 format_money(cost)

@@ -166,23 +166,18 @@ fn check_item(need: &ActionItem, session: &mut Session) {
     }
 }
 
-/// The margin follows from revenue and compute, is the margin of the Product screen, and the proposal covers the compute.
+/// Compute exceeds revenue, the Product screen also shows a negative margin, and the proposal covers the compute.
 fn check_margin(need: &ActionItem, said: &[f64], proposed: &[f64], session: &mut Session) {
-    let (revenue, compute) = (said[1], said[2]);
+    let [_, revenue, compute] = said[..] else { panic!("{need:#?}") };
     assert!(compute > revenue, "{need:#?}");
-    if let Some(margin) = said.get(3) {
-        let rounding = 100.0 * compute / revenue * (0.5 / revenue + 0.5 / compute);
-        assert_near(-margin, 100.0 * (1.0 - compute / revenue), 0.5 + rounding, need);
-        let plan = Plan::ALL.into_iter().find(|plan| need.text.starts_with(&format!("Plan {plan}")));
-        let plan = plan.expect("a plan");
-        let tier = session.settings().core.tiers[plan];
-        let models = session.company().tool_limits().models;
-        let unit_cost = models.iter().find(|model| model.tier == tier).expect("a tier").unit_cost;
-        let usage = PlanSales::load(session).expect("sales").usage_of_plan(plan);
-        let shown = usage.margin(unit_cost).expect("a margin");
-        assert!(shown < 0.0, "the Product screen shows a profit of {shown}: {need:#?}");
-        assert_near(-margin, 100.0 * shown, 1.0 + 0.03 * margin, need);
-    }
+    let plan = Plan::ALL.into_iter().find(|plan| need.text.starts_with(&format!("Plan {plan} ")));
+    let plan = plan.expect("a plan");
+    let tier = session.settings().core.tiers[plan];
+    let models = session.company().tool_limits().models;
+    let unit_cost = models.iter().find(|model| model.tier == tier).expect("a tier").unit_cost;
+    let usage = PlanSales::load(session).expect("sales").usage_of_plan(plan);
+    let shown = usage.margin(unit_cost).unwrap_or(-1.0);
+    assert!(shown < 0.0, "the Product screen shows a margin of {shown}: {need:#?}");
     match proposed[..] {
         [_, reduced] => assert!(reduced <= revenue, "{need:#?}"),
         [quota, reduced, held] => assert!(quota < held && reduced <= revenue, "{need:#?}"),
@@ -207,7 +202,7 @@ fn check_conversion_fall(need: &ActionItem, said: &[f64], group: Group, session:
 
 fn check_churn(need: &ActionItem, said: &[f64], group: Group, session: &Session) {
     let [gone, weeks, expected] = said[..3] else { panic!("{need:#?}") };
-    assert!(gone >= 1.5 * (expected - 0.5) && (2.0..=4.0).contains(&weeks), "{need:#?}");
+    assert!(gone >= 2.0 * (expected - 0.5) && (2.0..=4.0).contains(&weeks), "{need:#?}");
     let last = session.company().group_weeks().last().expect("a week");
     assert_eq!(f64::from(last[group].left), gone, "{need:#?}");
 }

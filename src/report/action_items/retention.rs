@@ -8,14 +8,15 @@ use novamind_tools::ToolId;
 
 /// Minimum number of weekly cancellations that count as a churn wave.
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
-const BILLING_CYCLE_WEEKS: usize = 4;
+/// Number of weeks before the first bills of customers who signed up in the first week.
+const BILLING_CYCLE_WEEKS: usize = 5;
 /// Number of earlier weeks with which a week is compared.
 const COMPARED_WEEKS: usize = 4;
 /// Minimum number of earlier weeks for a comparison.
 const MIN_COMPARED_WEEKS: usize = 2;
-/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The subscribers who are billed in a week
-/// are not exactly proportional to the subscribers four weeks earlier, so a smaller excess can be the effect of more bills.
-const MIN_WAVE_RATIO: f64 = 1.5;
+/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is an estimate, and a
+/// healthy company in its tenth week has 1.9 times the usual cancellations.
+const MIN_WAVE_RATIO: f64 = 2.0;
 /// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
 /// Settings that influence whether a subscriber cancels on a billing day.
@@ -79,9 +80,9 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     let subscribers = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
     let gone = |at: usize| f64::from(weeks[at][group].left);
     let last = weeks.len().checked_sub(1)?;
-    // Subscribers cancel on billing days, at the earliest a month after signup. Cancellations are therefore compared with
-    // the number of subscribers four weeks earlier.
-    let exposed = |at: usize| subscribers(at - BILLING_CYCLE_WEEKS);
+    // Subscribers cancel on billing days. Cancellations are therefore compared with the number of bills.
+    let signups = |at: usize| f64::from(weeks[at][group].chosen.0.iter().sum::<u32>());
+    let exposed = |at: usize| expected_bills(at, &signups);
     let before = last.saturating_sub(COMPARED_WEEKS).max(BILLING_CYCLE_WEEKS)..last;
     if before.len() < MIN_COMPARED_WEEKS {
         return None;
@@ -101,7 +102,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     Some(ActionItem {
         problem: Problem::Churn(group),
         text: format!(
-            "{group}: {} cancelled last week. At the rate of the {} weeks before, it would have been {}.{change_text}",
+            "{group}: {} cancelled last week. At the rate per bill of the {} weeks before, it would have been {}.{change_text}",
             pluralize(gone as u32, "subscriber"),
             before.len(),
             format_whole(expected)
@@ -113,8 +114,43 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     })
 }
 
+/// Returns about how many subscribers are billed for another month in a week: those who signed up one or more billing
+/// periods earlier. Earlier cancellations are not subtracted.
+fn expected_bills(week: usize, signups: &dyn Fn(usize) -> f64) -> f64 {
+    let weeks_per_period = f64::from(BILLING_DAYS) / 7.0;
+    let mut bills = 0.0;
+    let mut back = weeks_per_period;
+    while back <= week as f64 {
+        // A week that begins back weeks earlier overlaps two recorded weeks.
+        let (whole, part) = (back.floor() as usize, back.fract());
+        bills += (1.0 - part) * signups(week - whole);
+        if let Some(earlier) = week.checked_sub(whole + 1) {
+            bills += part * signups(earlier);
+        }
+        back += weeks_per_period;
+    }
+    bills
+}
+
 /// Returns the number by which a count exceeds its expectation by chance, if the expectation was estimated from a rate:
 /// [`MAX_CHANCE`] standard errors of a Poisson count with the given exposures.
 fn chance_of_count(expected: f64, exposure: f64, exposure_before: f64) -> f64 {
     MAX_CHANCE * (expected * (1.0 + exposure / exposure_before.max(1.0))).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expected_bills_counts_signups_one_and_more_periods_earlier() {
+        // 30 days are 4 weeks and 2 days, so two sevenths of the customers signed up a week earlier.
+        let signups = |at: usize| [70.0, 140.0, 0.0, 0.0, 0.0, 7.0][at.min(5)];
+        assert_eq!(expected_bills(4, &signups), 0.0);
+        assert!((expected_bills(5, &signups) - (140.0 * 5.0 / 7.0 + 70.0 * 2.0 / 7.0)).abs() < 1e-9);
+        assert!(
+            (expected_bills(9, &signups) - (7.0 * 5.0 / 7.0 + 140.0 * 3.0 / 7.0 + 70.0 * 4.0 / 7.0)).abs()
+                < 1e-9
+        );
+    }
 }

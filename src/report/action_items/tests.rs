@@ -336,16 +336,20 @@ fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
 }
 
 #[test]
-fn churn_wave_item_names_the_preceding_change() {
+fn churn_wave_and_falling_conversion_name_the_preceding_change() {
     let mut session = play_company(3, 3e6, &healthy_calls(), 14);
     let higher = json!({"A": 45, "B": 70, "C": 120});
     session.call("set_prices", &higher, Via::Script).expect("higher prices");
     advance_weeks(&mut session, 1);
-    let need = assert_first_problem(
+    let words = "you changed price A: 11 → 45";
+    assert_first_problem(
         &session,
-        Problem::Churn(group("S1")),
-        &["cancelled last week", "you changed price A: 11 → 45"],
+        Problem::ConversionFall(group("S1")),
+        &["leads signed up last week", words],
     );
+    let all = action_items(&session);
+    let need = all.iter().find(|need| need.problem == Problem::Churn(group("S1"))).expect("a churn wave");
+    assert!(need.text.contains("cancelled last week") && need.text.contains(words), "{}", need.text);
     let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
     assert_eq!(arguments, &json!({"A": 11, "B": 24, "C": 52}), "the form contains the earlier values");
 }

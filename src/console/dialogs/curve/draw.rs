@@ -10,8 +10,8 @@ use crate::dialogs::Dialog;
 use novamind_base::formatting::price_to_cents;
 use novamind_insight::{LEAD_SAMPLE_SIZE, PlanPoint};
 use novamind_report::curve::{
-    describe_basis, describe_conversion_briefly, describe_omissions, describe_outcome, describe_plan,
-    format_quality,
+    describe_basis, describe_conversion_briefly, describe_omissions, describe_omissions_briefly,
+    describe_outcome, describe_plan, format_quality,
 };
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
@@ -157,11 +157,11 @@ fn plan_line(opened: &CurveExploration, plan: Plan) -> String {
 /// Returns the lines of the legend that fit into the area, and what the estimates leave out.
 fn legend_lines(opened: &CurveExploration, area: Rect) -> Vec<String> {
     let width = area.width as usize;
-    let omissions = wrap(&describe_omissions(&opened.explorer), width);
     if area.height < MIN_ROWS_FOR_LEGEND {
         let fits = area.height >= MIN_ROWS_FOR_OMISSIONS;
-        return if fits { omissions } else { Vec::new() };
+        return if fits { vec![describe_omissions_briefly(&opened.explorer)] } else { Vec::new() };
     }
+    let omissions = wrap(&describe_omissions(&opened.explorer), width);
     let unit = if opened.explorer.group.is_enterprise() { "price per seat" } else { "price" };
     let mut words =
         format!("x: {unit}, y: quality · line: half of the leads accept · shaded: 10 to 90 % accept");

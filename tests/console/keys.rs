@@ -16,7 +16,7 @@ const EDITS: [(&str, &str); 14] = [
     ("9 i", "esc"),
     ("9 enter", "esc"),
     ("9 ctrl-o", "esc"),
-    ("9 i 'SELECT1' ctrl-s", "esc"),
+    ("9 i 'SELECT1' ctrl-s", "esc esc"),
     ("9 tab tab /", "esc"),
     ("0 tab e", "esc"),
     ("0 /", "esc"),

@@ -12,11 +12,11 @@ use super::harness::Console;
 /// All places of a run in which text is entered: keys that open the place, and keys that end the edit.
 const EDITS: [(&str, &str); 14] = [
     ("8 enter enter", "esc"),
-    ("8 /", "esc"),
+    ("8 esc /", "esc"),
     ("9 i", "esc"),
     ("9 enter", "esc"),
     ("9 ctrl-o", "esc"),
-    ("9 i 'SELECT1' ctrl-s", "esc"),
+    ("9 i 'SELECT1' ctrl-s", "esc esc"),
     ("9 tab tab /", "esc"),
     ("0 tab e", "esc"),
     ("0 /", "esc"),
@@ -163,8 +163,8 @@ fn footer_hints_can_be_clicked() {
     for size in [(60, 16), (80, 24), (120, 40), (200, 60)] {
         let mut console = Console::in_new_run(&runs.path().join(size.0.to_string()), size);
         for (keys, hint, shown) in [
-            ("1", "next week", "Next week · [1 review]"),
-            ("esc 8 enter", "edit", " EDIT "),
+            ("8", "open", "set_prices · pricing"),
+            ("", "edit", " EDIT "),
             ("esc esc esc 9", "edit", " EDIT "),
             // A hint in edit mode.
             ("'SELECT' _ '41+1'", "run", "42"),
@@ -201,7 +201,7 @@ fn texts_are_edited_in_another_editor() {
         ("0 tab e 'typed'", "md", "notes of two lines\nfrom an editor"),
         ("esc 9 i ctrl-n 'typed'", "sql", "SELECT 6*7 AS x"),
         ("esc 5 p 'typed'", "md", "A post from an editor"),
-        ("esc 8 / 'python_exec' enter enter enter 'typed'", "sql", "# python\nprint(1)"),
+        ("esc 8 / 'PYX' enter enter enter 'typed'", "sql", "# python\nprint(1)"),
     ] {
         console.press(keys);
         assert!(footer(&mut console).contains("your editor"), "{keys}: {}", console.screen());

@@ -133,7 +133,7 @@ fn query_chart_and_export_take_few_keys() {
         let mut console = console_with_open_company(runs.path(), size);
         console.advance_week();
         console.press("esc");
-        let keys = "9 'SELECT' _ 'day,amount' _ 'FROM' _ 'ledger' f5 esc . . e c";
+        let keys = "9 enter 'SELECT' _ 'day,amount' _ 'FROM' _ 'ledger' f5 esc . . e c";
         press_within(&mut console, keys, QUERY_CHART_EXPORT);
         let folder = console.app.run().expect("a run").company.folder.clone().expect("a folder");
         let text = std::fs::read_to_string(folder.join("query-0001.csv"))

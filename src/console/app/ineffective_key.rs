@@ -33,7 +33,11 @@ impl App {
             && let Some(chords) = self.key_effects.without_work.take()
         {
             let reason = self.reason_without_effect(&chords);
-            self.show_error(reason);
+            // Leaving and moving once too often is no mistake.
+            match chords.last().is_some_and(|chord| chord.is_escape() || chord.is_movement()) {
+                true => self.show_status(reason),
+                false => self.show_error(reason),
+            }
             buffer.reset();
             drawn = draw_frame(self, buffer);
         }

@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn backtest_forecasts_equal_the_offered_forecasts() {
         let configuration = Configuration::bundled();
-        let policy = Policy::find("P1c", &configuration).expect("a shipped policy");
+        let policy = Policy::find("P1c", &configuration).expect("a bundled policy");
         let spec = RunSpec { stop_after_day: Some(84), ..RunSpec::for_seed(5) };
         let session = super::super::runner::play_session(
             &policy,

@@ -178,15 +178,15 @@ impl WeekReportDialog {
             }
             lines.extend(part);
         }
-        let is_cut = lines.len() > height;
-        if is_cut && height > 0 {
+        let is_truncated = lines.len() > height;
+        if is_truncated && height > 0 {
             let hidden = lines.len() - (height - 1);
             lines.truncate(height - 1);
             let text = format!("… {} more in a larger window", pluralize(hidden as u32, "line"));
             lines.push(Line::from(canvas.span(text, Role::Dim)));
         }
         lines.truncate(height);
-        places.retain(|place| *place < height.saturating_sub(usize::from(is_cut)));
+        places.retain(|place| *place < height.saturating_sub(usize::from(is_truncated)));
         (lines, places)
     }
 

@@ -29,7 +29,7 @@ impl Interpreter {
         let arguments = parse_call_arguments(tool, &arguments)?;
         Ok(match self.session.preview_call(tool.spec().name(), &arguments) {
             Ok(preview) => self.preview_response(&preview, &arguments),
-            Err(refusal) => CommandResponse::rejected("check", refusal),
+            Err(rejection) => CommandResponse::rejected("check", rejection),
         })
     }
 
@@ -95,7 +95,7 @@ impl Interpreter {
             Ok(sales) => {
                 margin_sentences(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())
             }
-            Err(refusal) => vec![format!("no margins: {}", refusal.message)],
+            Err(rejection) => vec![format!("no margins: {}", rejection.message)],
         }
     }
 }

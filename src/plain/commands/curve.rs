@@ -24,7 +24,7 @@ impl Interpreter {
         let (group, product) = parse_request(arguments)?;
         Ok(match CurveExplorer::open(&mut self.session, group) {
             Ok(curve_explorer) => curve_response(&curve_explorer, product),
-            Err(refusal) => CommandResponse::rejected("curve", refusal),
+            Err(rejection) => CommandResponse::rejected("curve", rejection),
         })
     }
 }

@@ -14,7 +14,7 @@ use novamind_tools::ToolId;
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
 const BILLING_CYCLE_WEEKS: usize = 4;
 /// Minimum ratio of a churn wave to the usual churn.
-const MIN_WAVE_RATIO: f64 = 2.0;
+const MIN_CHURN_WAVE_RATIO: f64 = 2.0;
 /// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
 /// Settings that influence whether a subscriber cancels on a billing day.
@@ -87,7 +87,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     }
     let mean = |of: &dyn Fn(usize) -> f64| before.clone().map(of).sum::<f64>() / before.len() as f64;
     let (gone, usual) = (left(last), mean(&left));
-    if gone <= MIN_WAVE_CANCELLATIONS || share(last) <= MIN_WAVE_RATIO * mean(&share) {
+    if gone <= MIN_WAVE_CANCELLATIONS || share(last) <= MIN_CHURN_WAVE_RATIO * mean(&share) {
         return None;
     }
     let (now, had) = (&weeks[last], there(last - 1));

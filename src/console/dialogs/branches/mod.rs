@@ -88,8 +88,8 @@ impl BranchesPage {
                 let figures = ComparisonView::new(*comparison, futures.map(|boxed| *boxed), days, figure);
                 self.page = BranchesView::Comparison(Box::new(figures));
             }
-            Err(refusal) => {
-                self.problem = Some(refusal.message);
+            Err(rejection) => {
+                self.problem = Some(rejection.message);
                 self.decisions.mark_rejected();
                 self.page = BranchesView::Decisions;
             }

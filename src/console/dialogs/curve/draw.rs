@@ -42,8 +42,8 @@ impl CurveDialog {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         match &self.exploration {
             None => canvas.draw_text(inside, &format!("asking {LEAD_SAMPLE_SIZE} leads …"), Role::Warning),
-            Some(Err(refusal)) => {
-                for (row, line) in row_rects(inside).zip(wrap(&refusal.message, inside.width as usize)) {
+            Some(Err(rejection)) => {
+                for (row, line) in row_rects(inside).zip(wrap(&rejection.message, inside.width as usize)) {
                     canvas.draw_text(row, &line, Role::Bad);
                 }
             }
@@ -129,7 +129,7 @@ impl CurveDialog {
         let points = &opened.explorer.points;
         let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
         let top = plans().map(|plan_point| plan_point.quality).fold(1.0, f64::max);
-        let most = opened.max_price();
+        let max = opened.max_price();
         // Points above the chart are omitted, so that lines end at its upper edge. The band is clipped at the upper edge.
         let line = |of: fn(&CurvePoint) -> f64, role| {
             let inside = points.iter().filter(|point| of(point) <= top);
@@ -144,7 +144,7 @@ impl CurveDialog {
         let covered = points.iter().filter(|point| point.p10 <= top);
         let ends = covered.map(|point| (point.price, point.p10, point.p90.min(top))).collect();
         let band = Band { bounds: ends, name: "" };
-        let x = XAxis { format: &|value| dollars(value), required_values: &[0.0, most] };
+        let x = XAxis { format: &|value| dollars(value), required_values: &[0.0, max] };
         let y = YAxis { unit: AxisUnit::Number, required_values: &[0.0, top] };
         let promotion = opened.explorer.discount;
         let sign = |plan: Plan| {

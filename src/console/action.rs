@@ -298,7 +298,7 @@ actions! {
     }
     Form {
         Apply "apply" "submit" "Submit the form."
-        EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
+        EditCell "edit" "edit" "Type a value in the focused cell."
         CopyDown "same-down" "copy down" "Copy the value to the cells below. Right after you accept a value, the key copies the accepted value."
         ClearCell "clear-cell" "0" "Clear the cell."
         ResetForm "reset-form" "reset" "Discard the draft and show the current values; press again to restore the draft."
@@ -311,7 +311,7 @@ actions! {
         History "history" "history" "Search earlier statements."
         Library "library" "library" "Search the library of named queries and run one."
         SaveQuery "save-query" "save" "Save the statement as a named query."
-        EditQuery "edit-query" "edit" "Go to the editor."
+        EditQuery "edit-query" "edit" "Type in the editor."
         ClearQuery "clear-query" "clear" "Clear the editor."
     }
     Result {
@@ -365,7 +365,8 @@ actions! {
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
-        LeaveEditor "leave-editor" "leave" "Leave the editor; the text is kept."
+        LeaveEditor "leave-editor" "leave" "Stop typing; the text is kept."
+        ExternalEditor "external-editor" "your editor" "Open the text in the editor that VISUAL or EDITOR names: notes, posts, SQL and code. Not in an unfinished baseline run."
     }
     Field {
         Commit "commit" "accept" "Accept the typed value; in a form, move down."

@@ -7,7 +7,9 @@ mod breadcrumbs;
 mod busy;
 mod drafts;
 mod exit;
+mod external_editor;
 mod guide;
+mod ineffective_key;
 mod input;
 mod layers;
 mod lesson;
@@ -60,6 +62,7 @@ use novamind_worker::screen_queries::Reading;
 
 pub use busy::BusyState;
 use exit::ExitTarget;
+pub use external_editor::EditorDocument;
 pub use layers::Layer;
 use layers::Layers;
 pub use pause_screen::PauseScreen;
@@ -81,6 +84,8 @@ pub enum Order {
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a named query. The strings are the name, the title and the statement of the query.
     SaveQuery(Configuration, [String; 3]),
+    /// Open a text in the user's editor.
+    OpenEditor(EditorDocument),
     /// Redraw the whole window.
     Redraw,
     /// Capture the mouse (`true`) or leave the mouse to the terminal (`false`).
@@ -212,6 +217,9 @@ pub struct App {
     pub busy: Option<BusyState>,
     /// Chords of an unfinished key sequence.
     pub pending_chords: Vec<Chord>,
+    /// Whether a text is open in the user's editor.
+    is_editing_externally: bool,
+    key_effects: ineffective_key::KeyEffects,
     opponents: PlayOpponentsFn,
     exit_target: Option<ExitTarget>,
     /// The initial screen of the run that is being opened, if not the default.
@@ -257,6 +265,8 @@ impl App {
             status: None,
             busy: None,
             pending_chords: Vec::new(),
+            is_editing_externally: false,
+            key_effects: ineffective_key::KeyEffects::default(),
             opponents: settings.opponents,
             exit_target: None,
             initial_screen: None,
@@ -285,6 +295,7 @@ impl App {
                 delivery.deliver();
                 self.take_answers();
             }
+            Message::EditorClosed(result) => self.finish_external_edit(result),
             Message::Signal(number) => self.exit_run(ExitTarget::Signal(number)),
             Message::RedrawDue => {
                 if self.busy.as_ref().is_some_and(|busy| busy.is_stopping_script) {
@@ -336,6 +347,11 @@ impl App {
         };
         scopes.push(Scope::Global);
         scopes
+    }
+
+    /// Returns whether keys type characters: the focused pane or dialog is in edit mode.
+    pub fn is_editing_text(&self) -> bool {
+        self.scopes().first().is_some_and(|scope| scope.is_text())
     }
 
     /// Returns the actions to show in the footer.
@@ -407,6 +423,9 @@ impl App {
     fn switch_screen(&mut self, screen: ScreenId) {
         self.record_view();
         if let Stage::Run(run) = &mut self.stage {
+            // Leaving a screen ends an edit, so that digits show screens after the user has returned.
+            let left = run.screens.get_mut(run.screen);
+            left.set_focus(left.focused_index());
             run.previous_screen = Some(run.screen);
             run.set_screen(screen);
         }

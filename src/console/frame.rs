@@ -336,6 +336,9 @@ fn tab_badge(run: &Run, screen: ScreenId) -> String {
     if count > 0 { format!(" ●{count}") } else { String::new() }
 }
 
+/// Label of the footer while keys type characters.
+const EDIT_MODE: &str = " EDIT ";
+
 fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.status) {
         // The error explains that an action was rejected because a script is running.
@@ -353,6 +356,10 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     // A message has two spaces before it and one space after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
+    if app.is_editing_text() {
+        canvas.draw_text(Rect { x: row.x, width: EDIT_MODE.width() as u16, ..row }, EDIT_MODE, Role::ActiveTab);
+        x += EDIT_MODE.width() as u16;
+    }
     let mut actions = footer_actions(app).into_iter().peekable();
     while let Some(action) = actions.next() {
         let Some(mut key) = app.keys.label(action) else { continue };
@@ -395,7 +402,6 @@ fn action_title(app: &App, action: Action) -> &'static str {
 fn footer_actions(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
     if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {
-        let typing = app.scopes().first().is_some_and(|scope| scope.is_text());
         let always = [
             Action::NextWeek,
             Action::Palette,
@@ -413,7 +419,10 @@ fn footer_actions(app: &App) -> Vec<Action> {
         };
         let of_end = [Action::Report, Action::Branches].into_iter().filter(|_| over && !replay);
         let always = always.into_iter().filter(|action| !left_out(action)).chain(of_end);
-        if !typing {
+        if app.external_editor_rejection().is_none() && app.is_editing_text() {
+            actions.push(Action::ExternalEditor);
+        }
+        if !app.is_editing_text() {
             let screen_actions = actions.clone();
             actions.extend(always.filter(|action| !screen_actions.contains(action)));
         }

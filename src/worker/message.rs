@@ -25,6 +25,8 @@ pub enum Message {
     Delivered(Delivery),
     /// A signal that ends, suspends or resumes the program.
     Signal(i32),
+    /// The user's editor has ended: the edited text, or the reason why the text is unchanged.
+    EditorClosed(Result<String, String>),
     /// The time after which the console wants to redraw has passed.
     RedrawDue,
 }

@@ -6,6 +6,7 @@ mod curve;
 mod figures;
 mod focus;
 mod harness;
+mod keys;
 mod lessons;
 mod monkey;
 mod overlay;

@@ -8,6 +8,7 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
+use super::app::EditorDocument;
 use super::context::{Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
 use novamind_database::QueryResult;
@@ -137,9 +138,6 @@ pub trait Screen: ScreenState {
     /// scope is a text scope, keys type characters.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Returns whether a digit starts a number in the focused cell instead of switching screens.
-    fn accepts_digits(&self) -> bool;
-
     /// Returns the actions to show in the footer.
     fn hints(&self) -> Vec<Action>;
 
@@ -158,6 +156,10 @@ pub trait Screen: ScreenState {
     /// Returns the number of levels that esc closes on this screen.
     fn escape_depth(&self) -> usize;
 
+    /// Returns the number of rows of the focused table that pass the filter, and of all rows, if the focused pane has
+    /// a table.
+    fn row_counts(&self) -> Option<(usize, usize)>;
+
     /// Returns the selected figure, if a figure is selected.
     fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure>;
 
@@ -169,6 +171,12 @@ pub trait Screen: ScreenState {
 
     /// Handles text that is pasted into a field.
     fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
+
+    /// Returns the text of the focused pane that can be edited in another program, if any.
+    fn editor_document(&self) -> Option<EditorDocument>;
+
+    /// Replaces the text of the focused pane with the text that another program returned.
+    fn replace_document(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a click on a row. Clicking the selected row opens it.
     fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect>;

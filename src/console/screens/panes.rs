@@ -8,6 +8,7 @@ use ratatui::layout::Rect;
 
 use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
+use crate::app::EditorDocument;
 use crate::context::{Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
 use novamind_tui::canvas::{Canvas, Click};
@@ -57,11 +58,6 @@ pub trait Pane<S> {
         }
     }
 
-    /// Returns whether a digit starts a number in the pane instead of switching screens.
-    fn accepts_digits(&self, _: &S) -> bool {
-        false
-    }
-
     /// Returns the actions to show in the footer.
     fn hints(&self, _: &S) -> Vec<Action> {
         Vec::new()
@@ -99,6 +95,16 @@ pub trait Pane<S> {
         if let Some(table) = self.table_mut(screen) {
             table.edit_filter(edit);
         }
+    }
+
+    /// Returns the text of the pane that can be edited in another program, if any.
+    fn editor_document(&self, _: &S) -> Option<EditorDocument> {
+        None
+    }
+
+    /// Replaces the text of the pane with the text that another program returned.
+    fn replace_document(&self, _: &mut S, _: &str) -> Vec<Effect> {
+        Vec::new()
     }
 
     /// Handles a click on a row. A second click on the same row opens the row.
@@ -172,7 +178,7 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Returns the focused pane.
     fn focused_pane(&self) -> Self::PaneId;
 
-    /// Moves the focus to a pane.
+    /// Moves the focus to a pane, and ends an edit in any pane. The typed text is kept as a draft.
     fn set_focused_pane(&mut self, name: Self::PaneId);
 
     /// Returns the overlay that temporarily covers the panes and receives all keys. For clicks on rows of the overlay,
@@ -220,10 +226,6 @@ impl<S: PaneScreen> Screen for S {
         active_pane(self).scopes(self)
     }
 
-    fn accepts_digits(&self) -> bool {
-        active_pane(self).accepts_digits(self)
-    }
-
     fn hints(&self) -> Vec<Action> {
         active_pane(self).hints(self)
     }
@@ -262,6 +264,10 @@ impl<S: PaneScreen> Screen for S {
         usize::from(self.overlay().is_some()) + usize::from(filtered) + self.screen_escape_depth()
     }
 
+    fn row_counts(&self) -> Option<(usize, usize)> {
+        active_pane(self).table(self).map(|table| (table.visible_rows().len(), table.rows().len()))
+    }
+
     fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
         active_pane(self).figure(self, context)
     }
@@ -282,6 +288,14 @@ impl<S: PaneScreen> Screen for S {
 
     fn paste(&mut self, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         active_pane(self).paste(self, text, context)
+    }
+
+    fn editor_document(&self) -> Option<EditorDocument> {
+        active_pane(self).editor_document(self)
+    }
+
+    fn replace_document(&mut self, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).replace_document(self, text)
     }
 
     fn handle_click(&mut self, pane: usize, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {

@@ -10,6 +10,7 @@ use super::outcome::{DetailLevel, OutcomeLines, outcome_lines};
 use super::sheet::ArgumentBlock;
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
+use crate::app::EditorDocument;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
@@ -28,10 +29,6 @@ impl Pane<Tools> for FormPane {
             Some(form) if form.is_typing() => vec![Scope::Field, Scope::Form],
             _ => vec![Scope::Form, Scope::List],
         }
-    }
-
-    fn accepts_digits(&self, tools: &Tools) -> bool {
-        tools.visible_form().is_some_and(ToolForm::accepts_digits)
     }
 
     fn hints(&self, tools: &Tools) -> Vec<Action> {
@@ -83,6 +80,15 @@ impl Pane<Tools> for FormPane {
 
     fn paste(&self, tools: &mut Tools, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         tools.form(context.company).map_or(Vec::new(), |form| form.paste(text))
+    }
+
+    fn editor_document(&self, tools: &Tools) -> Option<EditorDocument> {
+        tools.visible_form().and_then(ToolForm::code_document)
+    }
+
+    fn replace_document(&self, tools: &mut Tools, text: &str) -> Vec<Effect> {
+        let form = tools.selected_tool().and_then(|spec| tools.forms.get_mut(&spec.id));
+        form.map_or(Vec::new(), |form| form.replace_code(text))
     }
 
     fn handle_click(&self, tools: &mut Tools, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {

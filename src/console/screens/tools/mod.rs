@@ -319,10 +319,8 @@ impl PaneScreen for Tools {
 
     fn set_focused_pane(&mut self, name: ToolsPane) {
         self.focus = name;
-        if name == ToolsPane::List {
-            // The typed text remains a draft. Typing does not resume when the form gets the focus again.
-            self.forms.values_mut().for_each(ToolForm::stop_typing);
-        }
+        // The typed text remains a draft.
+        self.forms.values_mut().for_each(ToolForm::stop_typing);
     }
 
     fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {

@@ -97,14 +97,16 @@ fn leaving_the_form_keeps_the_draft() {
 }
 
 #[test]
-fn only_digits_start_typing_in_number_cells() {
-    let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "enter", "2"]);
+fn typing_starts_only_with_the_edit_key() {
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "9", "5", "enter", "e", "2"]);
     assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
-    let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "esc"]);
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "9", "5", "esc"]);
     assert!(!tools.visible_form().expect("a form").sheet.is_changed(), "esc restores the previous value");
-    let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, &["v", "t"]);
-    let form = tools.visible_form().expect("a form");
-    assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
+    for keys in [&["3", "5"][..], &["$"], &["-", "."], &["v", "t"], &["enter", "esc", "3"]] {
+        let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, keys);
+        let form = tools.visible_form().expect("a form");
+        assert!(!form.is_typing() && !form.sheet.is_changed(), "{keys:?}: {:?}", form.sheet.arguments());
+    }
 }
 
 #[test]

@@ -477,8 +477,11 @@ actions! {
         LeavePlayback "leave-viewer" "leave" "Close the replay and open the start menu; the run does not change."
     }
     Decisions {
-        OmitDecision "drop-decision" "leave out" "Omit the selected call, or restore it; remove an added decision."
-        AddDecision "add-decision" "add decision" "Add a decision: a new call, a factor for the values of a tool, or a tool whose settings stay unchanged."
+        CycleDecision "cycle-decision" "change" "Change the selected decision: keep it, leave it out, scale its amounts, or replace its values. On another row, open the row."
+        OmitDecision "drop-decision" "leave out" "Leave out the selected decision; restore a changed decision, or remove an added decision."
+        ScaleDecision "scale-decision" "scale" "Multiply the amounts of the selected decision by a factor; in the list of new decisions, all values of the tool from the first changed week on."
+        ReplaceDecision "replace-decision" "replace" "Replace the values of the selected decision in the form of its tool."
+        AddDecision "add-decision" "add decision" "Add a decision to the week, in the form of its tool."
         NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or add one; up to three are compared."
         SimulateBranches "simulate-branches" "simulate" "Simulate the run with your decisions unchanged and with each alternative."
     }

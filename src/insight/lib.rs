@@ -60,7 +60,7 @@ pub use inspection::writes::{FigureWrite, FigureWrites, WriteSource};
 pub use replayed_world::ReplayedWorld;
 pub use whatif::{
     AdoptedBranch, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, CallDifference, DecisionEdit,
-    EDIT_SYNTAX, FirstChange, FutureInterval, Futures, MAX_ALTERNATIVES, ParameterDifference, RelatedRun,
-    WhatIf, WhatIfProgressFn, branch_origin, create_branch_with_decisions, is_scalable,
-    record_what_if_inspection, related_runs,
+    DecisionHistory, EDIT_SYNTAX, FirstChange, FutureInterval, Futures, MAX_ALTERNATIVES, MAX_FACTOR,
+    ParameterDifference, RejectedDecision, RelatedRun, WhatIf, WhatIfProgressFn, branch_origin,
+    create_branch_with_decisions, is_scalable, record_what_if_inspection, related_runs, scale_numbers,
 };

@@ -16,6 +16,7 @@ pub mod database_figures;
 pub mod deals;
 pub mod debrief;
 pub mod decision_periods;
+pub mod decision_words;
 mod figure_change;
 pub mod fit;
 mod formatting;

@@ -1,5 +1,8 @@
 //! Text and tables for what-if comparisons.
 
+use serde_json::Value;
+
+use super::decision_words::{decision_name, describe_value_changes, describe_values};
 use super::formatting::{describe_first_change, pluralize};
 use super::why::{format_figure, format_signed_change};
 use novamind_base::formatting::{compact_number, escape_control_characters, short_dollars};
@@ -9,6 +12,8 @@ use novamind_insight::{
     ParameterDifference, RelatedRun,
 };
 use novamind_record::figures::FigureUnit;
+use novamind_session::EnterpriseNames;
+use novamind_tools::{ToolId, ToolKind, find};
 
 // Name of the branch without edits. Its simulation can continue beyond the end of the record, with unchanged settings.
 const UNCHANGED_BRANCH_NAME: &str = "your decisions unchanged";
@@ -21,27 +26,92 @@ pub fn branch_name(edits: &[DecisionEdit]) -> String {
     }
 }
 
-/// Describes the compared period, and the day on which recorded decisions end.
-pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
-    let BranchComparison { from, until, recorded_until, .. } = comparison;
-    let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
-    let beyond = match recorded_until < until {
-        true => {
-            format!("; days after {recorded_until} were not played: no further decisions, settings unchanged")
-        }
-        false => String::new(),
-    };
-    format!(
-        "re-simulation of weeks {first} to {last} (days {} to {until}), same random draws{beyond}",
-        from + 1
-    )
+/// How text names decisions.
+#[derive(Clone, Copy)]
+pub enum DecisionNotation<'a> {
+    /// Tool calls with their line numbers, as edits of plain mode name them.
+    Calls,
+    /// Names and values in words.
+    Words(&'a EnterpriseNames),
 }
 
-/// Describes a branch by its number, its name and the first day on which it differs from the unchanged run.
-pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
-    let name = branch_name(&branch.edits);
+impl DecisionNotation<'_> {
+    fn name(self, tool: ToolId) -> &'static str {
+        match self {
+            DecisionNotation::Calls => tool.name(),
+            DecisionNotation::Words(_) => decision_name(tool),
+        }
+    }
+
+    fn call(self, tool: ToolId, args: &Value) -> String {
+        match self {
+            DecisionNotation::Calls => format!("{} {args}", tool.name()),
+            DecisionNotation::Words(names) => {
+                format!("{} {}", decision_name(tool), describe_values(tool, args, names))
+                    .trim_end()
+                    .to_owned()
+            }
+        }
+    }
+
+    fn changed_call(self, tool: ToolId, recorded: &Value, edited: &Value) -> String {
+        match (self, recorded.as_object()) {
+            (DecisionNotation::Words(names), Some(before)) if tool.spec().kind == ToolKind::Setting => {
+                format!("{} {}", decision_name(tool), describe_value_changes(tool, before, edited, names))
+            }
+            (DecisionNotation::Words(names), _) => {
+                format!("{} → {}", self.call(tool, recorded), describe_values(tool, edited, names))
+            }
+            (DecisionNotation::Calls, _) => format!("{} → {edited}", self.call(tool, recorded)),
+        }
+    }
+
+    fn line(self, line: u64) -> String {
+        match self {
+            DecisionNotation::Calls => format!(" (line {line})"),
+            DecisionNotation::Words(_) => String::new(),
+        }
+    }
+}
+
+/// Describes the compared period.
+pub fn period(comparison: &BranchComparison, days_per_week: u32) -> String {
+    let BranchComparison { from, until, .. } = comparison;
+    let (first, last) = (from / days_per_week + 1, until.div_ceil(days_per_week));
+    format!("re-simulation of weeks {first} to {last} (days {} to {until}), same random draws", from + 1)
+}
+
+/// Describes the compared period, and the weeks that were not played.
+pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
+    let note =
+        unplayed_weeks_line(comparison, days_per_week).map_or(String::new(), |line| format!("; {line}"));
+    format!("{}{note}", period(comparison, days_per_week))
+}
+
+/// Describes the simulated weeks that the run has not completed, if there are any.
+pub fn unplayed_weeks_line(comparison: &BranchComparison, days_per_week: u32) -> Option<String> {
+    let weeks = unplayed_weeks(comparison, days_per_week)?;
+    Some(format!("{weeks}: no further decisions, settings unchanged"))
+}
+
+/// Names the simulated weeks that the run has not completed: `weeks 6 to 12 are not played yet`.
+fn unplayed_weeks(comparison: &BranchComparison, days_per_week: u32) -> Option<String> {
+    let BranchComparison { from, until, recorded_until, .. } = comparison;
+    let (first, last) = (recorded_until.max(from) / days_per_week + 1, until.div_ceil(days_per_week));
+    (recorded_until < until).then(|| match first == last {
+        true => format!("week {last} is not played yet"),
+        false => format!("weeks {first} to {last} are not played yet"),
+    })
+}
+
+/// Describes a branch by its number, its name and the first day on which it differs from the unchanged run. The line of
+/// the unchanged run names the weeks that were not played.
+pub fn branch_line(comparison: &BranchComparison, number: usize, name: &str, days_per_week: u32) -> String {
+    let Some(branch) = comparison.branches.get(number) else { return String::new() };
     let since = match (branch.first_different_day, branch.edits.is_empty()) {
-        (_, true) => String::new(),
+        (_, true) => {
+            unplayed_weeks(comparison, days_per_week).map_or(String::new(), |weeks| format!("; {weeks}"))
+        }
         (Some(day), _) => format!(" · differs from day {day}"),
         (None, _) => " · identical on every day".to_owned(),
     };
@@ -49,23 +119,35 @@ pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
 }
 
 /// Lists the changed decisions of a branch, decisions that are now rejected, and rejected decisions that would now be accepted.
-pub fn describe_decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
+pub fn describe_decisions(
+    branch: &BranchFigures,
+    days_per_week: u32,
+    notation: DecisionNotation<'_>,
+) -> Vec<String> {
     let week = |day: u32| day / days_per_week + 1;
     let differing = group_equal_differences(&branch.call_differences)
         .into_iter()
-        .map(|calls| describe_call_differences(&calls, week));
+        .map(|calls| describe_call_differences(&calls, week, notation));
     let parameters = branch.parameter_differences.iter().map(|parameter_difference| {
         describe_parameter_difference(parameter_difference, week(parameter_difference.day))
     });
-    let refused = branch
-        .rejected
-        .iter()
-        .map(|(day, what, refusal)| format!("week {}: {what} is rejected: {}", week(*day), refusal.message));
+    let refused = branch.rejected.iter().map(|decision| {
+        let name = find(&decision.name).map_or(decision.name.as_str(), |tool| notation.name(tool.spec().id));
+        let verb = match notation {
+            DecisionNotation::Calls => "is rejected",
+            DecisionNotation::Words(_) => "rejected",
+        };
+        format!("week {}: {name} {verb}: {}", week(decision.day), decision.rejection.message)
+    });
     let possible = branch.newly_accepted.iter().map(|(line, day, tool)| {
+        let of_line = match notation {
+            DecisionNotation::Calls => format!(" of line {line}"),
+            DecisionNotation::Words(_) => String::new(),
+        };
         format!(
-            "week {}: {} of line {line} was rejected and would now be accepted; it is skipped",
+            "week {}: {}{of_line} was rejected and would now be accepted; it is skipped",
             week(*day),
-            tool.name()
+            notation.name(*tool)
         )
     });
     parameters
@@ -101,35 +183,44 @@ fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDiffe
 }
 
 /// Describes calls that differ from the recorded calls in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
-fn describe_call_differences(calls: &[&CallDifference], week: impl Fn(u32) -> u32) -> String {
+fn describe_call_differences(
+    calls: &[&CallDifference],
+    week: impl Fn(u32) -> u32,
+    notation: DecisionNotation<'_>,
+) -> String {
     let [first, .., last] = calls else {
         return calls.first().map_or(String::new(), |only| {
-            let line = only.seq.map_or(String::new(), |line| format!(" (line {line})"));
+            let line = only.seq.map_or(String::new(), |line| notation.line(line));
             let again = only.next_recorded.map_or(String::new(), |(day, line)| {
-                format!("; the run calls {} again in week {} (line {line})", only.tool.name(), week(day))
+                let (name, line) = (notation.name(only.tool), notation.line(line));
+                let verb = match notation {
+                    DecisionNotation::Calls => "the run calls",
+                    DecisionNotation::Words(_) => "your run changes",
+                };
+                format!("; {verb} {name} again in week {}{line}", week(day))
             });
-            format!("week {}: {}{line}{again}", week(only.day), describe_call_difference(only))
+            format!("week {}: {}{line}{again}", week(only.day), describe_call_difference(only, notation))
         });
     };
     let (from, to) = (week(first.day), week(last.day));
     let weeks = if from == to { format!("week {from}") } else { format!("weeks {from} to {to}") };
-    format!("{weeks}: {} ({})", describe_call_difference(first), pluralize(calls.len() as u32, "call"))
+    let count = pluralize(calls.len() as u32, "call");
+    format!("{weeks}: {} ({count})", describe_call_difference(first, notation))
 }
 
-fn describe_call_difference(call: &CallDifference) -> String {
-    let tool = call.tool.name();
+fn describe_call_difference(call: &CallDifference, notation: DecisionNotation<'_>) -> String {
     match (&call.recorded, &call.edited) {
-        (Some(was), Some(is)) => format!("{tool} {was} → {is}"),
-        (Some(was), None) => format!("{tool} {was} is skipped"),
-        (None, Some(is)) => format!("{tool} {is} is added"),
-        (None, None) => tool.to_owned(),
+        (Some(was), Some(is)) => notation.changed_call(call.tool, was, is),
+        (Some(was), None) => format!("{} is skipped", notation.call(call.tool, was)),
+        (None, Some(is)) => format!("{} is added", notation.call(call.tool, is)),
+        (None, None) => notation.name(call.tool).to_owned(),
     }
 }
 
-/// Returns the number of the week after which figures are shown, marked `ahead` if the record ends before the end of this week.
+/// Returns the number of the week after which figures are shown. Marks the week if the record ends before its end.
 pub fn milestone_label(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
-    let ahead = if day > comparison.recorded_until { " ahead" } else { "" };
-    format!("{}{ahead}", day.div_ceil(days_per_week))
+    let mark = if day > comparison.recorded_until { " not played" } else { "" };
+    format!("{}{mark}", day.div_ceil(days_per_week))
 }
 
 /// Returns the headers and rows of the comparison. Each row has one figure at one milestone, with a column for each
@@ -291,7 +382,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use novamind_tools::ToolId;
+    use novamind_world::params::Params;
 
     #[test]
     fn milestone_label_marks_weeks_after_the_record() {
@@ -303,11 +394,11 @@ mod tests {
             figures: Vec::new(),
         };
         let label = |day| milestone_label(&comparison, day, 7);
-        assert_eq!([28, 35, 42, 49].map(label), ["4", "5", "6 ahead", "7 ahead"]);
+        assert_eq!([28, 35, 42, 49].map(label), ["4", "5", "6 not played", "7 not played"]);
         assert_eq!(
             heading(&comparison, 7),
-            "re-simulation of weeks 4 to 7 (days 22 to 49), same random draws; days after 35 were not played: no further \
-             decisions, settings unchanged"
+            "re-simulation of weeks 4 to 7 (days 22 to 49), same random draws; weeks 6 to 7 are not played yet: no \
+             further decisions, settings unchanged"
         );
         assert_eq!(branch_name(&[]), "your decisions unchanged");
     }
@@ -330,7 +421,7 @@ mod tests {
         ];
         let texts: Vec<String> = group_equal_differences(&differences)
             .iter()
-            .map(|calls| describe_call_differences(calls, |day| day / 7 + 1))
+            .map(|calls| describe_call_differences(calls, |day| day / 7 + 1, DecisionNotation::Calls))
             .collect();
         assert_eq!(
             texts,
@@ -340,5 +431,39 @@ mod tests {
                 "week 3: set_prices {\"B\":30.0} is skipped (line 20)",
             ]
         );
+    }
+    #[test]
+    fn words_contain_no_json_and_no_line_numbers() {
+        let names = EnterpriseNames::new(3, &Params::bundled().personas.email);
+        let call = |recorded: Option<f64>, edited: Option<f64>| CallDifference {
+            day: 7,
+            tool: ToolId::SetPrices,
+            seq: recorded.map(|_| 12),
+            recorded: recorded.map(|price| json!({ "B": price })),
+            edited: edited.map(|price| json!({ "B": price })),
+            next_recorded: recorded.is_none().then_some((14, 20)),
+        };
+        let text = |call: CallDifference| {
+            describe_call_differences(&[&call], |day| day / 7 + 1, DecisionNotation::Words(&names))
+        };
+        assert_eq!(text(call(Some(30.0), Some(27.0))), "week 2: price B 30 → 27");
+        assert_eq!(text(call(Some(30.0), None)), "week 2: price B 30 is skipped");
+        assert_eq!(
+            text(call(None, Some(27.0))),
+            "week 2: price B 27 is added; your run changes price again in week 3"
+        );
+    }
+
+    #[test]
+    fn note_names_the_weeks_that_were_not_played() {
+        let note = |recorded_until| {
+            let (branches, figures) = (Vec::new(), Vec::new());
+            let comparison = BranchComparison { from: 0, until: 21, recorded_until, branches, figures };
+            unplayed_weeks(&comparison, 7)
+        };
+        assert_eq!(note(0).as_deref(), Some("weeks 1 to 3 are not played yet"));
+        assert_eq!(note(10).as_deref(), Some("weeks 2 to 3 are not played yet"));
+        assert_eq!(note(14).as_deref(), Some("week 3 is not played yet"));
+        assert_eq!(note(21), None);
     }
 }

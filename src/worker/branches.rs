@@ -10,7 +10,7 @@ use super::{ActiveRun, DAY_REPORT_INTERVAL, SessionThread};
 use crate::message::Response;
 use crate::question::{Question, Reply};
 use novamind_insight::{
-    BranchComparison, DecisionEdit, Futures, RecordedDecision, WhatIf, create_branch_with_decisions,
+    BranchComparison, DecisionEdit, DecisionHistory, Futures, WhatIf, create_branch_with_decisions,
     record_what_if_inspection,
 };
 use novamind_record::trajectory::record::DetachCause;
@@ -20,8 +20,15 @@ use novamind_tools::Rejection;
 /// A question about changed decisions of the open run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchesQuestion {
-    /// List the decisions that can be changed.
+    /// List the decisions that can be changed, with the settings before them.
     Decisions,
+    /// Check the edits of an alternative without simulating it.
+    Check {
+        /// First week in which the alternative differs from the recorded decisions.
+        week: u32,
+        /// The decision edits of the alternative.
+        edits: Vec<DecisionEdit>,
+    },
     /// Compare alternatives that differ from the recorded decisions from a week on. With futures, also simulate new
     /// random draws.
     Compare {
@@ -37,8 +44,10 @@ pub enum BranchesQuestion {
 /// The answer to a [`BranchesQuestion`].
 #[derive(Debug, Clone)]
 pub enum BranchesAnswer {
-    /// The recorded decisions of the run, and the number of days per week.
-    Decisions(Vec<RecordedDecision>, u32),
+    /// The recorded decisions of the run.
+    Decisions(Box<DecisionHistory>),
+    /// The rejection of each checked edit, or `None` for an edit that can be simulated.
+    Checked(Vec<Option<Rejection>>),
     /// The compared branches, and the futures if they were requested.
     Compared(Box<BranchComparison>, Option<Box<Futures>>),
 }
@@ -56,7 +65,7 @@ impl Question for BranchesQuestion {
                 let week = *week;
                 thread.inspection_session(false).is_ok_and(|session| record_what_if_inspection(session, week))
             }
-            BranchesQuestion::Decisions => false,
+            BranchesQuestion::Decisions | BranchesQuestion::Check { .. } => false,
         };
         let kept = thread.what_if_cache.clone();
         reply.answer_on_thread(move |reply| {
@@ -121,7 +130,10 @@ fn answer_question(
     };
     let (week, alternatives, futures) = match question {
         BranchesQuestion::Decisions => {
-            return Ok(Some(BranchesAnswer::Decisions(what_if.decisions(1)?, what_if.days_per_week())));
+            return Ok(Some(BranchesAnswer::Decisions(what_if.history()?.into())));
+        }
+        BranchesQuestion::Check { week, edits } => {
+            return Ok(what_if.check(*week, edits, &progress)?.map(BranchesAnswer::Checked));
         }
         BranchesQuestion::Compare { week, alternatives, futures } => (*week, alternatives, *futures),
     };

@@ -25,5 +25,6 @@ mod stale_database;
 mod support;
 mod tasks;
 mod tour;
+mod what_if;
 mod why;
 mod xray;

@@ -192,7 +192,7 @@ fn final_page_offers_replay_what_if_and_branch_from_the_last_decision() {
     console.press("} n");
     console.assert_shows("Day 84. You end with");
     console.press("b");
-    console.assert_shows("What if, from week 1 ");
+    console.assert_shows("What if, decisions of week 1 ");
     console.press("esc <");
     assert_eq!(shown_day(&console), 77);
     console.press(") ) ) T");

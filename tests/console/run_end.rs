@@ -49,9 +49,9 @@ fn final_page_what_if_starts_twelve_weeks_before_the_end() {
     let mut console = console_in_finished_run(runs.path(), Mode::Baseline, (120, 40));
     console.assert_shows("b what if");
     console.press("b");
-    console.assert_shows("What if, from week 2 ");
+    console.assert_shows("What if, decisions of week 2 ");
     console.press("esc ; b");
-    console.assert_shows("What if, from week 2 ");
+    console.assert_shows("What if, decisions of week 2 ");
 }
 
 #[test]

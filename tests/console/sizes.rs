@@ -7,7 +7,7 @@ use novamind::tui::glyphs::Glyphs;
 use super::harness::Console;
 
 /// Keys that open each screen and dialog of the console, and keys that close it.
-const PLACES: [(&str, &str); 40] = [
+const PLACES: [(&str, &str); 42] = [
     ("1", ""),
     ("1 z", "z"),
     ("2", ""),
@@ -48,6 +48,8 @@ const PLACES: [(&str, &str); 40] = [
     ("c", "esc"),
     ("1 f", "esc"),
     ("1 g", "esc"),
+    ("1 ; b", "esc"),
+    ("1 ; b a", "esc esc"),
 ];
 
 /// Widths at which layouts change, and the neighboring widths.

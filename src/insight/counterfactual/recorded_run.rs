@@ -13,6 +13,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::lesson::is_lesson_over;
 use novamind_session::{Origin, read_origin};
+use novamind_world::settings::Settings;
 
 /// Maximum number of states that are kept in memory, in addition to the state of day 0. Each state contains the
 /// complete company.
@@ -81,6 +82,11 @@ impl RecordedRun {
 
     pub(crate) fn days_per_week(&self) -> u32 {
         self.snapshots[&0].params.run.days_per_week
+    }
+
+    /// Returns the settings before the first decision.
+    pub(crate) fn initial_settings(&self) -> &Settings {
+        &self.snapshots[&0].world.settings
     }
 
     /// Returns whether the record contains the state hash of a day; true for day 0.

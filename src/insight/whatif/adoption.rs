@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::decision_edit::{BranchStart, DecisionEdit, add_usage_based_capacity, build_edits};
 use super::lesson_restrictions::check_tools_unlocked;
@@ -14,7 +14,7 @@ use novamind_record::trajectory::record::{JudgedPost, Via, VoiceAnswer};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_session::engine::UsageCapacityRule;
 use novamind_session::{Session, StagedBranch, branch_not_saved_rejection, unreadable_record_rejection};
-use novamind_tools::{Rejection, ToolId};
+use novamind_tools::{Arguments, Rejection, ToolId};
 use novamind_world::customers::customer_numbers::CustomerNumbers;
 
 /// A branch that was simulated up to the current day of its parent run.
@@ -31,7 +31,7 @@ pub struct AdoptedBranch {
 /// at the end of a week.
 ///
 /// # Errors
-/// Same errors as [`Session::branch`], and `line_unknown`, `week_unknown` for an edit. After an error, or if the
+/// Same errors as [`Session::branch`], and the rejections of [`build_edits`] for an edit. After an error, or if the
 /// program ends during the simulation, no branch is created.
 pub fn create_branch_with_decisions(
     run: &Session,
@@ -50,7 +50,8 @@ pub fn create_branch_with_decisions(
     // Edits are validated before the branch is created.
     let known = steps_from_lines(&later);
     let (settings, params) = (run.settings(), run.params());
-    let check = BranchStart { day: from, settings, params, mode };
+    // The arguments of settings are checked in the branch, which has the state at the start of the week.
+    let check = BranchStart { day: from, settings, params, mode, check_setting: &|_, _| Ok(()) };
     build_edits(decided, &check, &known, until.max(from + 1))?;
     if let Some(lesson) = run.lesson().filter(|_| run.ended().is_none()) {
         check_tools_unlocked(lesson, decided, &known)?;
@@ -62,7 +63,10 @@ pub fn create_branch_with_decisions(
     // Posts that are repeated keep their recorded scores.
     session.set_inherited_scores(later.iter().filter_map(recorded_post_scores).collect());
     let (settings, params) = (session.settings(), session.params());
-    let opening = BranchStart { day: from, settings, params, mode };
+    let check_setting = |tool: ToolId, arguments: &Arguments| {
+        session.preview_call(tool, &Value::Object(arguments.as_map().clone())).map(drop)
+    };
+    let opening = BranchStart { day: from, settings, params, mode, check_setting: &check_setting };
     let mut edits = build_edits(decided, &opening, &known, until.max(from + 1))?;
     let is_moved =
         run.lesson().is_some_and(|lesson_progress| lesson_progress.current_part().has_automatic_capacity());
@@ -190,7 +194,7 @@ impl BranchAdoption<'_> {
         }
     }
 
-    fn apply_call(&mut self, tool: ToolId, args: &serde_json::Value) {
+    fn apply_call(&mut self, tool: ToolId, args: &Value) {
         let here = self.session.company().customer_numbers();
         let RenumberedCall { args: here, missing_customers: absent } =
             RenumberedCall::new(tool, args, self.recorded_numbers, here);

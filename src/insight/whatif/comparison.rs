@@ -39,13 +39,26 @@ pub struct BranchFigures {
     pub call_differences: Vec<CallDifference>,
     /// Parameter changes that differ from the changes of the run, sorted by day.
     pub parameter_differences: Vec<ParameterDifference>,
-    /// Rejected calls and parameter changes: day, tool or key, reason.
-    pub rejected: Vec<(u32, String, Rejection)>,
+    /// Calls and parameter changes that the branch rejects, sorted by day.
+    pub rejected: Vec<RejectedDecision>,
     /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. The branch does not
     /// execute these calls.
     pub newly_accepted: Vec<(u64, u32, ToolId)>,
     /// First day at whose end the branch differs from the unchanged run; `None` if the branch never differs.
     pub first_different_day: Option<u32>,
+}
+
+/// A call or parameter change that a branch rejects.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RejectedDecision {
+    /// Line of the decision in the record of the run; `None` for an added decision.
+    pub seq: Option<u64>,
+    /// Decision day.
+    pub day: u32,
+    /// Tool or full key of the parameter.
+    pub name: String,
+    /// Why the decision was rejected.
+    pub rejection: Rejection,
 }
 
 /// A call that differs between the run and the branch.
@@ -86,12 +99,17 @@ impl BranchFigures {
         outcome: &BranchOutcome,
         differs_on: Option<u32>,
     ) -> BranchFigures {
-        let calls = outcome
-            .rejected
-            .iter()
-            .map(|call| (call.day, call.tool.name().to_owned(), call.rejection.clone()));
-        let mut refused: Vec<_> = calls.chain(outcome.rejected_parameters.iter().cloned()).collect();
-        refused.sort_by_key(|(day, ..)| *day);
+        let calls = outcome.rejected.iter().map(|call| RejectedDecision {
+            seq: call.seq,
+            day: call.day,
+            name: call.tool.name().to_owned(),
+            rejection: call.rejection.clone(),
+        });
+        let parameters = outcome.rejected_parameters.iter().cloned();
+        let parameters =
+            parameters.map(|(day, name, rejection)| RejectedDecision { seq: None, day, name, rejection });
+        let mut refused: Vec<_> = calls.chain(parameters).collect();
+        refused.sort_by_key(|decision| decision.day);
         let possible = outcome.newly_accepted.iter().map(|call| (call.seq, call.day, call.tool));
         let followed =
             outcome.capacity_calls.iter().map(|call| added_call_difference(call.day, call.tool, &call.args));

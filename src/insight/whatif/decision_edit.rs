@@ -6,18 +6,20 @@ use std::str::FromStr;
 use serde_json::{Map, Value, json};
 
 use crate::counterfactual::edits::{AddedCall, AddedSetting, Edits, UsageBasedCapacity};
-use crate::counterfactual::memory_snapshot::MemorySnapshot;
 use crate::counterfactual::recorded_steps::{RecordedCall, RecordedStep};
 use novamind_base::formatting::json_number;
 use novamind_record::mode::Mode;
 use novamind_session::engine::{
     UsageCapacityRule, json_to_value, require_debug_mode, unknown_parameter_rejection,
 };
-use novamind_tools::{ArgumentKind, Rejection, ToolId, ToolKind, catalogue, find};
+use novamind_tools::{
+    ArgumentKind, Arguments, ParameterNumbers, Rejection, ToolId, ToolKind, ToolSpec, catalogue, find, limits,
+};
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-const MAX_FACTOR: f64 = 1000.0;
+/// Maximum factor of [`DecisionEdit::Scale`].
+pub const MAX_FACTOR: f64 = 1000.0;
 
 /// An edit of the decisions from the start of a week on.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,8 +69,9 @@ pub enum DecisionEdit {
 /// Converts decision edits to edits of recorded steps.
 ///
 /// # Errors
-/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`, and
-/// `not_in_this_mode` if a parameter is set outside a debug run.
+/// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`,
+/// `not_in_this_mode` if a parameter is set outside a debug run, `no_effect` for a dropped line that was rejected,
+/// `edited_twice`, and the rejections of the arguments of a changed or added call.
 pub(super) fn build_edits(
     decided: &[DecisionEdit],
     opening: &BranchStart<'_>,
@@ -76,10 +79,25 @@ pub(super) fn build_edits(
     until: u32,
 ) -> Result<Edits, Rejection> {
     let mut edits = Edits::default();
-    for edit in decided {
-        edit.add_to(&mut edits, opening, moves, until)?;
+    for (at, edit) in decided.iter().enumerate() {
+        edit.check_line_is_new(&decided[..at])?;
+        edit.add_to(&mut edits, opening, moves, until).map_err(|refusal| edit.name_in(refusal))?;
     }
     Ok(edits)
+}
+
+/// Returns the rejection of each edit that [`build_edits`] would reject.
+pub(super) fn rejected_edits(
+    decided: &[DecisionEdit],
+    opening: &BranchStart<'_>,
+    moves: &[RecordedStep],
+    until: u32,
+) -> Vec<Option<Rejection>> {
+    let check = |(at, edit): (usize, &DecisionEdit)| {
+        edit.check_line_is_new(&decided[..at])?;
+        edit.add_to(&mut Edits::default(), opening, moves, until)
+    };
+    decided.iter().enumerate().map(|edit| check(edit).err()).collect()
 }
 
 /// The company at the start of the first week of a what-if.
@@ -90,12 +108,25 @@ pub(super) struct BranchStart<'a> {
     pub params: &'a Params,
     /// Mode of the run.
     pub mode: Mode,
+    /// Checks the arguments of a call that changes a setting.
+    pub check_setting: &'a dyn Fn(ToolId, &Arguments) -> Result<(), Rejection>,
 }
 
 impl BranchStart<'_> {
-    pub(super) fn new(start: &MemorySnapshot, mode: Mode) -> BranchStart<'_> {
-        let MemorySnapshot { world, params, .. } = start;
-        BranchStart { day: world.day, settings: &world.settings, params, mode }
+    /// Checks the arguments of a changed or added call. Only rejections that do not depend on the branch are returned,
+    /// because the simulation reports all others.
+    fn check_call(&self, tool: ToolId, args: &Value, day: u32) -> Result<(), Rejection> {
+        let spec = tool.spec();
+        let arguments = Arguments::parse(spec, args, || ParameterNumbers::from_params(self.params).into())?;
+        limits::check_arguments(spec, &arguments)?;
+        if spec.kind != ToolKind::Setting {
+            return check_number_ranges(spec, &arguments);
+        }
+        match (self.check_setting)(tool, &arguments) {
+            // The group can be discovered after the start of the branches.
+            Err(refusal) if refusal.code == "unknown_group" && day > self.day => Ok(()),
+            checked => checked,
+        }
     }
 
     /// Returns the decision day of an added decision: the day on which its week starts.
@@ -138,15 +169,17 @@ impl DecisionEdit {
             DecisionEdit::Scale { tool, factor } => scale_settings(*tool, *factor, edits, opening, moves),
             DecisionEdit::Keep(tool) => drop_calls_of_tool(*tool, edits, moves),
             DecisionEdit::Drop(seq) => {
-                check_is_decision(*seq, moves)?;
+                check_can_be_dropped(*seq, moves)?;
                 edits.dropped_lines.insert(*seq);
             }
             DecisionEdit::Change { seq, args } => {
-                check_is_call(*seq, moves)?;
+                let call = find_call(*seq, moves)?;
+                opening.check_call(call.tool, args, call.day)?;
                 edits.changed_arguments.insert(*seq, args.clone());
             }
             DecisionEdit::Add { week, tool, args } => {
                 let day = opening.decision_day(*week, until)?;
+                opening.check_call(*tool, args, day)?;
                 edits.added_calls.push(AddedCall { day, tool: *tool, args: args.clone() });
             }
             DecisionEdit::Set { week, key, value } => {
@@ -161,6 +194,36 @@ impl DecisionEdit {
             }
         }
         Ok(())
+    }
+
+    /// Adds the edit to a rejection of its arguments, because a branch can have several edits.
+    fn name_in(&self, refusal: Rejection) -> Rejection {
+        match self {
+            DecisionEdit::Change { .. } | DecisionEdit::Add { .. } if refusal.code != "line_unknown" => {
+                Rejection { message: format!("{self}: {}", refusal.message), ..refusal }
+            }
+            _ => refusal,
+        }
+    }
+
+    /// Returns the edited line, if the edit concerns a single line.
+    fn line(&self) -> Option<u64> {
+        match self {
+            DecisionEdit::Drop(seq) | DecisionEdit::Change { seq, .. } => Some(*seq),
+            _ => None,
+        }
+    }
+
+    /// Rejects an edit of a line that an earlier edit of the same branch concerns.
+    fn check_line_is_new(&self, earlier: &[DecisionEdit]) -> Result<(), Rejection> {
+        let Some(line) = self.line() else { return Ok(()) };
+        match earlier.iter().any(|edit| edit.line() == Some(line)) {
+            false => Ok(()),
+            true => {
+                let message = format!("line {line} is edited twice; give one edit for each line");
+                Err(Rejection::for_field("line", "edited_twice", message))
+            }
+        }
     }
 }
 
@@ -185,23 +248,48 @@ fn drop_calls_of_tool(tool: ToolId, edits: &mut Edits, moves: &[RecordedStep]) {
     edits.dropped_lines.extend(recorded_calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
 }
 
-fn check_is_call(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
-    let is_there = recorded_calls(moves).any(|call| call.seq == seq);
-    is_there.then_some(()).ok_or_else(|| unknown_line_rejection(seq))
+/// Returns the recorded call in a line.
+fn find_call(seq: u64, moves: &[RecordedStep]) -> Result<&RecordedCall, Rejection> {
+    if let Some(call) = recorded_calls(moves).find(|call| call.seq == seq) {
+        return Ok(call);
+    }
+    let message = match is_parameter_line(seq, moves) {
+        true => format!(
+            "line {seq} sets a parameter, which has no arguments; write \"drop {seq}\", and \"set KEY VALUE\" for another value"
+        ),
+        false => format!(
+            "line {seq} is not a decision in the weeks of this what-if; to list the decisions, type: whatif WEEK"
+        ),
+    };
+    Err(Rejection::for_field("line", "line_unknown", message))
 }
 
-/// Rejects a line that is not a recorded decision.
-fn check_is_decision(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
-    let is_it =
-        |step: &RecordedStep| matches!(step, RecordedStep::Parameter(setting) if setting.change.seq == seq);
-    if moves.iter().any(is_it) { Ok(()) } else { check_is_call(seq, moves) }
+fn is_parameter_line(seq: u64, moves: &[RecordedStep]) -> bool {
+    moves.iter().any(|step| matches!(step, RecordedStep::Parameter(setting) if setting.change.seq == seq))
 }
 
-fn unknown_line_rejection(seq: u64) -> Rejection {
+/// Rejects a line that is not a recorded decision, or that had no effect.
+fn check_can_be_dropped(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
+    if is_parameter_line(seq, moves) || find_call(seq, moves)?.accepted {
+        return Ok(());
+    }
     let message = format!(
-        "line {seq} is not a decision in the weeks of this what-if; to list the decisions, type: whatif WEEK"
+        "the call in line {seq} was rejected in the run, so omitting it has no effect; change its arguments instead"
     );
-    Rejection::for_field("line", "line_unknown", message)
+    Err(Rejection::for_field("line", "no_effect", message))
+}
+
+/// Rejects numbers outside the ranges in the specification of a tool.
+fn check_number_ranges(spec: &ToolSpec, arguments: &Arguments) -> Result<(), Rejection> {
+    for argument in spec.arguments {
+        let (ArgumentKind::Number(range) | ArgumentKind::Integer(range)) = argument.kind else { continue };
+        let is_outside = |value: &Value| value.as_f64().is_some_and(|number| !range.contains(number));
+        if arguments.get(argument.name).is_some_and(is_outside) {
+            let message = format!("{} must be a number in the range {}", argument.name, range.describe());
+            return Err(Rejection::for_field(argument.name, "out_of_range", message));
+        }
+    }
+    Ok(())
 }
 
 /// Multiplies the current settings with calls that precede all others, and multiplies the numbers in recorded calls.
@@ -232,7 +320,7 @@ fn scale_settings(
 }
 
 /// Multiplies every number in a JSON value by a factor.
-fn scale_numbers(value: &Value, factor: f64) -> Value {
+pub fn scale_numbers(value: &Value, factor: f64) -> Value {
     match value {
         Value::Number(number) => {
             number.as_f64().map_or(Value::Null, |number| json_number(round_to_12_digits(number * factor)))

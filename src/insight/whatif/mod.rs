@@ -6,6 +6,7 @@
 mod adoption;
 mod comparison;
 mod decision_edit;
+mod decision_history;
 mod figure;
 mod futures;
 pub(crate) mod lesson_restrictions;
@@ -21,12 +22,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub use adoption::{AdoptedBranch, create_branch_with_decisions};
-pub use comparison::{BranchComparison, BranchFigures, CallDifference, ParameterDifference};
-pub use decision_edit::{DecisionEdit, EDIT_SYNTAX, is_scalable};
+pub use comparison::{
+    BranchComparison, BranchFigures, CallDifference, ParameterDifference, RejectedDecision,
+};
+pub use decision_edit::{DecisionEdit, EDIT_SYNTAX, MAX_FACTOR, is_scalable, scale_numbers};
+pub use decision_history::DecisionHistory;
 pub use figure::BranchFigure;
 pub use futures::{FutureInterval, Futures};
 pub use related_runs::{BranchOrigin, FirstChange, RelatedRun, branch_origin, related_runs};
 
+use self::decision_edit::BranchStart;
 use self::lesson_restrictions::{check_tools_unlocked, lesson_state};
 use crate::causes::{InputVisibility, input_visibility};
 use crate::counterfactual::analysis_cache::RecordAnalysis;
@@ -41,7 +46,7 @@ use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
 use novamind_session::engine::UsageCapacityRule;
 use novamind_session::{InspectionPermit, Session, unreadable_record_rejection};
-use novamind_tools::{Rejection, highest_customer};
+use novamind_tools::{Arguments, Rejection, ToolContext, ToolId, highest_customer};
 use novamind_world::events::DayFigures;
 
 /// Maximum number of alternatives in one comparison.
@@ -186,6 +191,48 @@ impl WhatIf {
             .collect())
     }
 
+    /// Returns all decisions of the run with the settings before them.
+    ///
+    /// # Errors
+    /// `guess_first` if the lesson waits for a guess.
+    pub fn history(&self) -> Result<DecisionHistory, Rejection> {
+        let (decisions, days) = (self.decisions(1)?, self.run.days_per_week());
+        Ok(DecisionHistory::new(decisions, self.run.initial_settings(), days))
+    }
+
+    /// Returns the rejection of each edit that a comparison from the start of a week would reject, without simulating
+    /// the branch. Rejections that depend on the branch are part of the comparison. Returns `None` if `progress`
+    /// stopped the simulation of the days before the week.
+    ///
+    /// # Errors
+    /// `week_unknown`, `not_readable`, and `guess_first` if the lesson waits for a guess.
+    pub fn check(
+        &mut self,
+        week: u32,
+        decided: &[DecisionEdit],
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<Vec<Option<Rejection>>>, Rejection> {
+        self.check_guess_submitted()?;
+        let from = self.first_day_of_week(week)?;
+        let until = self.last_simulated_day(week, None)?;
+        let mut reach = |day: u32| progress(day as usize, from as usize);
+        let moment = self.run.snapshot_at(from, &mut reach);
+        let Some(start) = moment.map_err(|error| unreadable_record_rejection(&error))? else {
+            return Ok(None);
+        };
+        let moves = self.run.steps_between(from, until);
+        let mut found = with_branch_start(&start, self.run.manifest.mode, |opening| {
+            decision_edit::rejected_edits(decided, opening, moves, until)
+        });
+        if let Some(lesson) = &self.lesson {
+            for (edit, refusal) in decided.iter().zip(&mut found) {
+                let locked = check_tools_unlocked(lesson, std::slice::from_ref(edit), moves);
+                *refusal = locked.err().or(refusal.take());
+            }
+        }
+        Ok(Some(found))
+    }
+
     /// Returns the result of [`WhatIf::compare`], and the result of [`WhatIf::futures`] if a number of futures is
     /// given. Returns `None` if `progress` stopped the simulation.
     ///
@@ -211,7 +258,8 @@ impl WhatIf {
     /// `None` if `progress` stopped the simulation.
     ///
     /// # Errors
-    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished
+    /// `week_unknown`, `line_unknown`, `no_effect`, `edited_twice`, the rejections of the arguments of a call,
+    /// `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished
     /// lesson `guess_first` if the lesson waits for a guess, and `not_in_this_lesson` for an unavailable tool.
     pub fn compare(
         &mut self,
@@ -341,6 +389,31 @@ impl WhatIf {
         }
     }
 
+    /// Returns the last day of the branches.
+    ///
+    /// # Errors
+    /// `week_unknown` if the branches cannot end with the requested week.
+    fn last_simulated_day(&self, week: u32, until_week: Option<u32>) -> Result<u32, Rejection> {
+        let (days, (horizon, ends)) = (self.run.days_per_week(), self.last_possible_day());
+        match until_week {
+            Some(last) if last > horizon.div_ceil(days) => {
+                let message =
+                    format!("week {last} is after the last week of {ends}, {}", horizon.div_ceil(days));
+                Err(Rejection::for_field("until", "week_unknown", message))
+            }
+            Some(last) if last >= week => Ok(last.saturating_mul(days).min(horizon)),
+            Some(last) => {
+                let message = format!("a what-if from week {week} cannot end with week {last}");
+                Err(Rejection::for_field("until", "week_unknown", message))
+            }
+            // The record can end within a week, but the figures need complete weeks.
+            None => {
+                let (from, last_end) = ((week - 1) * days, self.run.last_day().div_ceil(days) * days);
+                Ok(last_end.max(from + MIN_WEEKS * days).min(horizon))
+            }
+        }
+    }
+
     fn branch_point(
         &mut self,
         week: u32,
@@ -349,24 +422,7 @@ impl WhatIf {
     ) -> Result<Option<BranchPoint>, Rejection> {
         self.check_guess_submitted()?;
         let from = self.first_day_of_week(week)?;
-        let (days, (horizon, ends)) = (self.run.days_per_week(), self.last_possible_day());
-        let until = match until_week {
-            Some(last) if last > horizon.div_ceil(days) => {
-                let message =
-                    format!("week {last} is after the last week of {ends}, {}", horizon.div_ceil(days));
-                return Err(Rejection::for_field("until", "week_unknown", message));
-            }
-            Some(last) if last >= week => last.saturating_mul(days).min(horizon),
-            Some(last) => {
-                let message = format!("a what-if from week {week} cannot end with week {last}");
-                return Err(Rejection::for_field("until", "week_unknown", message));
-            }
-            // The record can end within a week, but the figures need complete weeks.
-            None => {
-                let last_end = self.run.last_day().div_ceil(days) * days;
-                last_end.max(from + MIN_WEEKS * days).min(horizon)
-            }
-        };
+        let (days, until) = (self.run.days_per_week(), self.last_simulated_day(week, until_week)?);
         let mut reach = |day: u32| progress(day as usize, from as usize);
         let back = (0..=from.saturating_sub(LOOKBACK_WEEKS * days))
             .rev()
@@ -481,8 +537,18 @@ fn build_branch_edits(
     let BranchPoint { start, steps: moves, until, .. } = parting;
     let all: Vec<Vec<DecisionEdit>> =
         std::iter::once(Vec::new()).chain(alternatives.iter().cloned()).collect();
-    let opening = decision_edit::BranchStart::new(start, mode);
-    let edits = all.iter().map(|decided| decision_edit::build_edits(decided, &opening, moves, *until));
-    let edits = edits.collect::<Result<_, _>>()?;
-    Ok((all, edits))
+    let edits: Result<_, Rejection> = with_branch_start(start, mode, |opening| {
+        all.iter().map(|decided| decision_edit::build_edits(decided, opening, moves, *until)).collect()
+    });
+    Ok((all, edits?))
+}
+
+/// Calls `work` with the company at the start of the branches.
+fn with_branch_start<R>(start: &MemorySnapshot, mode: Mode, work: impl FnOnce(&BranchStart<'_>) -> R) -> R {
+    let MemorySnapshot { world, params, .. } = start;
+    let check_setting = |tool: ToolId, arguments: &Arguments| {
+        tool.tool().plan(&ToolContext::new(world, params), arguments).map(drop)
+    };
+    let (day, settings) = (world.day, &world.settings);
+    work(&BranchStart { day, settings, params, mode, check_setting: &check_setting })
 }

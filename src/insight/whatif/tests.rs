@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::*;
 use crate::counterfactual::analysis_cache::AnalysisCache;
+use crate::counterfactual::recorded_steps::RecordedCall;
 use crate::counterfactual::test_kit::play_weeks;
 use crate::inspection::inspector::Inspect;
 use novamind_record::mode::Mode;
@@ -134,9 +135,81 @@ fn newly_rejected_and_newly_accepted_calls_are_reported() {
     let [_, dropped, twice] = &compared.branches[..] else { panic!("{:?}", compared.branches) };
     assert_eq!(dropped.newly_accepted, [(second.seq, second.day, second.tool)]);
     assert_eq!(dropped.call_differences.len(), 1);
-    let [(56, what, refusal)] = &twice.rejected[..] else { panic!("{twice:?}") };
-    assert_eq!(what, "start_research_project");
-    assert!(refusal.message.contains("running"), "{refusal}");
+    let [RejectedDecision { seq, day: 56, name, rejection }] = &twice.rejected[..] else {
+        panic!("{twice:?}")
+    };
+    assert_eq!((*seq, name.as_str()), (Some(first.seq), "start_research_project"));
+    assert!(rejection.message.contains("running"), "{rejection}");
+}
+
+#[test]
+fn every_edit_is_checked_before_the_simulation() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_run(runs.path(), Mode::Debug);
+    let mut what_if = open_what_if(&session);
+    let decided = what_if.decisions(5).expect("decisions");
+    let line = |tool: ToolId, accepted: bool| {
+        let mut calls = decided.iter().filter_map(RecordedDecision::call);
+        calls.find(|call| (call.tool, call.accepted) == (tool, accepted)).expect("a call").seq
+    };
+    let (price, rejected) = (line(ToolId::SetPrices, true), line(ToolId::StartResearchProject, false));
+    let cases = [
+        (format!("change {price} {{\"B\": 20}}"), None),
+        (format!("change {price} {{\"B\": 0}}"), Some("edited_twice")),
+        (format!("change {rejected} {{\"tier\": 99}}"), Some("out_of_range")),
+        ("change 1 {\"B\": 20}".to_owned(), Some("line_unknown")),
+        (format!("drop {rejected}"), Some("edited_twice")),
+        ("set_prices B=-3".to_owned(), Some("price_not_positive")),
+        ("set_prices Q=3".to_owned(), Some("unknown_argument")),
+        ("set_daily_spend operations=1e12".to_owned(), Some("amount_too_large")),
+        ("in 2 set_prices B=3".to_owned(), Some("week_unknown")),
+        ("set_targeted_ad_spend {\"linkedin\": {\"E9\": 3}}".to_owned(), Some("unknown_group")),
+        // The group can be discovered in the meantime.
+        ("in 7 set_targeted_ad_spend {\"linkedin\": {\"E9\": 3}}".to_owned(), None),
+        ("keep set_prices".to_owned(), None),
+    ];
+    let edits: Vec<DecisionEdit> = cases.iter().map(|(text, _)| text.parse().expect(text)).collect();
+    let found = what_if.check(5, &edits, &continue_progress).expect("an answer").expect("it is not stopped");
+    for ((text, expected), refusal) in cases.iter().zip(&found) {
+        assert_eq!(refusal.as_ref().map(|refusal| refusal.code), *expected, "{text}: {refusal:?}");
+    }
+    let alone = |text: String| {
+        let edits = [text.parse().expect("an edit")];
+        open_what_if(&session).check(5, &edits, &continue_progress).expect("an answer").expect("not stopped")
+    };
+    let code = |text: String| alone(text)[0].as_ref().map(|refusal| refusal.code);
+    assert_eq!(code(format!("change {price} {{\"B\": 0}}")), Some("price_not_positive"));
+    assert_eq!(code(format!("drop {rejected}")), Some("no_effect"));
+    assert_eq!(code(format!("drop {price}")), None);
+}
+
+#[test]
+fn history_reproduces_the_settings_before_and_after_each_decision() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = play_run(runs.path(), Mode::Debug);
+    let calls = [
+        ("set_targeted_ad_spend", json!({"linkedin": {"S1": 40}})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S1": 25}}})),
+        ("set_promotion", json!({"by_group": {"S1": 2}})),
+        ("set_promotion", json!({"global_promotion": 1})),
+        ("set_daily_spend", json!({"development": 70})),
+        ("set_prices", json!({"B": 33})),
+    ];
+    for (tool, args) in calls {
+        session.call(tool, &args, Via::Plain).expect(tool);
+    }
+    session.undo(Via::Plain).expect("an undo");
+    let history = open_what_if(&session).history().expect("decisions");
+    let present = session.day() / 7 + 1;
+    for tool in ToolId::all() {
+        let now = session.company().current_arguments(tool.name());
+        assert_eq!(history.values_in_week(tool, present), now, "{tool}");
+    }
+    let week: Vec<&RecordedCall> =
+        history.decisions_of_week(present).filter_map(RecordedDecision::call).collect();
+    assert_eq!(week.len(), 5, "without the undone price");
+    assert_eq!(history.values_before(week[1])["targeted_spend"], json!({"linkedin": {"S1": 40}}));
+    assert_eq!(history.values_in_week(ToolId::SetPrices, 1)["B"], json!(25));
 }
 
 #[test]
@@ -198,6 +271,7 @@ fn unknown_weeks_lines_and_customers_are_rejected() {
     assert_eq!(code(5, None, &[parse_edits(&["drop 1"])]), "line_unknown");
     assert_eq!(code(5, None, &[parse_edits(&["in 4 set_prices B=3"])]), "week_unknown");
     assert_eq!(code(5, None, &vec![parse_edits(&["set_prices * 2"]); 4]), "too_many_alternatives");
+    assert_eq!(code(5, None, &[parse_edits(&["set_prices B=-3"])]), "price_not_positive");
     let refused =
         create_branch_with_decisions(&session, 5, &parse_edits(&["drop 1"]), Mode::Debug, &mut |_| {
             ControlFlow::Continue(())
@@ -481,15 +555,11 @@ fn offers_reach_the_same_enterprises_when_lead_counts_change() {
         let AdoptedBranch { session: branch, rejected: refused } = adopted.expect("a branch");
         let (reached, under) = sent_offers(&branch);
         assert_ne!(under, numbers, "{alternative}");
-        let is_absent = |(_, _, refusal): &(u32, String, Rejection)| {
-            refusal.message.contains("does not exist in this branch")
-        };
-        let absent = refused.iter().filter(|refused| is_absent(refused)).count();
-        assert_eq!(
-            branch_figures.rejected.iter().filter(|refused| is_absent(refused)).count(),
-            absent,
-            "{alternative}"
-        );
+        let is_absent = |refusal: &Rejection| refusal.message.contains("does not exist in this branch");
+        let absent = refused.iter().filter(|(_, _, refusal)| is_absent(refusal)).count();
+        let compared_absent =
+            branch_figures.rejected.iter().filter(|refused| is_absent(&refused.rejection)).count();
+        assert_eq!(compared_absent, absent, "{alternative}");
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");
         assert!(reached.iter().all(|offer| made.contains(offer)), "{alternative}");
         let rejected = refused.len() - absent;

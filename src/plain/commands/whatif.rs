@@ -14,8 +14,8 @@ use novamind_insight::{
 };
 use novamind_record::trajectory::record::DetachCause;
 use novamind_report::whatif::{
-    branch_line, branch_name, comparison_table, describe_bankruptcies, describe_decisions, difference_line,
-    futures_heading, futures_table, heading, related_run_line,
+    DecisionNotation, branch_line, branch_name, comparison_table, describe_bankruptcies, describe_decisions,
+    difference_line, futures_heading, futures_table, heading, related_run_line,
 };
 use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Interface, Session};
@@ -339,8 +339,10 @@ fn parse_question(words: &str, column: usize) -> Result<WhatIfQuestion, ParseErr
 fn comparison_to_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> String {
     let mut text = heading(comparison, days);
     for (number, branch) in comparison.branches.iter().enumerate() {
-        text += &format!("\n{}", branch_line(number, branch));
-        text.extend(describe_decisions(branch, days).iter().map(|line| format!("\n     {line}")));
+        let name = branch_name(&branch.edits);
+        text += &format!("\n{}", branch_line(comparison, number, &name, days));
+        let decisions = describe_decisions(branch, days, DecisionNotation::Calls);
+        text.extend(decisions.iter().map(|line| format!("\n     {line}")));
     }
     let (headers, rows) = comparison_table(comparison, days);
     text += &format!("\n\n{}", align_columns(&headers, &rows));
@@ -379,7 +381,7 @@ fn comparison_to_json(comparison: &BranchComparison, futures: Option<&Futures>, 
         json!({
             "name": branch_name(&branch_figures.edits),
             "differs_on": branch_figures.first_different_day,
-            "decisions": describe_decisions(branch_figures, days),
+            "decisions": describe_decisions(branch_figures, days, DecisionNotation::Calls),
             "days": days_of,
             "figures": Value::Object(curves.collect()),
         })

@@ -6,10 +6,13 @@ use crate::action::Action;
 use novamind_insight::{BranchComparison, BranchFigure, DecisionEdit, Futures};
 use novamind_record::figures::FigureUnit;
 use novamind_report::whatif::{
-    branch_line, comparison_cell, comparison_cell_lines, describe_bankruptcies, describe_decisions,
-    difference_line, futures_cell, futures_cell_lines, futures_heading, heading, milestone_label,
+    DecisionNotation, branch_line, comparison_cell, comparison_cell_lines, describe_bankruptcies,
+    describe_decisions, difference_line, futures_cell, futures_cell_lines, futures_heading, milestone_label,
+    period, unplayed_weeks_line,
 };
+use novamind_session::EnterpriseNames;
 use novamind_tui::canvas::{Canvas, Click, row_rects, truncate_to_width};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::draw_chart;
 use novamind_tui::widgets::{AxisUnit, Curve, XAxis, YAxis};
@@ -17,7 +20,7 @@ use novamind_tui::widgets::{AxisUnit, Curve, XAxis, YAxis};
 const MIN_CHART_ROWS: u16 = 6;
 const MAX_CHART_ROWS: u16 = 16;
 
-const WEEK_COLUMN_WIDTH: u16 = 10;
+const WEEK_HEADER: &str = "after week";
 
 pub(super) struct ComparisonView {
     comparison: BranchComparison,
@@ -94,7 +97,14 @@ impl ComparisonView {
         }
     }
 
-    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    /// Draws the comparison. `labels` are the names of the branches.
+    pub(super) fn draw(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        labels: &[String],
+        names: &EnterpriseNames,
+    ) {
         let mut rest = area;
         let lines = self.lines_per_milestone(area);
         let milestones = self.comparison.milestone_days(self.days_per_week).len() * lines;
@@ -102,28 +112,30 @@ impl ComparisonView {
         // In a small window, the first line is omitted to leave space for the table.
         if area.height > table + self.comparison.branches.len() as u16 {
             let row = split_top(&mut rest, 1);
-            let heading = heading(&self.comparison, self.days_per_week);
+            let heading = period(&self.comparison, self.days_per_week);
             canvas.draw_text(row, &truncate_to_width(&heading, row.width as usize), Role::Dim);
         }
-        self.draw_branches(canvas, &mut rest);
+        self.draw_branches(canvas, &mut rest, labels);
         let room = rest.height.saturating_sub(table + 2);
         if room >= MIN_CHART_ROWS {
             let height = room.saturating_sub(room / 3).min(MAX_CHART_ROWS);
             self.draw_chart(canvas, split_top(&mut rest, height));
         }
         self.draw_table(canvas, split_top(&mut rest, table), lines);
-        let texts = self.selection_lines();
-        for (row, line) in row_rects(rest).zip(&texts) {
-            canvas.draw_text(row, &truncate_to_width(line, row.width as usize), Role::Dim);
+        let texts = self.selection_lines(names);
+        let lines = texts.iter().flat_map(|text| wrap(text, rest.width as usize));
+        for (row, line) in row_rects(rest).zip(lines) {
+            canvas.draw_text(row, &line, Role::Dim);
         }
     }
 
-    fn draw_branches(&self, canvas: &mut Canvas<'_>, rest: &mut Rect) {
-        for (number, branch) in self.comparison.branches.iter().enumerate() {
+    fn draw_branches(&self, canvas: &mut Canvas<'_>, rest: &mut Rect, labels: &[String]) {
+        for number in 0..self.comparison.branches.len() {
             let row = split_top(rest, 1);
             let here = number == self.selected;
             let mark = if here { "›" } else { " " };
-            let text = format!("{mark} {}", branch_line(number, branch));
+            let label = labels.get(number).map_or("", String::as_str);
+            let text = format!("{mark} {}", branch_line(&self.comparison, number, label, self.days_per_week));
             let role = if here { Role::Selection } else { Role::Series(number) };
             canvas.draw_text(row, &truncate_to_width(&text, row.width as usize), role);
             canvas.register_click(row, Click::Row(0, number));
@@ -158,20 +170,29 @@ impl ComparisonView {
                 AxisUnit::Number
             }
         };
-        let x = XAxis { format: &|day| format!("day {day:.0}"), required_values: &[] };
+        // The end of the record is marked, because later days were not played.
+        let end = [f64::from(self.comparison.recorded_until)];
+        let is_inside =
+            (self.comparison.from..self.comparison.until).contains(&self.comparison.recorded_until);
+        let required_values = if is_inside { &end[..] } else { &[] };
+        let format = |day: f64| match end.contains(&day) && is_inside {
+            true => format!("played to day {day:.0}"),
+            false => format!("day {day:.0}"),
+        };
+        let x = XAxis { format: &format, required_values };
         draw_chart(canvas, area, &lines, &x, &YAxis { unit, required_values: &[] });
     }
 
     fn draw_table(&self, canvas: &mut Canvas<'_>, area: Rect, lines: usize) {
         let figure = self.shown_figure();
         let days = self.comparison.milestone_days(self.days_per_week);
-        let first = WEEK_COLUMN_WIDTH.min(area.width);
+        let first = self.week_column_width().min(area.width);
         let width = (area.width - first) / self.comparison.branches.len().max(1) as u16;
         let place =
             |row: Rect, number: usize| Rect { x: row.x + first + number as u16 * width, width, ..row };
         let mut rows = row_rects(area);
         let Some(header) = rows.next() else { return };
-        canvas.draw_text(header, "after week", Role::Header);
+        canvas.draw_text(header, WEEK_HEADER, Role::Header);
         for number in 0..self.comparison.branches.len() {
             canvas.draw_text(place(header, number), &format!(" {number}"), Role::Header);
         }
@@ -187,6 +208,13 @@ impl ComparisonView {
                 }
             }
         }
+    }
+
+    fn week_column_width(&self) -> u16 {
+        let days = self.comparison.milestone_days(self.days_per_week).into_iter();
+        let labels =
+            days.map(|day| milestone_label(&self.comparison, day, self.days_per_week).chars().count());
+        labels.chain([WEEK_HEADER.len()]).max().unwrap_or(0) as u16
     }
 
     /// Formats a figure of a branch at a milestone in one or two lines.
@@ -206,8 +234,8 @@ impl ComparisonView {
 
     /// Returns the number of lines per milestone: two if a figure does not fit into one line.
     fn lines_per_milestone(&self, area: Rect) -> usize {
-        let width =
-            area.width.saturating_sub(WEEK_COLUMN_WIDTH) / self.comparison.branches.len().max(1) as u16;
+        let width = area.width.saturating_sub(self.week_column_width())
+            / self.comparison.branches.len().max(1) as u16;
         let days = self.comparison.milestone_days(self.days_per_week);
         let cells = (0..self.comparison.branches.len())
             .flat_map(|number| days.iter().map(move |day| (number, *day)))
@@ -220,7 +248,7 @@ impl ComparisonView {
     }
 
     /// Describes the uncertainty of the difference and the edits of the selected branch.
-    fn selection_lines(&self) -> Vec<String> {
+    fn selection_lines(&self, names: &EnterpriseNames) -> Vec<String> {
         let Some(branch) = self.comparison.branches.get(self.selected) else { return Vec::new() };
         let mut texts = Vec::new();
         if let Some(futures) = &self.futures {
@@ -230,7 +258,8 @@ impl ComparisonView {
                 (0..self.comparison.branches.len()).filter_map(|at| describe_bankruptcies(futures, at)),
             );
         }
-        texts.extend(describe_decisions(branch, self.days_per_week));
+        texts.extend(describe_decisions(branch, self.days_per_week, DecisionNotation::Words(names)));
+        texts.extend(unplayed_weeks_line(&self.comparison, self.days_per_week));
         texts
     }
 }

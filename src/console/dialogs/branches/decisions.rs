@@ -1,43 +1,69 @@
-//! The decisions of the run, and the edits of each alternative.
+//! The decisions of a week, and the changes of each alternative.
 
-use crossterm::event::KeyEvent;
-use ratatui::layout::Rect;
-
-use crate::action::Action;
-use novamind_insight::{DecisionEdit, EDIT_SYNTAX, MAX_ALTERNATIVES, RecordedDecision};
-use novamind_tui::canvas::{Canvas, Click, row_rects, truncate_to_width};
-use novamind_tui::theme::Role;
+use super::changes::{
+    Change, ListedChange, Problem, Treatment, describe_decision, describe_treatment, describe_week,
+};
+use super::picker::NewDecision;
+use crate::action::Scope;
+use crate::screens::tools::decision_form::DecisionForm;
+use novamind_insight::{BranchComparison, DecisionEdit, DecisionHistory, RecordedDecision};
+use novamind_session::EnterpriseNames;
+use novamind_tools::Rejection;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 
-const REJECTED_CALL_ERROR: &str = "a rejected call had no effect; change its arguments instead";
-const PARAMETER_EDIT_ERROR: &str = "omit this line, and add another value with set KEY VALUE";
+/// Maximum number of weeks with decisions that an empty week offers.
+const MAX_OFFERED_WEEKS: usize = 4;
 
+/// A row of the list.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum DecisionRow {
-    /// Index of an edit that does not change a recorded call.
-    Edit(usize),
-    /// Index of a recorded decision.
-    Recorded(usize),
+pub(super) enum Row {
+    /// The recorded decision in a line of the trajectory.
+    Decision(u64),
+    /// The change with an index in the current alternative, if it has no recorded decision in the displayed week.
+    Change(usize),
+    /// Another week with decisions, offered if the displayed week has none.
+    Week(u32),
+    /// Opens the list of decisions that can be added.
+    Add,
 }
 
-struct DecisionInput {
-    field: TextField,
-    /// The recorded line whose call is edited, or `None` for an added decision.
-    line: Option<u64>,
+/// The target of a factor or a form.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Target {
+    /// The recorded decision in a line.
+    Decision(u64),
+    /// The change with an index.
+    Change(usize),
+    /// A decision that is added.
+    New(NewDecision),
 }
 
+/// Input that the user has opened.
+pub(super) enum Input {
+    /// The list of decisions that can be added, with the selected row.
+    Picker(usize),
+    /// A field for a factor. `cancelled` is the treatment of the decision if the user cancels.
+    Factor { target: Target, field: TextField, cancelled: Treatment },
+    /// The form of a tool. `cancelled` is the treatment of the decision if the user cancels.
+    Form { target: Target, form: Box<DecisionForm>, cancelled: Treatment },
+    /// A field for a parameter and its value.
+    Parameter { target: Target, field: TextField },
+}
+
+/// The page part that lists and changes decisions.
 pub(super) struct DecisionList {
-    week: u32,
-    last_week: u32,
-    days_per_week: u32,
+    pub(super) week: u32,
+    pub(super) last_week: u32,
     /// The recorded decisions, or `None` until they are loaded.
-    recorded: Option<Vec<RecordedDecision>>,
-    is_rejected: bool,
-    alternatives: Vec<Vec<DecisionEdit>>,
-    current: usize,
-    selected: usize,
-    input: Option<DecisionInput>,
+    pub(super) history: Option<Box<DecisionHistory>>,
+    pub(super) alternatives: Vec<Vec<ListedChange>>,
+    pub(super) current: usize,
+    pub(super) selected: usize,
+    pub(super) input: Option<Input>,
+    /// A message for the selected row.
+    pub(super) notice: Option<String>,
+    /// Whether the changes were edited since the last check.
+    pub(super) is_unchecked: bool,
 }
 
 impl DecisionList {
@@ -45,274 +71,296 @@ impl DecisionList {
         DecisionList {
             week,
             last_week,
-            days_per_week: 1,
-            recorded: None,
-            is_rejected: false,
+            history: None,
             alternatives: vec![Vec::new()],
             current: 0,
             selected: 0,
             input: None,
+            notice: None,
+            is_unchecked: false,
         }
     }
 
+    /// Returns the displayed week.
     pub(super) fn week(&self) -> u32 {
         self.week
     }
 
     pub(super) fn days_per_week(&self) -> u32 {
-        self.days_per_week
+        self.history.as_ref().map_or(1, |history| history.days_per_week())
     }
 
-    pub(super) fn set_recorded(&mut self, past: Vec<RecordedDecision>, days_per_week: u32) {
-        (self.recorded, self.days_per_week) = (Some(past), days_per_week);
+    pub(super) fn set_history(&mut self, history: Box<DecisionHistory>) {
+        self.history = Some(history);
+        self.select(self.selected);
     }
 
-    pub(super) fn mark_rejected(&mut self) {
-        self.is_rejected = self.recorded.is_none();
+    pub(super) fn history(&self) -> Option<&DecisionHistory> {
+        self.history.as_deref()
     }
 
-    /// Returns the alternatives that have edits.
-    pub(super) fn alternatives(&self) -> Vec<Vec<DecisionEdit>> {
-        self.alternatives.iter().filter(|decision_edits| !decision_edits.is_empty()).cloned().collect()
+    pub(super) fn selected(&self) -> usize {
+        self.selected
     }
 
-    pub(super) fn is_typing(&self) -> bool {
-        self.input.is_some()
-    }
-
-    /// Returns whether there are decisions to edit, or the decisions are not loaded yet.
-    pub(super) fn has_rows(&self) -> bool {
-        self.recorded.is_none() || !self.rows().is_empty()
+    /// Returns whether the displayed week has decisions, or the decisions are not loaded yet.
+    pub(super) fn has_decisions(&self) -> bool {
+        self.history.is_none() || matches!(self.rows().first(), Some(Row::Decision(_)))
     }
 
     pub(super) fn position_label(&self) -> String {
-        format!("alternative {} of {} · ‹ › change week", self.current + 1, self.alternatives.len())
+        format!("alternative {} of {} · ‹ › week", self.current + 1, self.alternatives.len())
     }
 
-    fn current_edits(&mut self) -> &mut Vec<DecisionEdit> {
-        &mut self.alternatives[self.current]
+    /// Returns the changes of the current alternative.
+    pub(super) fn changes(&self) -> &[ListedChange] {
+        &self.alternatives[self.current]
     }
 
-    fn recorded(&self) -> &[RecordedDecision] {
-        self.recorded.as_deref().unwrap_or_default()
+    /// Returns the first changed week of all alternatives, at which the branches start.
+    pub(super) fn start_week(&self) -> u32 {
+        let weeks = self
+            .history()
+            .into_iter()
+            .flat_map(|history| self.alternatives.iter().flatten().map(|listed| listed.change.week(history)));
+        weeks.min().unwrap_or(self.week)
     }
 
-    /// Returns the edits, followed by the recorded decisions from the start week on.
-    fn rows(&self) -> Vec<DecisionRow> {
-        let edits = self.alternatives[self.current].iter().enumerate();
-        let free = edits.filter(|(_, edit)| source_line(edit).is_none()).map(|(at, _)| DecisionRow::Edit(at));
-        let from = (self.week - 1) * self.days_per_week;
-        let past = self
-            .recorded()
-            .iter()
-            .enumerate()
-            .filter(|(_, recorded_decision)| recorded_decision.day() >= from);
-        free.chain(past.map(|(at, _)| DecisionRow::Recorded(at))).collect()
+    /// Returns whether an alternative has changes.
+    pub(super) fn has_changes(&self) -> bool {
+        self.alternatives.iter().any(|changes| !changes.is_empty())
     }
 
-    fn position_of_edit(&self, line: u64) -> Option<usize> {
-        self.alternatives[self.current].iter().position(|edit| source_line(edit) == Some(line))
+    fn edits_of(&self, changes: &[ListedChange]) -> Vec<DecisionEdit> {
+        let Some(history) = self.history() else { return Vec::new() };
+        changes.iter().filter_map(|listed| listed.change.edit(history)).collect()
+    }
+
+    /// Returns the edits of the alternatives that have changes.
+    pub(super) fn alternatives(&self) -> Vec<Vec<DecisionEdit>> {
+        self.changed_alternatives().map(|changes| self.edits_of(changes)).collect()
+    }
+
+    fn changed_alternatives(&self) -> impl Iterator<Item = &Vec<ListedChange>> {
+        self.alternatives.iter().filter(|changes| !changes.is_empty())
+    }
+
+    /// Describes each alternative that has changes.
+    pub(super) fn alternative_names(&self, names: &EnterpriseNames) -> Vec<String> {
+        let (start, Some(history)) = (self.start_week(), self.history()) else { return Vec::new() };
+        let describe = |listed: &ListedChange| {
+            let text = listed.change.describe(history, names, start);
+            match listed.change {
+                Change::AllWeeks { .. } => text,
+                _ => format!("week {}: {text}", listed.change.week(history)),
+            }
+        };
+        self.changed_alternatives()
+            .map(|changes| changes.iter().map(describe).collect::<Vec<_>>().join("; "))
+            .collect()
+    }
+
+    /// Returns the first week and the edits of the current alternative, if they were changed since the last check.
+    pub(super) fn take_unchecked_edits(&mut self) -> Option<(u32, Vec<DecisionEdit>)> {
+        let is_unchecked = std::mem::take(&mut self.is_unchecked) && !self.changes().is_empty();
+        is_unchecked.then(|| (self.start_week(), self.edits_of(self.changes())))
+    }
+
+    /// Stores the result of a check of the current alternative.
+    pub(super) fn set_checked(&mut self, edits: &[DecisionEdit], refused: Vec<Option<Rejection>>) {
+        if self.edits_of(self.changes()) != edits {
+            return;
+        }
+        for (listed, refusal) in self.alternatives[self.current].iter_mut().zip(refused) {
+            listed.problem = refusal.map(|refusal| Problem::Invalid(refusal.message));
+        }
+    }
+
+    /// Marks the changes that the simulated company rejected.
+    pub(super) fn set_compared(&mut self, comparison: &BranchComparison) {
+        let Some(history) = self.history.as_deref() else { return };
+        let days = history.days_per_week();
+        let changed = self.alternatives.iter_mut().filter(|changes| !changes.is_empty());
+        for (changes, branch) in changed.zip(comparison.branches.iter().skip(1)) {
+            for listed in changes {
+                let rejected = branch.rejected.iter().find(|rejected| match &listed.change {
+                    Change::Recorded { line, .. } => rejected.seq == Some(*line),
+                    Change::Added { week, tool, .. } => {
+                        let day = (week - 1) * days;
+                        (rejected.seq, rejected.day, rejected.name.as_str()) == (None, day, tool.name())
+                    }
+                    Change::Parameter { key, .. } => rejected.name == *key,
+                    Change::AllWeeks { .. } => false,
+                });
+                listed.problem =
+                    rejected.map(|rejected| Problem::Rejected(rejected.rejection.message.clone()));
+            }
+        }
+    }
+
+    /// Selects the first change that cannot be simulated. Returns whether there is one.
+    pub(super) fn select_invalid_change(&mut self) -> bool {
+        let is_invalid = |listed: &ListedChange| matches!(listed.problem, Some(Problem::Invalid(_)));
+        let place = self.alternatives.iter().enumerate().find_map(|(alternative, changes)| {
+            changes.iter().position(is_invalid).map(|change| (alternative, change))
+        });
+        let Some((alternative, change)) = place else { return false };
+        self.current = alternative;
+        self.go_to_change(change);
+        true
+    }
+
+    /// Returns the rows of the displayed week, followed by the changes of other weeks.
+    pub(super) fn rows(&self) -> Vec<Row> {
+        let Some(history) = self.history() else { return Vec::new() };
+        let mut rows: Vec<Row> =
+            history.decisions_of_week(self.week).map(|decision| Row::Decision(decision.seq())).collect();
+        if rows.is_empty() {
+            rows.extend(self.weeks_with_decisions(history).map(Row::Week));
+        }
+        let is_here = |listed: &ListedChange| listed.change.week(history) == self.week;
+        let free =
+            |listed: &ListedChange| !matches!(listed.change, Change::Recorded { .. }) || !is_here(listed);
+        let mut others: Vec<usize> =
+            (0..self.changes().len()).filter(|at| free(&self.changes()[*at])).collect();
+        others.sort_by_key(|at| !is_here(&self.changes()[*at]));
+        rows.extend(others.into_iter().map(Row::Change));
+        rows.push(Row::Add);
+        rows
+    }
+
+    /// Returns the nearest earlier weeks with decisions, or the first later weeks if there are none.
+    fn weeks_with_decisions<'a>(&self, history: &'a DecisionHistory) -> impl Iterator<Item = u32> + use<'a> {
+        let has_decisions = |week: &u32| history.decisions_of_week(*week).next().is_some();
+        let earlier: Vec<u32> = (1..self.week).rev().filter(has_decisions).take(MAX_OFFERED_WEEKS).collect();
+        let later = (self.week + 1..=self.last_week).filter(has_decisions).take(MAX_OFFERED_WEEKS);
+        let weeks = if earlier.is_empty() { later.collect() } else { earlier };
+        weeks.into_iter()
+    }
+
+    /// Returns the treatment of a recorded decision in the current alternative.
+    pub(super) fn treatment(&self, wanted: u64) -> Treatment {
+        let found = self.changes().iter().find_map(|listed| match &listed.change {
+            Change::Recorded { line, treatment } if *line == wanted => Some(treatment.clone()),
+            _ => None,
+        });
+        found.unwrap_or(Treatment::Keep)
+    }
+
+    /// Returns the refused change of a row, if there is one.
+    pub(super) fn problem(&self, row: Row) -> Option<&Problem> {
+        let listed = match row {
+            Row::Decision(wanted) => self
+                .changes()
+                .iter()
+                .find(|listed| matches!(listed.change, Change::Recorded { line, .. } if line == wanted)),
+            Row::Change(at) => self.changes().get(at),
+            Row::Week(_) | Row::Add => None,
+        };
+        listed?.problem.as_ref()
     }
 
     pub(super) fn select(&mut self, row: usize) {
         self.selected = row.min(self.rows().len().saturating_sub(1));
     }
 
-    /// Handles an action in the list of decisions. Returns an error message if the action is not possible.
-    pub(super) fn handle_action(&mut self, action: Action) -> Result<(), String> {
-        match action {
-            Action::Commit => return self.commit(),
-            Action::Discard => self.input = None,
-            Action::Up => self.select(self.selected.saturating_sub(1)),
-            Action::Down => self.select(self.selected + 1),
-            Action::PageUp => self.select(self.selected.saturating_sub(10)),
-            Action::PageDown => self.select(self.selected + 10),
-            Action::First => self.select(0),
-            Action::Last => self.select(usize::MAX),
-            Action::Left | Action::Right => self.set_start_week(match action {
-                Action::Left => self.week.saturating_sub(1),
-                _ => self.week + 1,
-            }),
-            Action::NextAlternative => self.next_alternative()?,
-            Action::AddDecision => {
-                self.input = Some(DecisionInput { field: TextField::default(), line: None })
-            }
-            Action::OmitDecision => return self.toggle_selected(),
-            Action::Open => return self.edit_selected(),
-            _ => {}
-        }
-        Ok(())
+    pub(super) fn select_row(&mut self, wanted: Row) {
+        let row = self.rows().iter().position(|row| *row == wanted);
+        self.select(row.unwrap_or(self.selected));
     }
 
-    /// Moves the start of the branches to another week. Edits of earlier decisions are dropped.
-    fn set_start_week(&mut self, week: u32) {
-        self.week = week.clamp(1, self.last_week);
-        let from = (self.week - 1) * self.days_per_week;
-        let past = self.recorded.as_deref().unwrap_or_default();
-        let later = |line: u64| {
-            past.iter()
-                .any(|recorded_decision| recorded_decision.seq() == line && recorded_decision.day() >= from)
-        };
-        for edits in &mut self.alternatives {
-            edits.retain(|edit| source_line(edit).is_none_or(later));
+    pub(super) fn set_treatment(&mut self, wanted: u64, treatment: Treatment) {
+        let changes = &mut self.alternatives[self.current];
+        let is_it =
+            |listed: &ListedChange| matches!(listed.change, Change::Recorded { line, .. } if line == wanted);
+        let place = changes.iter().position(is_it);
+        let change = ListedChange::from(Change::Recorded { line: wanted, treatment: treatment.clone() });
+        match (place, treatment) {
+            (Some(at), Treatment::Keep) => drop(changes.remove(at)),
+            (Some(at), _) => changes[at] = change,
+            (None, Treatment::Keep) => {}
+            (None, _) => changes.push(change),
         }
+        self.is_unchecked = true;
+    }
+
+    pub(super) fn put_change(&mut self, target: Target, change: Change) {
+        let changes = &mut self.alternatives[self.current];
+        let at = match target {
+            Target::Change(at) if at < changes.len() => {
+                changes[at] = change.into();
+                at
+            }
+            _ => {
+                changes.push(change.into());
+                changes.len() - 1
+            }
+        };
+        self.is_unchecked = true;
+        self.select_row(Row::Change(at));
+    }
+
+    pub(super) fn remove_change(&mut self, at: usize) {
+        self.alternatives[self.current].remove(at);
+        self.is_unchecked = true;
         self.select(self.selected);
     }
 
-    fn next_alternative(&mut self) -> Result<(), String> {
-        let is_last = self.current + 1 == self.alternatives.len();
-        let is_empty = self.alternatives[self.current].is_empty();
-        if is_last && !is_empty && self.alternatives.len() < MAX_ALTERNATIVES {
-            self.alternatives.push(Vec::new());
-        }
-        let before = self.current;
-        self.current = (self.current + 1) % self.alternatives.len();
-        self.select(0);
-        match (before == self.current, is_empty) {
-            (true, true) => Err("change a decision before you add another alternative".to_owned()),
-            _ => Ok(()),
-        }
+    /// Shows the week of a change and selects its row.
+    pub(super) fn go_to_change(&mut self, at: usize) {
+        let (Some(history), Some(listed)) = (self.history.as_deref(), self.changes().get(at)) else { return };
+        let row = match listed.change {
+            Change::Recorded { line, .. } => Row::Decision(line),
+            _ => Row::Change(at),
+        };
+        self.week = listed.change.week(history);
+        self.select_row(row);
     }
 
-    /// Omits or restores the selected recorded decision, or removes the selected edit. Returns an error message for a rejected call.
-    fn toggle_selected(&mut self) -> Result<(), String> {
-        match self.rows().get(self.selected) {
-            Some(DecisionRow::Edit(at)) => drop(self.current_edits().remove(*at)),
-            Some(DecisionRow::Recorded(at)) => {
-                let line = self.recorded()[*at].seq();
-                let is_rejected = self.recorded()[*at].call().is_some_and(|call| !call.accepted);
-                match self.position_of_edit(line) {
-                    Some(edit) => drop(self.current_edits().remove(edit)),
-                    None if is_rejected => return Err(REJECTED_CALL_ERROR.to_owned()),
-                    None => self.current_edits().push(DecisionEdit::Drop(line)),
+    /// Returns the scopes of the open input, or `None` if the list has the focus.
+    pub(super) fn input_scopes(&self) -> Option<Vec<Scope>> {
+        Some(match self.input.as_ref()? {
+            Input::Picker(_) => vec![Scope::Decisions, Scope::List],
+            Input::Factor { .. } | Input::Parameter { .. } => vec![Scope::Field],
+            Input::Form { form, .. } => form.scopes(),
+        })
+    }
+
+    /// Describes a row: its status and its text.
+    pub(super) fn row_texts(&self, row: Row, names: &EnterpriseNames) -> (String, String) {
+        let Some(history) = self.history() else { return Default::default() };
+        match row {
+            Row::Decision(line) => {
+                let Some(decision) = history.decision(line) else { return Default::default() };
+                let treatment = self.treatment(line);
+                let text = match &treatment {
+                    Treatment::Scale(_) | Treatment::Replace(_) => {
+                        describe_treatment(decision, &treatment, history, names)
+                    }
+                    Treatment::Keep | Treatment::LeaveOut => describe_decision(decision, history, names),
+                };
+                let is_rejected = decision.call().is_some_and(|call| !call.accepted);
+                let note = match decision {
+                    RecordedDecision::Parameter { from_day: Some(day), .. } => format!(" from day {day}"),
+                    _ if is_rejected && treatment == Treatment::Keep => " (rejected in your run)".to_owned(),
+                    _ => String::new(),
+                };
+                (treatment.label(), format!("{text}{note}"))
+            }
+            Row::Change(at) => {
+                let change = &self.changes()[at].change;
+                let text = change.describe(history, names, self.start_week());
+                match (change, change.week(history)) {
+                    (Change::AllWeeks { .. }, _) => ("from then".to_owned(), text),
+                    (Change::Added { .. }, week) if week == self.week => {
+                        ("add".to_owned(), text.strip_prefix("add ").unwrap_or(&text).to_owned())
+                    }
+                    (_, week) if week == self.week => ("set".to_owned(), text),
+                    (_, week) => (format!("week {week}"), text),
                 }
             }
-            None => {}
+            Row::Week(week) => (format!("week {week}"), describe_week(week, history)),
+            Row::Add => ("+".to_owned(), "add a decision".to_owned()),
         }
-        self.select(self.selected);
-        Ok(())
-    }
-
-    fn edit_selected(&mut self) -> Result<(), String> {
-        let (text, line) = match self.rows().get(self.selected) {
-            Some(DecisionRow::Edit(at)) => {
-                let edit = self.current_edits().remove(*at);
-                (edit.to_string(), None)
-            }
-            Some(DecisionRow::Recorded(at)) => {
-                let RecordedDecision::Call(call) = &self.recorded()[*at] else {
-                    return Err(PARAMETER_EDIT_ERROR.to_owned());
-                };
-                let changed =
-                    self.position_of_edit(call.seq).map(|edit| self.alternatives[self.current][edit].clone());
-                let args = match changed {
-                    Some(DecisionEdit::Change { args, .. }) => args,
-                    _ => call.args.clone(),
-                };
-                (args.to_string(), Some(call.seq))
-            }
-            None => return Ok(()),
-        };
-        self.input = Some(DecisionInput { field: TextField::with_text(text), line });
-        Ok(())
-    }
-
-    fn commit(&mut self) -> Result<(), String> {
-        let Some(typing) = &self.input else { return Ok(()) };
-        let text = typing.field.text().trim();
-        let edit: DecisionEdit = match typing.line {
-            Some(line) => format!("change {line} {text}").parse()?,
-            None => text.parse()?,
-        };
-        if let Some(at) = source_line(&edit).and_then(|line| self.position_of_edit(line)) {
-            self.current_edits().remove(at);
-        }
-        self.current_edits().push(edit);
-        self.input = None;
-        Ok(())
-    }
-
-    pub(super) fn handle_key(&mut self, key: &KeyEvent) {
-        if let Some(typing) = &mut self.input {
-            typing.field.handle_key(key);
-        }
-    }
-
-    pub(super) fn paste(&mut self, text: &str) {
-        if let Some(typing) = &mut self.input {
-            typing.field.insert(text.trim());
-        }
-    }
-
-    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        let below = 2.min(area.height);
-        let list = Rect { height: area.height - below, ..area };
-        let rows = self.rows();
-        match (&self.recorded, rows.is_empty()) {
-            (None, _) if self.is_rejected => {}
-            (None, _) => canvas.draw_text(list, "reading the record …", Role::Warning),
-            (Some(_), true) => canvas.draw_text(list, "no decisions in these weeks", Role::Dim),
-            _ => {}
-        }
-        let first = first_visible_row(self.selected, list.height as usize, rows.len());
-        for (row, (at, decision_row)) in row_rects(list).zip(rows.iter().enumerate().skip(first)) {
-            let here = at == self.selected && self.input.is_none();
-            let (text, role) = self.row_text(*decision_row);
-            if here {
-                canvas.clear(row, Role::Selection);
-            }
-            let mark = if here { "›" } else { " " };
-            let text = truncate_to_width(&format!("{mark} {text}"), row.width as usize);
-            canvas.draw_text(row, &text, if here { Role::Selection } else { role });
-            canvas.register_click(row, Click::Row(0, at));
-        }
-        let field = Rect { y: list.y + list.height + below / 2, height: below / 2, ..area };
-        self.draw_field(canvas, field);
-    }
-
-    fn draw_field(&self, canvas: &mut Canvas<'_>, row: Rect) {
-        let Some(typing) = &self.input else {
-            let forms = format!("for example {}", EDIT_SYNTAX.join("  ·  "));
-            return canvas.draw_text(row, &truncate_to_width(&forms, row.width as usize), Role::Dim);
-        };
-        let label = typing.line.map_or("decision".to_owned(), |line| format!("line {line}"));
-        canvas.draw_text(row, &label, Role::Dim);
-        let used = (label.len() as u16 + 1).min(row.width);
-        typing.field.draw(canvas, Rect { x: row.x + used, width: row.width - used, ..row });
-    }
-
-    fn row_text(&self, row: DecisionRow) -> (String, Role) {
-        let at = match row {
-            DecisionRow::Edit(at) => {
-                return (format!("+ {}", self.alternatives[self.current][at]), Role::Strong);
-            }
-            DecisionRow::Recorded(at) => at,
-        };
-        let recorded_decision = &self.recorded()[at];
-        let week = recorded_decision.day() / self.days_per_week + 1;
-        let edit =
-            self.position_of_edit(recorded_decision.seq()).map(|edit| &self.alternatives[self.current][edit]);
-        let (sign, rest, role) = match edit {
-            Some(DecisionEdit::Drop(_)) => ("×", " · omitted".to_owned(), Role::Bad),
-            Some(DecisionEdit::Change { args, .. }) => ("~", format!(" → {args}"), Role::Strong),
-            _ => {
-                let is_refused = recorded_decision.call().is_some_and(|call| !call.accepted);
-                let remark = recorded_decision.describe_status();
-                let remark = if remark.is_empty() { remark } else { format!(" · {remark}") };
-                (" ", remark, if is_refused { Role::Dim } else { Role::Text })
-            }
-        };
-        let decided = match recorded_decision {
-            RecordedDecision::Call(call) => format!("{} {}", call.tool.name(), call.args),
-            RecordedDecision::Parameter { key, value, .. } => format!("set {key} {value}"),
-        };
-        (format!("{sign} week {week:>2}  {decided}{rest}"), role)
-    }
-}
-
-fn source_line(edit: &DecisionEdit) -> Option<u64> {
-    match edit {
-        DecisionEdit::Drop(line) | DecisionEdit::Change { seq: line, .. } => Some(*line),
-        _ => None,
     }
 }

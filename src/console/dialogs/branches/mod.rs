@@ -1,7 +1,11 @@
 //! The what-if page: edits decisions from a week on and compares the results.
 
+mod changes;
 mod comparison;
 mod decisions;
+mod drawing;
+mod editing;
+mod picker;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
@@ -11,16 +15,19 @@ use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
 use comparison::ComparisonView;
-use decisions::DecisionList;
-use novamind_insight::EDIT_SYNTAX;
+use decisions::{DecisionList, Input};
+use novamind_report::decision_words::decision_name;
+use novamind_report::whatif::branch_name;
 use novamind_tools::Rejection;
-use novamind_tui::canvas::{Canvas, centered_rect};
+use novamind_tui::canvas::{Canvas, centered_rect, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_worker::branches::{BranchesAnswer, BranchesQuestion};
 use novamind_worker::question::{OutgoingQuestion, Pending};
 use novamind_worker::request::Request;
 
 const FUTURE_COUNT: u32 = 20;
+const INVALID_CHANGE: &str = "A change cannot be simulated. Correct the selected change, or remove it.";
 
 enum BranchesView {
     Decisions,
@@ -33,7 +40,11 @@ pub struct BranchesPage {
     decisions: DecisionList,
     page: BranchesView,
     asked: Pending<BranchesQuestion>,
+    /// The check of the edits of the current alternative.
+    checking: Pending<BranchesQuestion>,
     problem: Option<String>,
+    /// Whether the user was warned that closing the page discards the changes.
+    is_closing: bool,
 }
 
 impl BranchesPage {
@@ -41,22 +52,37 @@ impl BranchesPage {
     pub fn new(week: u32, last_week: u32) -> (BranchesPage, OutgoingQuestion) {
         let (pending, ask) = Pending::with_question(BranchesQuestion::Decisions);
         let decisions = DecisionList::new(week, last_week);
-        (BranchesPage { decisions, page: BranchesView::Decisions, asked: pending, problem: None }, ask)
+        let (page, checking) = (BranchesView::Decisions, Pending::default());
+        (BranchesPage { decisions, page, asked: pending, checking, problem: None, is_closing: false }, ask)
     }
 
     fn request_comparison(&mut self, futures: Option<u32>) -> DialogResponse {
+        if self.decisions.history().is_none() {
+            return DialogResponse::stay();
+        }
+        if self.decisions.select_invalid_change() {
+            self.problem =
+                Some(INVALID_CHANGE.to_owned());
+            self.page = BranchesView::Decisions;
+            return DialogResponse::stay();
+        }
         let alternatives = self.decisions.alternatives();
         if alternatives.is_empty() {
-            self.problem = Some(format!("change a decision first; for example {}", EDIT_SYNTAX[0]));
+            self.problem = Some("No decision is changed yet. Change one, or add a decision.".to_owned());
             return DialogResponse::stay();
         }
         self.page = BranchesView::Simulating;
-        let question = BranchesQuestion::Compare { week: self.decisions.week(), alternatives, futures };
+        let question = BranchesQuestion::Compare { week: self.decisions.start_week(), alternatives, futures };
         DialogResponse::stay_with(vec![Effect::Ask(self.asked.ask(question))])
     }
 
     fn go_back(&mut self) -> DialogResponse {
         match self.page {
+            BranchesView::Decisions if self.decisions.has_changes() && !self.is_closing => {
+                self.is_closing = true;
+                self.problem = Some("Closing the page discards your changes. Press the key again to close it.".to_owned());
+                DialogResponse::stay()
+            }
             BranchesView::Decisions => DialogResponse::close(),
             BranchesView::Simulating => {
                 self.asked.cancel();
@@ -72,14 +98,16 @@ impl BranchesPage {
 
     fn adopt_selected(&mut self) -> DialogResponse {
         let BranchesView::Comparison(figures) = &self.page else { return DialogResponse::stay() };
-        let (week, edits) = (self.decisions.week(), figures.selected_edits());
+        let (week, edits) = (self.decisions.start_week(), figures.selected_edits());
         DialogResponse::confirm_with(vec![Effect::Request(Request::AdoptBranch { week, edits })])
     }
 
     fn set_result(&mut self, found: Result<BranchesAnswer, Rejection>) {
         match found {
-            Ok(BranchesAnswer::Decisions(calls, days)) => self.decisions.set_recorded(calls, days),
+            Ok(BranchesAnswer::Decisions(history)) => self.decisions.set_history(history),
+            Ok(BranchesAnswer::Checked(_)) => {}
             Ok(BranchesAnswer::Compared(comparison, futures)) => {
+                self.decisions.set_compared(&comparison);
                 let figure = match &self.page {
                     BranchesView::Comparison(figures) => figures.figure(),
                     _ => 0,
@@ -89,9 +117,10 @@ impl BranchesPage {
                 self.page = BranchesView::Comparison(Box::new(figures));
             }
             Err(refusal) => {
-                self.problem = Some(refusal.message);
-                self.decisions.mark_rejected();
                 self.page = BranchesView::Decisions;
+                // The check has already stated the reason in the row of the change.
+                let is_invalid = self.decisions.select_invalid_change();
+                self.problem = Some(if is_invalid { INVALID_CHANGE.to_owned() } else { refusal.message });
             }
         }
     }
@@ -113,14 +142,14 @@ impl Dialog for BranchesPage {
     fn tour_view(&self) -> Option<DialogView> {
         let is_shown = matches!(self.page, BranchesView::Comparison(_));
         let actions = match self.page {
-            BranchesView::Decisions if self.decisions.is_typing() => vec![Action::Discard],
-            BranchesView::Decisions if !self.decisions.alternatives().is_empty() => {
-                vec![Action::SimulateBranches]
+            // An open input is closed first.
+            BranchesView::Decisions if self.decisions.input.is_some() => return None,
+            BranchesView::Decisions if self.decisions.has_changes() => vec![Action::SimulateBranches],
+            BranchesView::Decisions if !self.decisions.has_decisions() => vec![Action::Left],
+            BranchesView::Decisions if self.decisions.selected() > 0 => {
+                vec![Action::First, Action::OmitDecision, Action::SimulateBranches]
             }
-            BranchesView::Decisions if self.decisions.has_rows() => {
-                vec![Action::OmitDecision, Action::SimulateBranches]
-            }
-            BranchesView::Decisions => vec![Action::Left],
+            BranchesView::Decisions => vec![Action::OmitDecision, Action::SimulateBranches],
             BranchesView::Simulating | BranchesView::Comparison(_) => Vec::new(),
         };
         Some(DialogView { content: DialogContent::WhatIf, is_shown, actions })
@@ -128,45 +157,62 @@ impl Dialog for BranchesPage {
 
     fn scopes(&self) -> Vec<Scope> {
         match self.page {
-            BranchesView::Decisions if self.decisions.is_typing() => vec![Scope::Field],
-            BranchesView::Decisions => vec![Scope::Decisions, Scope::List, Scope::Dialog],
+            BranchesView::Decisions => self
+                .decisions
+                .input_scopes()
+                .unwrap_or_else(|| vec![Scope::Decisions, Scope::List]),
             BranchesView::Simulating => vec![Scope::Dialog],
             BranchesView::Comparison(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
         }
     }
 
     fn hints(&self) -> Vec<Action> {
-        match self.page {
-            BranchesView::Decisions if self.decisions.is_typing() => vec![Action::Commit, Action::Discard],
-            BranchesView::Decisions => vec![
+        match (&self.page, &self.decisions.input) {
+            (BranchesView::Decisions, None) => vec![
+                Action::CycleDecision,
                 Action::AddDecision,
-                Action::OmitDecision,
                 Action::SimulateBranches,
+                Action::OmitDecision,
+                Action::ScaleDecision,
+                Action::ReplaceDecision,
                 Action::NextAlternative,
-                Action::Open,
                 Action::Close,
             ],
-            BranchesView::Simulating => vec![Action::Cancel],
-            BranchesView::Comparison(_) => {
+            (BranchesView::Decisions, Some(Input::Picker(_))) => {
+                vec![Action::Open, Action::ScaleDecision, Action::OmitDecision, Action::Close]
+            }
+            (BranchesView::Decisions, Some(Input::Form { form, .. })) if !form.is_typing() => {
+                vec![Action::EditCell, Action::Apply, Action::ResetForm, Action::Close]
+            }
+            (BranchesView::Decisions, Some(Input::Form { .. })) => {
+                vec![Action::Commit, Action::CommitNext, Action::Apply, Action::Discard]
+            }
+            (BranchesView::Decisions, Some(_)) => vec![Action::Commit, Action::Discard],
+            (BranchesView::Simulating, _) => vec![Action::Cancel],
+            (BranchesView::Comparison(_), _) => {
                 vec![Action::NextFigure, Action::SimulateFutures, Action::AdoptBranch, Action::Close]
             }
         }
     }
 
-    fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         self.problem = None;
+        self.is_closing &= matches!(action, Action::Close | Action::Cancel);
         match (&mut self.page, action) {
+            (BranchesView::Decisions, action) if self.decisions.input.is_some() => {
+                self.decisions.handle_action(action, context.company);
+            }
             (_, Action::Close | Action::Cancel) => return self.go_back(),
             (BranchesView::Decisions, Action::SimulateBranches) => return self.request_comparison(None),
             (BranchesView::Comparison(_), Action::SimulateFutures) => {
                 return self.request_comparison(Some(FUTURE_COUNT));
             }
             (BranchesView::Comparison(_), Action::AdoptBranch) => return self.adopt_selected(),
-            (BranchesView::Decisions, action) => self.problem = self.decisions.handle_action(action).err(),
+            (BranchesView::Decisions, action) => self.decisions.handle_action(action, context.company),
             (BranchesView::Comparison(figures), action) => figures.handle_action(action),
             (BranchesView::Simulating, _) => {}
         }
-        DialogResponse::stay()
+        self.request_check()
     }
 
     fn handle_key(&mut self, key: &KeyEvent, _: &ScreenContext<'_>) -> DialogResponse {
@@ -181,14 +227,21 @@ impl Dialog for BranchesPage {
     }
 
     fn take_answers(&mut self) {
+        match self.checking.try_take() {
+            Some((BranchesQuestion::Check { edits, .. }, Ok(BranchesAnswer::Checked(refused)))) => {
+                self.decisions.set_checked(&edits, refused);
+            }
+            Some((_, Err(refusal))) => self.problem = Some(refusal.message),
+            _ => {}
+        }
         if let Some((_, found)) = self.asked.try_take() {
             self.set_result(found);
         }
     }
 
-    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_click(&mut self, row: usize, context: &ScreenContext<'_>) -> DialogResponse {
         match &mut self.page {
-            BranchesView::Decisions => self.decisions.select(row),
+            BranchesView::Decisions => self.decisions.handle_click(row, context.company),
             BranchesView::Comparison(figures) => figures.select(row),
             BranchesView::Simulating => {}
         }
@@ -199,37 +252,65 @@ impl Dialog for BranchesPage {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
-        let week = self.decisions.week();
-        let inside = canvas.draw_pane_frame(
-            dialog_area,
-            &format!("What if, from week {week}"),
-            &self.border_note(),
-            true,
-        );
+        let inside = canvas.draw_pane_frame(dialog_area, &self.title(), &self.border_note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        let below = self.problem.as_ref().map_or(0, |_| 1).min(inside.height);
+        let problem =
+            self.problem.as_deref().map_or(Vec::new(), |problem| wrap(problem, inside.width as usize));
+        let below = (problem.len() as u16).min(inside.height);
         let page = Rect { height: inside.height - below, ..inside };
         match &self.page {
-            BranchesView::Decisions => self.decisions.draw(canvas, page),
+            BranchesView::Decisions if self.decisions.history().is_none() && self.asked.is_waiting() => {
+                canvas.draw_text(page, "reading the record …", Role::Warning);
+            }
+            BranchesView::Decisions => self.decisions.draw(canvas, page, context),
             BranchesView::Simulating => {
                 let (done, all) = self.asked.progress().unwrap_or_default();
                 let share = 100 * done / all.max(1);
                 canvas.draw_text(page, &format!("simulating days again: {share} % …"), Role::Warning);
             }
-            BranchesView::Comparison(figures) => figures.draw(canvas, page),
+            BranchesView::Comparison(figures) => {
+                let names = &context.company.company_names;
+                let mut labels = vec![branch_name(&[])];
+                labels.extend(self.decisions.alternative_names(names));
+                figures.draw(canvas, page, &labels, names);
+            }
         }
-        if let Some(problem) = &self.problem {
-            let row = Rect { y: page.y + page.height, height: below, ..inside };
-            canvas.draw_text(row, problem, Role::Bad);
+        let rows = Rect { y: page.y + page.height, height: below, ..inside };
+        for (row, line) in row_rects(rows).zip(&problem) {
+            canvas.draw_text(row, line, Role::Bad);
         }
         canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints()));
     }
 }
 
 impl BranchesPage {
+    /// Sends the edits of the current alternative for a check, if they changed.
+    fn request_check(&mut self) -> DialogResponse {
+        match self.decisions.take_unchecked_edits() {
+            Some((week, edits)) => {
+                let question = BranchesQuestion::Check { week, edits };
+                DialogResponse::stay_with(vec![Effect::Ask(self.checking.ask(question))])
+            }
+            None => DialogResponse::stay(),
+        }
+    }
+
+    fn title(&self) -> String {
+        match (&self.page, &self.decisions.input) {
+            (BranchesView::Decisions, Some(Input::Form { form, .. })) => {
+                format!("What if, {}", decision_name(form.tool()))
+            }
+            (BranchesView::Decisions, _) => format!("What if, decisions of week {}", self.decisions.week()),
+            _ => format!("What if, from week {}", self.decisions.start_week()),
+        }
+    }
+
     fn border_note(&self) -> String {
         match &self.page {
             BranchesView::Comparison(figures) => figures.figure_label(),
+            BranchesView::Decisions if self.decisions.input.is_some() => {
+                format!("week {}", self.decisions.week())
+            }
             _ => self.decisions.position_label(),
         }
     }

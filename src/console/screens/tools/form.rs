@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crossterm::event::KeyEvent;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::earlier_calls;
 use super::sheet::{CellPosition, ToolSheet};
-use crate::action::Action;
+use crate::action::{Action, Scope};
 use crate::app::EditorDocument;
 use crate::attention::CELL_SEPARATOR;
 use crate::effect::Effect;
@@ -27,6 +27,8 @@ pub struct ToolForm {
     /// Whether the run offers the tool.
     is_available: bool,
     pub sheet: ToolSheet,
+    /// Values of an earlier week that the form shows in place of the current values.
+    earlier_values: Option<Map<String, Value>>,
     pub focus: CellPosition,
     /// The previous draft of the focused cell, while the user types into the cell.
     pub draft_before_edit: Option<Option<TextField>>,
@@ -55,6 +57,7 @@ impl ToolForm {
             spec,
             is_available: company.has_tool(spec.id),
             sheet: ToolSheet::new(spec, company),
+            earlier_values: None,
             focus: CellPosition::default(),
             draft_before_edit: None,
             code_editor: None,
@@ -66,6 +69,31 @@ impl ToolForm {
             sent_arguments: None,
             answer: None,
             earlier_calls: earlier_calls::earlier_calls(spec.id, company, earlier_calls::MAX_EARLIER_CALLS),
+        }
+    }
+
+    /// Returns the form of a tool with the values of an earlier week in place of the current values.
+    pub fn with_values(spec: &'static ToolSpec, values: Map<String, Value>, company: &DisplayedCompany) -> ToolForm {
+        let mut form = ToolForm::new(spec, company);
+        form.earlier_values = Some(values);
+        form.sheet = form.empty_sheet(company);
+        form
+    }
+
+    /// Returns the sheet without drafts.
+    fn empty_sheet(&self, company: &DisplayedCompany) -> ToolSheet {
+        match &self.earlier_values {
+            Some(values) => ToolSheet::with_values(self.spec, values, company),
+            None => ToolSheet::new(self.spec, company),
+        }
+    }
+
+    /// Returns the scopes of the form's keys.
+    pub fn scopes(&self) -> Vec<Scope> {
+        match self.code_editor {
+            Some(_) => vec![Scope::Editor, Scope::Form],
+            None if self.is_typing() => vec![Scope::Field, Scope::Form],
+            None => vec![Scope::Form, Scope::List],
         }
     }
 
@@ -125,7 +153,7 @@ impl ToolForm {
 
     /// Discards the drafts and selects the first cell.
     pub fn reset(&mut self, company: &DisplayedCompany) {
-        self.sheet = ToolSheet::new(self.spec, company);
+        self.sheet = self.empty_sheet(company);
         self.focus = CellPosition::default();
         (self.draft_before_edit, self.code_editor, self.committed_cell, self.new_customer, self.preview) = (None, None, None, None, None);
         self.checking.cancel();

@@ -24,11 +24,7 @@ pub struct FormPane;
 
 impl Pane<Tools> for FormPane {
     fn scopes(&self, tools: &Tools) -> Vec<Scope> {
-        match tools.visible_form() {
-            Some(form) if form.code_editor().is_some() => vec![Scope::Editor, Scope::Form],
-            Some(form) if form.is_typing() => vec![Scope::Field, Scope::Form],
-            _ => vec![Scope::Form, Scope::List],
-        }
+        tools.visible_form().map_or(vec![Scope::Form, Scope::List], ToolForm::scopes)
     }
 
     fn hints(&self, tools: &Tools) -> Vec<Action> {
@@ -129,7 +125,7 @@ impl Pane<Tools> for FormPane {
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
         let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
-        draw_sheet(form, &tools.leads, &lines, canvas, sheet, placement.focused);
+        draw_sheet(form, Some(&tools.leads), &lines, canvas, sheet, placement.focused);
         let rest = area_below(below, sheet.height + gap.min(sheet.height));
         let used = draw_outcome(&outcome.lines, canvas, rest, context);
         let below = area_below(rest, used + 1);

@@ -44,7 +44,7 @@ pub(super) fn form_lines(form: &ToolForm) -> Vec<FormLine> {
         if block.accepts_new_rows() {
             lines.push(FormLine::Add(at));
         }
-        if !block.is_scalar() && block.rows.len() > 1 {
+        if !block.is_scalar() && !block.shows_deal_prices() && block.rows.len() > 1 {
             lines.push(FormLine::Total(at));
             if block.columns.len() > 1 && block.is_changed() {
                 lines.push(FormLine::CurrentTotal(at));
@@ -57,13 +57,13 @@ pub(super) fn form_lines(form: &ToolForm) -> Vec<FormLine> {
 /// Draws as many lines as fit, including the focused line.
 pub(super) fn draw_sheet(
     form: &ToolForm,
-    leads: &ChannelLeads,
+    leads: Option<&ChannelLeads>,
     lines: &[FormLine],
     canvas: &mut Canvas<'_>,
     area: Rect,
     focused: bool,
 ) {
-    let side = side_area(form, leads, area);
+    let side = leads.map_or(Rect { width: 0, ..area }, |leads| side_area(form, leads, area));
     let area = if side.width > 0 { Rect { width: side.x - area.x, ..area } } else { area };
     let is_here = |line: &FormLine| match line {
         FormLine::Row(block, row) => (*block, *row) == (form.focus.block, form.focus.row),
@@ -80,7 +80,7 @@ pub(super) fn draw_sheet(
             FormLine::Total(at) => draw_total(form, *at, canvas, row),
             FormLine::CurrentTotal(at) => draw_current_total(form, *at, canvas, row),
         }
-        if side.width > 0 {
+        if let Some(leads) = leads.filter(|_| side.width > 0) {
             draw_side(form, leads, line, canvas, Rect { y: row.y, height: 1, ..side });
         }
     }

@@ -1,5 +1,6 @@
 //! The tools screen with forms for all tools, which are generated from the catalog.
 
+pub mod decision_form;
 mod earlier_calls;
 mod figure;
 mod form;

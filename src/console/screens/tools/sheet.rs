@@ -68,6 +68,16 @@ pub struct ArgumentBlock {
     /// Names of the columns. A number or a map has one column with an empty name.
     pub columns: Vec<String>,
     pub cells: Vec<Vec<EditableCell>>,
+    /// The deals whose prices the rows show, if the block shows the deals of a recorded call.
+    deals: Option<DealPrices>,
+}
+
+/// A list of deals with the position of each price.
+#[derive(Debug, Clone)]
+struct DealPrices {
+    list: Value,
+    /// JSON pointer of the price in each row.
+    pointers: Vec<String>,
 }
 
 impl ArgumentBlock {
@@ -101,7 +111,7 @@ impl ArgumentBlock {
         };
         let slots = rows.iter().map(|row| columns.iter().map(|column| slot(row, column)).collect()).collect();
         let doc = company.numbers.substitute(argument.description);
-        ArgumentBlock { argument, doc, rows, columns, cells: slots }
+        ArgumentBlock { argument, doc, rows, columns, cells: slots, deals: None }
     }
 
     pub fn range(&self) -> NumberRange {
@@ -119,7 +129,13 @@ impl ArgumentBlock {
     }
 
     pub fn is_text(&self) -> bool {
-        matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
+        !self.shows_deal_prices()
+            && matches!(self.argument.kind, ArgumentKind::Text | ArgumentKind::Structure(_) | ArgumentKind::Deals(_))
+    }
+
+    /// Returns whether the rows are the prices of recorded deals.
+    pub fn shows_deal_prices(&self) -> bool {
+        self.deals.is_some()
     }
 
     /// Returns whether the argument is code, such as a script or a SQL statement.
@@ -132,7 +148,7 @@ impl ArgumentBlock {
         match self.argument.kind {
             _ if self.is_code() => "the code",
             ArgumentKind::Text => "the text",
-            ArgumentKind::Structure(_) | ArgumentKind::Deals(_) => "the list (JSON)",
+            ArgumentKind::Structure(_) | ArgumentKind::Deals(_) if self.is_text() => "the list (JSON)",
             _ => "the value",
         }
     }
@@ -163,6 +179,7 @@ impl ArgumentBlock {
     pub fn path(&self, row: usize, column: usize) -> String {
         match self.argument.kind {
             ArgumentKind::Map(..) => format!("{}.{}", self.argument.name, self.rows[row]),
+            _ if self.shows_deal_prices() => format!("{}.{}", self.argument.name, self.rows[row]),
             ArgumentKind::Matrix(..) => {
                 format!("{}.{}.{}", self.argument.name, self.rows[row], self.columns[column])
             }
@@ -185,6 +202,38 @@ impl ArgumentBlock {
         if self.is_text() { "enter a list or object as JSON" } else { "enter a number" }
     }
 
+    /// Fills in the value that a recorded call gives. A map replaces all values of the block.
+    fn fill_recorded(&mut self, value: &Value) {
+        if let Some((rows, deals)) = deal_prices(value).filter(|_| matches!(self.argument.kind, ArgumentKind::Deals(_))) {
+            self.doc = "offered price of each plan".to_owned();
+            self.cells = rows.iter().map(|(_, price)| vec![EditableCell { current: Some(*price), draft: None }]).collect();
+            self.rows = rows.into_iter().map(|(name, _)| name).collect();
+            self.deals = Some(deals);
+            return;
+        }
+        let text = match (self.is_text(), value) {
+            (true, Value::String(text)) => Some(text.clone()),
+            (true, value) => Some(value.to_string()),
+            (false, _) => None,
+        };
+        if let Some(text) = text {
+            self.cells[0][0].draft = Some(TextField::with_text(text));
+            return;
+        }
+        for (row, name) in self.rows.iter().enumerate() {
+            for (column, key) in self.columns.iter().enumerate() {
+                let found = match self.argument.kind {
+                    ArgumentKind::Map(..) => value.get(name),
+                    ArgumentKind::Matrix(..) => value.get(name).and_then(|inner| inner.get(key)),
+                    _ => Some(value),
+                };
+                let cell = &mut self.cells[row][column];
+                let number = found.and_then(Value::as_f64).unwrap_or(0.0);
+                cell.draft = (Some(number) != cell.current.or(Some(0.0))).then(|| TextField::with_text(format_plain(number)));
+            }
+        }
+    }
+
     /// Returns the value of the argument to send.
     fn value(&self) -> Result<Option<Value>, CellPosition> {
         let number = |row: usize, column: usize| {
@@ -192,6 +241,16 @@ impl ArgumentBlock {
         };
         if self.is_text() {
             return self.text_value();
+        }
+        if let Some(DealPrices { list, pointers }) = &self.deals {
+            let mut list = list.clone();
+            for (row, pointer) in pointers.iter().enumerate() {
+                let price = number(row, 0)?.ok_or(CellPosition { block: 0, row, column: 0 })?;
+                if let Some(place) = list.pointer_mut(pointer) {
+                    *place = json_number(price);
+                }
+            }
+            return Ok(Some(list));
         }
         if self.is_scalar() {
             return Ok(number(0, 0)?.map(json_number));
@@ -220,6 +279,27 @@ impl ArgumentBlock {
     }
 }
 
+/// Returns the name and price of every offer in a list of deals. Returns `None` for an unknown notation.
+fn deal_prices(list: &Value) -> Option<(Vec<(String, f64)>, DealPrices)> {
+    let (mut rows, mut pointers) = (Vec::new(), Vec::new());
+    for (at, deal) in list.as_array()?.iter().enumerate() {
+        let customer = deal.get("customer_id").or_else(|| deal.get(0))?.as_u64()?;
+        let key = if deal.is_array() { "1" } else { "offerings" };
+        for (number, offer) in deal.pointer(&format!("/{key}"))?.as_array()?.iter().enumerate() {
+            let price_key = match offer.is_array() {
+                true => "1",
+                false if offer.get("price_per_seat").is_some() => "price_per_seat",
+                false => "price",
+            };
+            let pointer = format!("/{at}/{key}/{number}/{price_key}");
+            let plan = offer.get("plan").or_else(|| offer.get(0))?.as_str()?;
+            rows.push((format!("#{customer} {plan}"), list.pointer(&pointer)?.as_f64()?));
+            pointers.push(pointer);
+        }
+    }
+    (!rows.is_empty()).then(|| (rows, DealPrices { list: list.clone(), pointers }))
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CellPosition {
     pub block: usize,
@@ -239,7 +319,11 @@ impl ToolSheet {
     /// Returns the sheet of a tool with the current values.
     pub fn new(spec: &'static ToolSpec, company: &DisplayedCompany) -> ToolSheet {
         let nothing = Map::new();
-        let current = company.settings.get(&spec.id).unwrap_or(&nothing);
+        ToolSheet::with_values(spec, company.settings.get(&spec.id).unwrap_or(&nothing), company)
+    }
+
+    /// Returns the sheet of a tool with other values in place of the current values.
+    pub fn with_values(spec: &'static ToolSpec, current: &Map<String, Value>, company: &DisplayedCompany) -> ToolSheet {
         let block = |argument: &'static Argument| ArgumentBlock::new(argument, current.get(argument.name), company);
         let blocks = spec.arguments.iter().map(block);
         let elsewhere =
@@ -285,6 +369,26 @@ impl ToolSheet {
         }
     }
 
+    /// Fills in the arguments of a recorded call, including texts and rows for customers. Returns the names of the
+    /// arguments that the call gives.
+    pub fn fill_recorded(&mut self, arguments: &Value) -> Vec<&'static str> {
+        let mut given = Vec::new();
+        for at in 0..self.blocks.len() {
+            let argument = self.blocks[at].argument;
+            let named = arguments.get(argument.name).or_else(|| arguments.get(argument.alias?));
+            let whole = (self.spec.unnamed_argument == Some(argument.name)).then_some(arguments);
+            let Some(value) = named.or(whole).filter(|value| !value.is_null()) else { continue };
+            if self.blocks[at].accepts_new_rows() {
+                for (customer, _) in value.as_object().into_iter().flatten() {
+                    self.add_customer(at, customer);
+                }
+            }
+            self.blocks[at].fill_recorded(value);
+            given.push(argument.name);
+        }
+        given
+    }
+
     /// Returns the typed drafts by the path of their cells.
     pub fn drafts(&self) -> BTreeMap<String, String> {
         let typed = |place: CellPosition| {
@@ -322,9 +426,17 @@ impl ToolSheet {
     /// # Errors
     /// The position of the first cell with invalid input.
     pub fn arguments(&self) -> Result<Value, CellPosition> {
+        self.arguments_including(&[])
+    }
+
+    /// Returns the arguments of the call, including the unchanged values of the arguments with these names.
+    ///
+    /// # Errors
+    /// The position of the first cell with invalid input.
+    pub fn arguments_including(&self, names: &[&str]) -> Result<Value, CellPosition> {
         let mut arguments = Map::new();
         for (at, block) in self.blocks.iter().enumerate() {
-            if block.argument.required || block.is_changed() {
+            if block.argument.required || block.is_changed() || names.contains(&block.argument.name) {
                 let value = block.value().map_err(|place| CellPosition { block: at, ..place })?;
                 if let Some(value) = value {
                     arguments.insert(block.argument.name.to_owned(), value);
@@ -443,6 +555,27 @@ mod tests {
         assert!(deals.blocks[0].expected().contains("JSON"));
         // Tools with a separate screen have no cells for text arguments.
         assert!(sheet("query").blocks.is_empty() && sheet("next_week").blocks.is_empty());
+    }
+
+    #[test]
+    fn recorded_calls_are_filled_in_completely() {
+        for (tool, recorded) in [
+            ("set_prices", json!({"A": 12, "B": 25})),
+            ("set_targeted_ad_spend", json!({"targeted_spend": {"linkedin": {"S1": 40}}})),
+            ("set_ads_strength", json!({"by_customer": {"17": 0.5}})),
+            ("post_social_media", json!({"content": "a post"})),
+            ("send_enterprise_deal", json!({"deals": [[7, [["B", 31.5], ["C", 60]]]]})),
+            ("send_enterprise_deal", json!({"deals": [{"customer_id": 7, "offerings": [{"plan": "B", "price": 31.5}]}]})),
+        ] {
+            let mut sheet = sheet(tool);
+            let given = sheet.fill_recorded(&recorded);
+            assert_eq!(sheet.arguments_including(&given), Ok(recorded), "{tool}");
+        }
+        let mut deals = sheet("send_enterprise_deal");
+        deals.fill_recorded(&json!({"deals": [[7, [["B", 31.5], ["C", 60]]]]}));
+        assert_eq!(deals.blocks[0].rows, ["#7 B", "#7 C"]);
+        type_cell(&mut deals, "deals.#7 C", "55");
+        assert_eq!(deals.arguments(), Ok(json!({"deals": [[7, [["B", 31.5], ["C", 55]]]]})));
     }
 
     #[test]

@@ -167,7 +167,7 @@ fn tour_shows_a_cancellation_with_its_reason_a_why_and_a_what_if() {
     console.assert_shows("cancellations of S1, week 6");
     console.assert_shows("operations: 0 → 300 $/day");
     console.press("f3 esc ; b x ctrl-s");
-    console.assert_shows("set_daily_spend");
+    console.assert_shows("daily");
     console.assert_shows("after week");
     console.assert_shows("f3 continue");
 }

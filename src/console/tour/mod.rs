@@ -61,7 +61,8 @@ impl Tour {
             self.is_seen |= company.weeks.len() >= step.from_week && read.is_shown(facts);
         }
         let counts = |(index, step): &(usize, &TourStep)| *index == at || step.applies_to(company);
-        let possible: Vec<usize> = steps().iter().enumerate().filter(counts).map(|(index, _)| index).collect();
+        let possible: Vec<usize> =
+            steps().iter().enumerate().filter(counts).map(|(index, _)| index).collect();
         let number = possible.iter().filter(|index| **index <= at).count();
         self.shown = ShownStep {
             title: &step.title,
@@ -113,7 +114,8 @@ impl Tour {
         let mut right = area.right().saturating_sub(2);
         for action in [Action::TourClose, Action::TourSkip] {
             let Some(key) = keys.label(action) else { continue };
-            let name = if action == Action::TourSkip && self.is_seen { "continue" } else { action.entry().title };
+            let name =
+                if action == Action::TourSkip && self.is_seen { "continue" } else { action.entry().title };
             let words = format!(" {key} {name} ");
             let width = words.width() as u16;
             if right < place.x + title.width() as u16 + width {
@@ -135,7 +137,8 @@ impl Tour {
 /// Returns the step at which a user resumes: the step after the last one whose goal is reached, not counting steps after
 /// the first open goal.
 fn first_step(facts: &TourFacts<'_>) -> usize {
-    let is_open = |step: &TourStep| !matches!(step.goal, Goal::Read { .. }) && !step.is_reached(facts.company);
+    let is_open =
+        |step: &TourStep| !matches!(step.goal, Goal::Read { .. }) && !step.is_reached(facts.company);
     let until = steps().iter().position(is_open).unwrap_or(steps().len());
     steps()[..until].iter().rposition(|step| step.is_reached(facts.company)).map_or(0, |last| last + 1)
 }

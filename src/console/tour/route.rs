@@ -141,11 +141,7 @@ impl KeyGroup {
             1 => text,
             count => format!("{text} ×{count}"),
         };
-        format!(
-            "{} ({})",
-            parts.into_iter().map(part).collect::<Vec<_>>().join(" "),
-            self.effect
-        )
+        format!("{} ({})", parts.into_iter().map(part).collect::<Vec<_>>().join(" "), self.effect)
     }
 }
 
@@ -176,7 +172,8 @@ impl Router<'_> {
     fn key(&self, action: Action) -> KeyPress {
         // In panes with number cells, a letter is safer than a digit, which may start a number.
         let has_number_cells = self.facts.scopes.contains(&Scope::Form);
-        let is_usable = |key: &String| !has_number_cells || !key.starts_with(|first: char| first.is_ascii_digit());
+        let is_usable =
+            |key: &String| !has_number_cells || !key.starts_with(|first: char| first.is_ascii_digit());
         let working = self.keys.working_keys(action, &self.facts.scopes).into_iter().find(is_usable);
         let label = working.or_else(|| self.keys.label(action)).unwrap_or_default();
         KeyPress::Key(label)
@@ -212,7 +209,8 @@ impl Router<'_> {
 
     /// Returns the keys that open an entry of the palette.
     fn palette(&self, words: &str, effect: &str) -> KeyGroup {
-        let presses = vec![self.key(Action::Palette), KeyPress::Text(words.to_owned()), self.key(Action::Commit)];
+        let presses =
+            vec![self.key(Action::Palette), KeyPress::Text(words.to_owned()), self.key(Action::Commit)];
         KeyGroup { presses, effect: effect.to_owned() }
     }
 

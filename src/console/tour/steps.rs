@@ -139,9 +139,7 @@ fn can_cancel(company: &DisplayedCompany) -> bool {
 /// Returns whether a setting has been made.
 fn is_set(tool: ToolId, company: &DisplayedCompany) -> bool {
     match tool {
-        ToolId::SetModelTiers => {
-            ["A", "B", "C"].iter().any(|plan| company.current_setting(tool, plan) > 1.0)
-        }
+        ToolId::SetModelTiers => ["A", "B", "C"].iter().any(|plan| company.current_setting(tool, plan) > 1.0),
         ToolId::SetDailySpend => company.current_setting(tool, "operations") > 0.0,
         _ => company.settings.get(&tool).is_some_and(|all| all.values().any(contains_positive_number)),
     }

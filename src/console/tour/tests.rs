@@ -77,11 +77,19 @@ fn tour_texts_have_existing_names_and_fit_small_windows() {
         for (at, step) in steps().iter().enumerate() {
             let text = insert_figures(&step.text, &company);
             let needs_weeks = ["signed", "leads", "cancelled", "issues", "subscribers"];
-            let has_week = weeks > 0 || !needs_weeks.iter().any(|name| step.text.contains(&format!("[{name}]")));
+            let has_week =
+                weeks > 0 || !needs_weeks.iter().any(|name| step.text.contains(&format!("[{name}]")));
             assert!(!text.contains('–') || !has_week, "{}: unknown figure in {text}", step.title);
-            for name in step.text.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name) {
-                let is_parameter = name.contains('.') && !company.numbers.substitute(&format!("{{{name}}}")).contains('{');
-                assert!(is_parameter || ACTIONS.iter().any(|entry| entry.name == name), "{}: {name}", step.title);
+            for name in
+                step.text.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name)
+            {
+                let is_parameter =
+                    name.contains('.') && !company.numbers.substitute(&format!("{{{name}}}")).contains('{');
+                assert!(
+                    is_parameter || ACTIONS.iter().any(|entry| entry.name == name),
+                    "{}: {name}",
+                    step.title
+                );
             }
             let mut tour = Tour { step: Some(at), ..Tour::default() };
             if !tour.update(&facts(&company), &keys) || tour.step != Some(at) {
@@ -89,7 +97,8 @@ fn tour_texts_have_existing_names_and_fit_small_windows() {
             }
             for (width, most) in [(60, 6), (80, 5), (120, 4)] {
                 assert!(tour.height(width) <= most, "{}: {:?}", step.title, tour.lines(width));
-                let shown = render_rows(width, tour.height(width), |canvas, area| tour.draw(canvas, area, &keys));
+                let shown =
+                    render_rows(width, tour.height(width), |canvas, area| tour.draw(canvas, area, &keys));
                 let shown = shown.join(" ");
                 assert!(shown.contains("Tour · ") && shown.contains("→ "), "{shown}");
                 assert!(!shown.contains('{') && !shown.contains('[') && !shown.contains('…'), "{shown}");
@@ -152,13 +161,18 @@ fn steps_without_permission_or_time_are_omitted() {
     assert_eq!(full.len(), steps().len());
     let baseline = NewRunMode::company(Mode::Baseline, None);
     let shown = titles(&baseline);
-    assert!(!shown.contains(&"Why") && !shown.contains(&"What if") && shown.contains(&"Who cancelled"), "{shown:?}");
+    assert!(
+        !shown.contains(&"Why") && !shown.contains(&"What if") && shown.contains(&"Who cancelled"),
+        "{shown:?}"
+    );
     let short = titles(&NewRunMode::company(Mode::Sandbox, Some(28)));
     assert_eq!(short.last(), Some(&"Help"));
     for title in ["Four more weeks", "Who cancelled", "A change", "Why", "What if"] {
         assert!(!short.contains(&title), "{short:?}");
     }
-    let needs = |title: &str| steps().iter().any(|step| step.title == title && step.needs == Some(Need::Resimulation));
+    let needs = |title: &str| {
+        steps().iter().any(|step| step.title == title && step.needs == Some(Need::Resimulation))
+    };
     assert!(needs("Why") && needs("What if"));
 }
 
@@ -181,12 +195,8 @@ impl NewRunMode {
 fn covering_dialog_is_closed_before_keys_are_shown() {
     let company = new_company();
     let keys = KeyBindings::bundled();
-    let covered = TourFacts {
-        has_dialog: true,
-        scopes: vec![Scope::Field],
-        is_typing: true,
-        ..facts(&company)
-    };
+    let covered =
+        TourFacts { has_dialog: true, scopes: vec![Scope::Field], is_typing: true, ..facts(&company) };
     for at in 0..steps().len() {
         let mut tour = Tour { step: Some(at), ..Tour::default() };
         tour.update(&covered, &keys);
@@ -208,14 +218,19 @@ fn claims_of_the_tour_are_true_in_its_run() {
     let fit = company.fit(group).expect("S1 is known");
     assert!(fit.budget.position_of(9.0) == RangePosition::Below, "a low price: {:?}", fit.budget);
     assert!(fit.usage.position_of(400.0) == RangePosition::Above, "more than S1 uses: {:?}", fit.usage);
-    let default = DisplayedCompany::from_session(&Session::create(tour_run(), &Configuration::bundled()).expect("a run"));
+    let default = DisplayedCompany::from_session(
+        &Session::create(tour_run(), &Configuration::bundled()).expect("a run"),
+    );
     let quality = |company: &DisplayedCompany| company.fit(group).expect("known").plans[Plan::A].quality;
     assert!((quality(&default) - 0.12).abs() < 1e-9, "the quality of a new company with default parameters");
     assert!(quality(&company) > quality(&default), "the model raises quality");
 
     let first = DisplayedCompany::from_session(&played_tour(1)).weeks[0];
     assert!(first.new_individual_leads > 100 && first.new_individual_subscribers > 20, "{first:?}");
-    assert!(first.new_individual_subscribers * 2 < first.new_individual_leads, "most do not sign up: {first:?}");
+    assert!(
+        first.new_individual_subscribers * 2 < first.new_individual_leads,
+        "most do not sign up: {first:?}"
+    );
 
     let mut run = played_tour(5);
     let weeks = run.weeks().to_vec();

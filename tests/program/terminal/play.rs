@@ -55,7 +55,7 @@ fn first_run_starts_the_tour() {
     terminal.type_keys("\x1b");
     terminal.wait_until_gone("Participation curve");
     terminal.type_keys(":set_prices\r");
-    terminal.wait_for("pricing.set_prices");
+    terminal.wait_for("set_prices · pricing");
     terminal.type_keys("\r9\r\x13");
     terminal.wait_for("Tour · 5 of 15");
     for step in 6..=8 {

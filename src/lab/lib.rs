@@ -22,7 +22,6 @@ mod metrics;
 mod normal_distribution;
 mod opponents;
 mod policy;
-mod random_settings;
 mod ranks;
 pub mod results;
 mod runner;
@@ -36,8 +35,7 @@ mod weekly_routine;
 
 pub use enterprise_answers::{EnterpriseRule, OfferRule, PriceFactor, ThreadTypes};
 pub use forecast_backtest::{
-    CompanyForecasts, StageResult, backtest_policy, backtest_recorded_run, forecast_horizons,
-    measure_intervals, stage_results,
+    PlayedWeeks, forecast_horizons, interval_coverage, measure_naive_intervals, play_weeks, policy_names,
 };
 pub use golden_figures::{
     GoldenComparison, GoldenError, ReferenceFigures, compare_with_reference, read_reference,
@@ -51,7 +49,6 @@ pub use novamind_rules::calls_for_waiting_threads;
 pub use novamind_world::params::Params;
 pub use opponents::play_opponents;
 pub use policy::{Policy, PolicyError};
-pub use random_settings::random_policy;
 pub use runner::{PolicyRunOutcome, RunEnd, RunError, RunSpec, play_policy};
 pub use seeds::{SeedRange, parse_seeds};
 pub use strong_policies::STRONG_POLICIES;

@@ -36,12 +36,7 @@ impl App {
         }
     }
 
-    pub(super) fn record_presence(
-        &mut self,
-        event: PresenceEvent,
-        idle_ms: Option<u64>,
-        window: Option<(u16, u16)>,
-    ) {
+    fn record_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
         if self.is_played() {
             self.record(move |session| session.activity().record_presence(event, idle_ms, window));
         }
@@ -99,7 +94,7 @@ impl App {
     }
 
     /// Returns the recorded name and the content of the text that is being edited.
-    pub(super) fn edited_text(&self) -> Option<(String, String)> {
+    fn edited_text(&self) -> Option<(String, String)> {
         let run = self.run().filter(|run| run.playback.is_none())?;
         match self.layers.top() {
             Some(Layer::NextWeek) => crate::dialogs::Dialog::edited_text(&run.next_week),
@@ -265,8 +260,7 @@ impl App {
 
     pub(super) fn handle_time(&mut self) {
         let now = self.stopwatch.elapsed();
-        // The console receives no input while the user's editor is open, so the user does not count as idle.
-        if !self.is_played() || self.stopwatch.is_paused() || self.is_editing_externally {
+        if !self.is_played() || self.stopwatch.is_paused() {
             return;
         }
         for (event, idle_ms, window) in self.presence.check_time(now) {
@@ -278,7 +272,7 @@ impl App {
     /// Returns the time until [`novamind_worker::message::Message::RedrawDue`] is due, or `None` if nothing depends
     /// on the time.
     pub fn time_until_wake(&self) -> Option<Duration> {
-        if !self.is_played() || self.stopwatch.is_paused() || self.is_editing_externally {
+        if !self.is_played() || self.stopwatch.is_paused() {
             return None;
         }
         let next = [self.presence.next_deadline(), self.draft_save_due()].into_iter().flatten().min()?;

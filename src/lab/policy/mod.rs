@@ -7,7 +7,9 @@ use std::fmt;
 use serde::Deserialize;
 use toml::Table;
 
-pub use rule_based::{CapacityRule, OperationsRule, PerPlan, PriceBook, RuleBased, TargetGroups};
+#[cfg(test)]
+pub use rule_based::PriceBook;
+pub use rule_based::{CapacityRule, OperationsRule, RuleBased, TargetGroups};
 
 use super::enterprise_answers::EnterpriseRule;
 use novamind_record::folder::configuration::Configuration;

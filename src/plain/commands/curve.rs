@@ -12,7 +12,6 @@ use novamind_insight::{CurveExplorer, CurveOutcome, CurvePoint, LEAD_SAMPLE_SIZE
 use novamind_report::curve::{
     column_names, describe_basis, describe_outcome, describe_plan, footnotes, format_quality, rows,
 };
-use novamind_report::measured_conversion::MeasuredConversion;
 use novamind_session::identifiers::{Group, Plan};
 
 const USAGE: &str = "give a group, and optionally a price and a quality: curve S1, curve S1 30 0.4";
@@ -24,10 +23,7 @@ impl Interpreter {
     pub(super) fn curve(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (group, product) = parse_request(arguments)?;
         Ok(match CurveExplorer::open(&mut self.session, group) {
-            Ok(curve_explorer) => {
-                let measured = MeasuredConversion::of_group(&self.session, group);
-                curve_response(&curve_explorer, product, &measured)
-            }
+            Ok(curve_explorer) => curve_response(&curve_explorer, product),
             Err(refusal) => CommandResponse::rejected("curve", refusal),
         })
     }
@@ -58,11 +54,7 @@ fn parse_request(arguments: &[Argument]) -> Result<CurveRequest, ParseError> {
     }
 }
 
-fn curve_response(
-    curve_explorer: &CurveExplorer,
-    product: Option<(f64, f64)>,
-    measured: &MeasuredConversion,
-) -> CommandResponse {
+fn curve_response(curve_explorer: &CurveExplorer, product: Option<(f64, f64)>) -> CommandResponse {
     let basis = describe_basis(&curve_explorer.basis);
     let mut lines = Vec::new();
     let outcome = match product {
@@ -93,22 +85,8 @@ fn curve_response(
         );
     }
     lines.push(format!("{}; {LEAD_SAMPLE_SIZE} sampled leads", describe_outcome(&outcome)));
-    let with_plans = if product.is_some() { "with your plans: " } else { "" };
-    lines.push(format!("{with_plans}{}", measured.describe()));
     lines.extend(footnotes(curve_explorer));
-    let mut data = curve_to_json(curve_explorer, product, &outcome);
-    data["measured"] = measured_to_json(measured);
-    CommandResponse::success("curve", lines.join("\n"), data)
-}
-
-pub(super) fn measured_to_json(measured: &MeasuredConversion) -> Value {
-    json!({
-        "conversion": measured.share(),
-        "taken": measured.taken,
-        "leads": measured.leads,
-        "weeks": measured.weeks,
-        "plans_changed_on": measured.changed_on,
-    })
+    CommandResponse::success("curve", lines.join("\n"), curve_to_json(curve_explorer, product, &outcome))
 }
 
 fn curve_to_json(

@@ -24,7 +24,7 @@ pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
 ];
 
 /// Maximum length of the text, in bytes.
-pub const MAX_BYTES: usize = 256 << 10;
+const MAX_BYTES: usize = 256 << 10;
 
 impl Default for TextEditor {
     fn default() -> Self {

@@ -10,7 +10,7 @@ mod picker;
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Dialog, DialogContent, DialogResponse, DialogView};
+use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -61,7 +61,8 @@ impl BranchesPage {
             return DialogResponse::stay();
         }
         if self.decisions.select_invalid_change() {
-            self.problem = Some(INVALID_CHANGE.to_owned());
+            self.problem =
+                Some(INVALID_CHANGE.to_owned());
             self.page = BranchesView::Decisions;
             return DialogResponse::stay();
         }
@@ -79,9 +80,7 @@ impl BranchesPage {
         match self.page {
             BranchesView::Decisions if self.decisions.has_changes() && !self.is_closing => {
                 self.is_closing = true;
-                self.problem = Some(
-                    "Closing the page discards your changes. Press the key again to close it.".to_owned(),
-                );
+                self.problem = Some("Closing the page discards your changes. Press the key again to close it.".to_owned());
                 DialogResponse::stay()
             }
             BranchesView::Decisions => DialogResponse::close(),
@@ -140,25 +139,12 @@ impl Dialog for BranchesPage {
         })
     }
 
-    fn tour_view(&self) -> Option<DialogView> {
-        let is_shown = matches!(self.page, BranchesView::Comparison(_));
-        let actions = match self.page {
-            BranchesView::Decisions if self.decisions.input.is_some() => vec![Action::Discard],
-            BranchesView::Decisions if self.decisions.has_changes() => vec![Action::SimulateBranches],
-            BranchesView::Decisions if self.decisions.is_decision_selected() => {
-                vec![Action::OmitDecision, Action::SimulateBranches]
-            }
-            BranchesView::Decisions => vec![Action::Left],
-            BranchesView::Simulating | BranchesView::Comparison(_) => Vec::new(),
-        };
-        Some(DialogView { content: DialogContent::WhatIf, is_shown, actions })
-    }
-
     fn scopes(&self) -> Vec<Scope> {
         match self.page {
-            BranchesView::Decisions => {
-                self.decisions.input_scopes().unwrap_or_else(|| vec![Scope::Decisions, Scope::List])
-            }
+            BranchesView::Decisions => self
+                .decisions
+                .input_scopes()
+                .unwrap_or_else(|| vec![Scope::Decisions, Scope::List]),
             BranchesView::Simulating => vec![Scope::Dialog],
             BranchesView::Comparison(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
         }
@@ -166,7 +152,6 @@ impl Dialog for BranchesPage {
 
     fn hints(&self) -> Vec<Action> {
         match (&self.page, &self.decisions.input) {
-            (BranchesView::Decisions, _) if self.decisions.history().is_none() => vec![Action::Close],
             (BranchesView::Decisions, None) => vec![
                 Action::CycleDecision,
                 Action::AddDecision,
@@ -195,8 +180,7 @@ impl Dialog for BranchesPage {
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
-        // Without decisions, the page shows only the reason.
-        self.problem.take_if(|_| self.decisions.history().is_some());
+        self.problem = None;
         self.is_closing &= matches!(action, Action::Close | Action::Cancel);
         match (&mut self.page, action) {
             (BranchesView::Decisions, action) if self.decisions.input.is_some() => {

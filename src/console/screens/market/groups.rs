@@ -22,10 +22,6 @@ impl Pane<Market> for KnownGroupsPane {
         Some(&market.table)
     }
 
-    fn table_name(&self) -> Option<&'static str> {
-        Some("market.groups")
-    }
-
     fn table_mut<'a>(&self, market: &'a mut Market) -> Option<&'a mut Table> {
         Some(&mut market.table)
     }
@@ -94,9 +90,9 @@ impl Pane<Market> for KnownGroupsPane {
 }
 
 pub fn columns() -> Vec<TableColumn> {
-    let mut columns = vec![TableColumn::text("group"), TableColumn::text("name").with_max_width(28).with_min_width(10)];
+    let mut columns = vec![TableColumn::text("group"), TableColumn::text("name").with_max_width(28).with_min_width(20)];
     columns.extend(["level", "error"].map(TableColumn::numeric));
-    columns.push(TableColumn::text("next study").indivisible());
+    columns.push(TableColumn::text("next study"));
     columns.extend(["found", "as of"].map(TableColumn::numeric));
     columns
 }

@@ -19,10 +19,6 @@ impl Pane<Social> for OwnPostsPane {
         Some(&social.table)
     }
 
-    fn table_name(&self) -> Option<&'static str> {
-        Some("social.posts")
-    }
-
     fn table_mut<'a>(&self, social: &'a mut Social) -> Option<&'a mut Table> {
         Some(&mut social.table)
     }

@@ -43,7 +43,8 @@ fn cash_cell(console: &Console, week: u32, edits: &[&str]) -> String {
 fn lines_of(console: &Console, tool: &str) -> Vec<u64> {
     let folder = console.app.run().expect("a run").company.folder.clone().expect("a folder");
     let decided = WhatIf::open(&folder).expect("a what-if").decisions(1).expect("decisions");
-    let calls = decided.iter().filter(|decision| decision.call().is_some_and(|call| call.tool.name() == tool));
+    let calls =
+        decided.iter().filter(|decision| decision.call().is_some_and(|call| call.tool.name() == tool));
     calls.map(|decision| decision.seq()).collect()
 }
 

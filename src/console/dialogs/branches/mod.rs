@@ -61,8 +61,7 @@ impl BranchesPage {
             return DialogResponse::stay();
         }
         if self.decisions.select_invalid_change() {
-            self.problem =
-                Some(INVALID_CHANGE.to_owned());
+            self.problem = Some(INVALID_CHANGE.to_owned());
             self.page = BranchesView::Decisions;
             return DialogResponse::stay();
         }
@@ -80,7 +79,9 @@ impl BranchesPage {
         match self.page {
             BranchesView::Decisions if self.decisions.has_changes() && !self.is_closing => {
                 self.is_closing = true;
-                self.problem = Some("Closing the page discards your changes. Press the key again to close it.".to_owned());
+                self.problem = Some(
+                    "Closing the page discards your changes. Press the key again to close it.".to_owned(),
+                );
                 DialogResponse::stay()
             }
             BranchesView::Decisions => DialogResponse::close(),
@@ -141,10 +142,9 @@ impl Dialog for BranchesPage {
 
     fn scopes(&self) -> Vec<Scope> {
         match self.page {
-            BranchesView::Decisions => self
-                .decisions
-                .input_scopes()
-                .unwrap_or_else(|| vec![Scope::Decisions, Scope::List]),
+            BranchesView::Decisions => {
+                self.decisions.input_scopes().unwrap_or_else(|| vec![Scope::Decisions, Scope::List])
+            }
             BranchesView::Simulating => vec![Scope::Dialog],
             BranchesView::Comparison(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
         }

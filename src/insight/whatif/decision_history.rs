@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use crate::counterfactual::recorded_steps::{RecordedCall, RecordedDecision};
 use novamind_record::trajectory::record::Reversal;
-use novamind_tools::ToolId;
+use novamind_tools::{ToolId, ToolKind};
 use novamind_world::settings::Settings;
 
 /// The recorded decisions of a run, in order, with the settings before the first decision.
@@ -79,6 +79,9 @@ impl DecisionHistory {
 
     fn fold_calls(&self, tool: ToolId, includes: impl Fn(&RecordedCall) -> bool) -> Map<String, Value> {
         let mut values = self.initial.get(&tool).cloned().unwrap_or_default();
+        if tool.spec().kind != ToolKind::Setting {
+            return values;
+        }
         let calls = self.decisions.iter().filter_map(RecordedDecision::call);
         for call in calls.filter(|call| call.tool == tool && call.accepted && includes(call)) {
             set_arguments(tool, &mut values, &call.args);

@@ -160,7 +160,7 @@ fn every_edit_is_checked_before_the_simulation() {
         ("change 1 {\"B\": 20}".to_owned(), Some("line_unknown")),
         (format!("drop {rejected}"), Some("edited_twice")),
         ("set_prices B=-3".to_owned(), Some("price_not_positive")),
-        ("set_prices Q=3".to_owned(), Some("unknown_argument")),
+        ("set_prices Q=3".to_owned(), Some("unknown_plan")),
         ("set_daily_spend operations=1e12".to_owned(), Some("amount_too_large")),
         ("in 2 set_prices B=3".to_owned(), Some("week_unknown")),
         ("set_targeted_ad_spend {\"linkedin\": {\"E9\": 3}}".to_owned(), Some("unknown_group")),

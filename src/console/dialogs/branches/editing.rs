@@ -127,7 +127,9 @@ impl DecisionList {
                     NextTreatment::Scale => {
                         self.open_factor(Target::Decision(line), SUGGESTED_FACTOR, Treatment::Keep)
                     }
-                    NextTreatment::Replace => self.open_decision_form(line, Treatment::Keep, company),
+                    NextTreatment::Replace => {
+                        self.open_decision_form(line, &Treatment::Keep, Treatment::Keep, company)
+                    }
                 }
             }
             Some(Row::Change(at)) => return self.open_change(at, company),
@@ -147,9 +149,14 @@ impl DecisionList {
         self.input = Some(Input::Factor { target, field, cancelled });
     }
 
-    /// Opens the form of a recorded decision with the values of the current alternative.
-    fn open_decision_form(&mut self, line: u64, cancelled: Treatment, company: &DisplayedCompany) {
-        let treatment = self.treatment(line);
+    /// Opens the form of a recorded decision with the values after a treatment.
+    fn open_decision_form(
+        &mut self,
+        line: u64,
+        treatment: &Treatment,
+        cancelled: Treatment,
+        company: &DisplayedCompany,
+    ) {
         let (Some(history), Some(call)) =
             (self.history(), self.recorded(line).and_then(RecordedDecision::call))
         else {
@@ -234,7 +241,7 @@ impl DecisionList {
             Some(Row::Decision(line)) => {
                 self.check_possible(line, NextTreatment::Replace)?;
                 let before = self.treatment(line);
-                self.open_decision_form(line, before, company);
+                self.open_decision_form(line, &before.clone(), before, company);
                 Ok(())
             }
             Some(Row::Change(at)) => self.open_change(at, company),

@@ -152,6 +152,7 @@ impl Dialog for BranchesPage {
 
     fn hints(&self) -> Vec<Action> {
         match (&self.page, &self.decisions.input) {
+            (BranchesView::Decisions, _) if self.decisions.history().is_none() => vec![Action::Close],
             (BranchesView::Decisions, None) => vec![
                 Action::CycleDecision,
                 Action::AddDecision,
@@ -180,7 +181,8 @@ impl Dialog for BranchesPage {
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
-        self.problem = None;
+        // Without decisions, the page shows only the reason.
+        self.problem.take_if(|_| self.decisions.history().is_some());
         self.is_closing &= matches!(action, Action::Close | Action::Cancel);
         match (&mut self.page, action) {
             (BranchesView::Decisions, action) if self.decisions.input.is_some() => {

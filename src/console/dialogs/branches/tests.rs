@@ -170,7 +170,7 @@ fn week_without_decisions_offers_weeks_with_decisions_and_a_new_decision() {
     act(&mut page, &[Action::Apply]);
     let added = DecisionEdit::Add { week: Some(7), tool: ToolId::SetPrices, args: json!({"A": 11}) };
     assert_eq!(edits(&page), [added]);
-    assert!(text(&page).contains("add        price A 12 → 11"), "{}", text(&page));
+    assert!(text(&page).contains("add        price A 0 → 11"), "{}", text(&page));
     act(&mut page, &[Action::OmitDecision]);
     assert!(edits(&page).is_empty());
 }

@@ -83,7 +83,7 @@ impl ToolForm {
     /// Returns the sheet without drafts.
     fn empty_sheet(&self, company: &DisplayedCompany) -> ToolSheet {
         match &self.earlier_values {
-            Some(values) => ToolSheet::with_values(self.spec, values, company),
+            Some(values) => ToolSheet::with_values(self.spec, values, company).without_json_notes(),
             None => ToolSheet::new(self.spec, company),
         }
     }

@@ -331,6 +331,15 @@ impl ToolSheet {
         ToolSheet { spec, blocks: blocks.filter(|block| !elsewhere(block)).collect() }
     }
 
+    /// Returns the sheet without the notes in descriptions that concern only the JSON of a call.
+    pub fn without_json_notes(mut self) -> ToolSheet {
+        for block in &mut self.blocks {
+            let notes: Vec<&str> = block.doc.split("; ").filter(|note| !note.contains('{')).collect();
+            block.doc = notes.join("; ");
+        }
+        self
+    }
+
     /// Returns the sheet with updated current values and the drafts that still differ from the current values.
     pub fn with_current_values(&self, company: &DisplayedCompany) -> ToolSheet {
         let mut sheet = ToolSheet::new(self.spec, company);

@@ -339,6 +339,11 @@ fn imported_atif_trajectory_reaches_the_same_state() {
         .run(&["runs", "import", "--transcript", &lines, "--seed", "3"])
         .assert_fails(1, &["differs from the transcript"]);
     other.run(&["runs", "import", "--transcript", "nothing.json"]).assert_fails(1, &["nothing.json"]);
+    if cfg!(unix) {
+        // A device without an end: reading it would use all memory.
+        let import = ["runs", "import", "--transcript", "/dev/zero", "--seed", "3"];
+        other.run(&import).assert_fails(1, &["not a regular file"]);
+    }
     other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).assert_fails(2, &["--transcript"]);
 }
 

@@ -8,6 +8,7 @@ use crate::cli::new_run::NewRunOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
 use crate::formatting::{dollars_and_cents, escape_control_characters};
+use crate::record::files::read_regular_file;
 use crate::record::folder::runs::delete_run;
 use crate::record::mode::Mode;
 use crate::report::pluralize;
@@ -37,7 +38,7 @@ pub fn import_transcript(
             "the file has {length} bytes; a transcript has at most {MAX_TRANSCRIPT_BYTES}"
         )));
     }
-    let bytes = std::fs::read(file).map_err(|error| named(error.to_string()))?;
+    let bytes = read_regular_file(file).map_err(|error| named(error.to_string()))?;
     if ReleaseHistory::is_history(&bytes) {
         let history = ReleaseHistory::parse(&bytes)
             .map_err(|problem| named(format!("{problem}. Nothing was imported")))?;

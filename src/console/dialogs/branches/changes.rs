@@ -157,8 +157,8 @@ impl Treatment {
             Treatment::Scale(_) => 2,
             Treatment::Replace(_) => 3,
         };
-        let following = cycle.into_iter().cycle().skip(here + 1).take(cycle.len());
-        following.into_iter().find(|next| next.refusal(decision).is_none()).unwrap_or(NextTreatment::Keep)
+        let mut following = cycle.into_iter().cycle().skip(here + 1).take(cycle.len());
+        following.find(|next| next.refusal(decision).is_none()).unwrap_or(NextTreatment::Keep)
     }
 }
 

@@ -235,20 +235,23 @@ impl DecisionList {
 
     /// Returns the treatment of a recorded decision in the current alternative.
     pub(super) fn treatment(&self, wanted: u64) -> Treatment {
-        let found = self.changes().iter().find_map(|listed| match &listed.change {
-            Change::Recorded { line, treatment } if *line == wanted => Some(treatment.clone()),
-            _ => None,
-        });
-        found.unwrap_or(Treatment::Keep)
+        match self.position_of(wanted).map(|at| &self.changes()[at].change) {
+            Some(Change::Recorded { treatment, .. }) => treatment.clone(),
+            _ => Treatment::Keep,
+        }
+    }
+
+    /// Returns the index of the change of the recorded decision in a line.
+    fn position_of(&self, wanted: u64) -> Option<usize> {
+        let is_it =
+            |listed: &ListedChange| matches!(listed.change, Change::Recorded { line, .. } if line == wanted);
+        self.changes().iter().position(is_it)
     }
 
     /// Returns the refused change of a row, if there is one.
     pub(super) fn problem(&self, row: Row) -> Option<&Problem> {
         let listed = match row {
-            Row::Decision(wanted) => self
-                .changes()
-                .iter()
-                .find(|listed| matches!(listed.change, Change::Recorded { line, .. } if line == wanted)),
+            Row::Decision(wanted) => self.position_of(wanted).map(|at| &self.changes()[at]),
             Row::Change(at) => self.changes().get(at),
             Row::Week(_) | Row::Add => None,
         };
@@ -265,10 +268,8 @@ impl DecisionList {
     }
 
     pub(super) fn set_treatment(&mut self, wanted: u64, treatment: Treatment) {
+        let place = self.position_of(wanted);
         let changes = &mut self.alternatives[self.current];
-        let is_it =
-            |listed: &ListedChange| matches!(listed.change, Change::Recorded { line, .. } if line == wanted);
-        let place = changes.iter().position(is_it);
         let change = ListedChange::from(Change::Recorded { line: wanted, treatment: treatment.clone() });
         match (place, treatment) {
             (Some(at), Treatment::Keep) => drop(changes.remove(at)),

@@ -21,7 +21,7 @@ pub struct NewRunOptions {
     /// Starting cash of the new run, in dollars; baseline runs start with 1000000
     #[arg(long, value_name = "X")]
     cash: Option<f64>,
-    /// Scenario of the new run; baseline runs use `default`
+    /// Scenario of the new run; baseline runs use `default` or `release-2`
     #[arg(long, value_name = "NAME")]
     scenario: Option<String>,
     /// Mode of the new run [default: sandbox; for programs, baseline if days, cash and scenario match a baseline run]

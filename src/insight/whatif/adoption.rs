@@ -27,12 +27,11 @@ pub struct AdoptedBranch {
 
 /// Creates a branch at the start of a week and repeats the later decisions of the run with edits. `week` is counted
 /// from 1. Calls are executed again, rationales are copied, and forecasts are naive. `progress` is called once per
-/// simulated day and can stop the simulation
-/// at the end of a week.
+/// simulated day and can stop the simulation at the end of a week.
 ///
 /// # Errors
-/// Same errors as [`Session::branch`], and the rejections of [`build_edits`] for an edit. After an error, or if the
-/// program ends during the simulation, no branch is created.
+/// Same errors as [`Session::branch`], and the rejections of [`WhatIf::compare`](super::WhatIf::compare) for an edit. After
+/// an error, or if the program ends during the simulation, no branch is created.
 pub fn create_branch_with_decisions(
     run: &Session,
     week: u32,

@@ -12,6 +12,9 @@ use serde_json::{Number, Value, json};
 /// exponent.
 const MAX_WITHOUT_EXPONENT: f64 = 1e15;
 
+/// Decimals of a quality. Screens and reports show the same number of decimals, so that qualities can be compared.
+pub const QUALITY_DECIMALS: usize = 3;
+
 /// Formats a number with thousands separators and a fixed number of decimals, for example `1,234,567.5`. Numbers above
 /// 1e15 have an exponent: `1.5e15`. Zero has no sign.
 pub fn grouped_number(value: f64, decimals: usize) -> String {
@@ -116,6 +119,22 @@ pub fn signed_dollars(value: f64) -> String {
 pub fn percent(share: f64, decimals: usize) -> String {
     // Percentages have no thousands separators.
     format!("{}%", grouped_number(share * 100.0, decimals).replace(',', ""))
+}
+
+/// Formats dollars per month: `$19,350/month`.
+pub fn dollars_per_month(value: f64) -> String {
+    format!("{}/month", dollars(value))
+}
+
+/// Formats a quality between 0 and 1, or a difference between qualities: `0.348`.
+pub fn quality(value: f64) -> String {
+    grouped_number(value, QUALITY_DECIMALS)
+}
+
+/// Formats a gain or loss of quality with its sign: `+0.012`.
+pub fn quality_change(value: f64) -> String {
+    let sign = if value < 0.0 { '-' } else { '+' };
+    format!("{sign}{}", quality(value.abs()))
 }
 
 /// Formats a number with three significant digits and a suffix: `1.23M`, `45.6k`, `789`.
@@ -361,6 +380,9 @@ mod tests {
             ["-$2,095", "$0", "-$0.50", "$0.00"]
         );
         assert_eq!([12.0, 22.5, 0.4, 0.125].map(price), ["$12", "$22.50", "$0.40", "$0.125"]);
+        assert_eq!([quality(0.3), quality(0.14706)], ["0.300", "0.147"]);
+        assert_eq!([quality_change(0.0031), quality_change(-0.012)], ["+0.003", "-0.012"]);
+        assert_eq!(dollars_per_month(19_350.4), "$19,350/month");
         assert_eq!(percent(0.12345, 1), "12.3%");
         assert_eq!(percent(0.012345, 2), "1.23%");
         assert_eq!(percent(0.00474, 2), "0.47%");

@@ -12,10 +12,12 @@ use super::machine_checks::{
 };
 use super::{Context, Failure, print};
 use crate::console::keys::KeyBindings;
+use crate::console::own_commands::OwnCommands;
 use crate::console::themes;
 use crate::lab::{MetricsCollector, Policy, RunSpec, play_policy};
 use crate::record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
 use crate::record::folder::manifest::FORMAT;
+use crate::record::folder::query_library::QueryLibrary;
 use crate::worker::preferences::Preferences;
 use crate::world::MECHANICS;
 
@@ -182,14 +184,18 @@ fn existing_ancestor(path: &Path) -> &Path {
     path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."))
 }
 
-/// Checks that the user's keys, theme and scenarios can be read.
+/// Checks that the user's keys, own commands, theme and scenarios can be read.
 fn check_settings(configuration: &Configuration) -> Result<String, String> {
     let folder = configuration.folder.as_deref();
     let name = folder.map_or("bundled files only".to_owned(), abbreviate_home_folder);
     if !folder.is_some_and(Path::is_dir) {
         return Ok(format!("{name}: no files, defaults are used"));
     }
-    KeyBindings::with_user_file(configuration).map_err(|error| error.to_string())?;
+    let keys = KeyBindings::with_user_file(configuration).map_err(|error| error.to_string())?;
+    let own = OwnCommands::load(configuration, &keys, &QueryLibrary::load(configuration));
+    if let Some(problem) = own.problems.first() {
+        return Err(problem.clone());
+    }
     let theme = Preferences::load(configuration).theme;
     themes::find_theme(theme.as_deref().unwrap_or("dark"), configuration)?;
     for name in configuration.toml_names("themes") {
@@ -198,7 +204,7 @@ fn check_settings(configuration: &Configuration) -> Result<String, String> {
     for scenario in configuration.scenario_names() {
         configuration.load_scenario(&scenario).map_err(|error| error.to_string())?;
     }
-    Ok(format!("{name}: keys, themes and scenarios are valid"))
+    Ok(format!("{name}: keys, own commands, themes and scenarios are valid"))
 }
 
 /// Returns a path with `~` for the user's home folder, so that a report does not contain the user's name.

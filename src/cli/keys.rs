@@ -5,6 +5,8 @@ use clap::Args;
 use super::{Context, Failure, print};
 use crate::console::keys::KeyBindings;
 use crate::console::manual;
+use crate::console::own_commands::OwnCommands;
+use crate::record::folder::query_library::QueryLibrary;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -15,5 +17,12 @@ pub struct Options {
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let keys = KeyBindings::with_user_file(&context.configuration).map_err(Failure::unreadable)?;
-    print(&if options.markdown { manual::to_markdown(&keys) } else { manual::to_text(&keys) })
+    if options.markdown {
+        return print(&manual::to_markdown(&keys));
+    }
+    let library = QueryLibrary::load(&context.configuration);
+    let own = OwnCommands::load(&context.configuration, &keys, &library);
+    print(&format!("{}{}", manual::to_text(&keys), own.to_text()))?;
+    // The list is printed although some commands are invalid, as the console starts with the others.
+    if own.problems.is_empty() { Ok(()) } else { Err(Failure::unreadable(own.problems.join("\n"))) }
 }

@@ -16,6 +16,8 @@ pub enum Scope {
     List,
     /// Tool forms.
     Form,
+    /// The dialog that arranges the columns of a table.
+    Columns,
     /// A single-line text field.
     Field,
     /// A multi-line editor.
@@ -64,9 +66,10 @@ pub enum Scope {
 
 impl Scope {
     /// All scopes, in the order of the manual.
-    pub const ALL: [Scope; 27] = [
+    pub const ALL: [Scope; 28] = [
         Scope::Global,
         Scope::List,
+        Scope::Columns,
         Scope::Form,
         Scope::Query,
         Scope::Result,
@@ -101,6 +104,7 @@ impl Scope {
             Scope::Menu => "menu",
             Scope::Class => "class",
             Scope::List => "list",
+            Scope::Columns => "columns",
             Scope::Form => "form",
             Scope::Field => "field",
             Scope::Editor => "editor",
@@ -134,6 +138,7 @@ impl Scope {
             Scope::Menu => "Start menu",
             Scope::Class => "Class",
             Scope::List => "Lists and tables",
+            Scope::Columns => "Columns of a table",
             Scope::Form => "Tool forms",
             Scope::Field => "Value fields",
             Scope::Editor => "Text editors",
@@ -262,6 +267,7 @@ actions! {
         Back "back" "back" "Go back to the previous screen."
         Forward "forward" "forward" "Go forward again after going back."
         Zoom "zoom" "zoom" "Show the focused pane full screen; press again for all panes."
+        Columns "columns" "columns" "Choose, move and resize the columns of the focused table; the choice is saved."
         Rows "rows" "source rows" "Show the rows that make up the selected figure, and their query."
         Explain "explain" "explain" "Explain the selected figure or field."
         Why "why" "why" "Show how much each cause contributed to the change in the selected figure, by simulating the week without that cause. Not in an unfinished baseline run."
@@ -270,8 +276,8 @@ actions! {
         Glossary "glossary" "glossary" "Look up any term."
         Lesson "lesson" "lesson" "In a lesson: show or hide the task next to the screen; in a small window, open it as a page."
         LessonPage "lesson-page" "task" "In a lesson: open the whole task as a page, with its question, hints and goals."
-        Tour "tour" "tour" "Resume the tour of a practice run; start it from the start menu."
-        TourSkip "tour-skip" "skip" "Skip this step of the tour."
+        Tour "tour" "tour" "Resume the tour in its run or in a practice run; start it from the start menu."
+        TourSkip "tour-skip" "skip" "Continue with the next step of the tour, or skip a step."
         TourClose "tour-close" "close" "Close the tour; it can be resumed at any time."
         NextTheme "next-theme" "next theme" "Switch to the next color theme."
         NextMarker "next-marker" "next marker" "Draw charts with braille dots, blocks or ASCII characters."
@@ -296,9 +302,18 @@ actions! {
         Filter "filter" "filter" "Show only the rows that contain a text you type."
         Sort "sort" "sort" "Sort by the selected column; press again to reverse, a third time to stop sorting."
     }
+    Columns {
+        ToggleColumn "toggle-column" "show or hide" "Show or hide the selected column."
+        MoveColumnUp "move-up" "move up" "Move the selected column before its neighbor."
+        MoveColumnDown "move-down" "move down" "Move the selected column behind its neighbor."
+        WidenColumn "wider" "wider" "Make the selected column wider."
+        NarrowColumn "narrower" "narrower" "Make the selected column narrower; numbers are never cut."
+        FitColumn "automatic-width" "automatic width" "Make the selected column as wide as its contents."
+        ResetColumns "reset-columns" "reset" "Show all columns in their original order and width."
+    }
     Form {
         Apply "apply" "submit" "Submit the form."
-        EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
+        EditCell "edit" "edit" "Type a value in the focused cell."
         CopyDown "same-down" "copy down" "Copy the value to the cells below. Right after you accept a value, the key copies the accepted value."
         ClearCell "clear-cell" "0" "Clear the cell."
         ResetForm "reset-form" "reset" "Discard the draft and show the current values; press again to restore the draft."
@@ -311,7 +326,7 @@ actions! {
         History "history" "history" "Search earlier statements."
         Library "library" "library" "Search the library of named queries and run one."
         SaveQuery "save-query" "save" "Save the statement as a named query."
-        EditQuery "edit-query" "edit" "Go to the editor."
+        EditQuery "edit-query" "edit" "Type in the editor."
         ClearQuery "clear-query" "clear" "Clear the editor."
     }
     Result {
@@ -365,7 +380,8 @@ actions! {
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
-        LeaveEditor "leave-editor" "leave" "Leave the editor; the text is kept."
+        LeaveEditor "leave-editor" "leave" "Stop typing; the text is kept."
+        ExternalEditor "external-editor" "your editor" "Open the text in the editor that VISUAL or EDITOR names: notes, posts, SQL and code. Not in an unfinished baseline run."
     }
     Field {
         Commit "commit" "accept" "Accept the typed value; in a form, move down."

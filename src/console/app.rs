@@ -5,14 +5,18 @@
 mod activity_log;
 mod breadcrumbs;
 mod busy;
+mod columns;
 mod drafts;
 mod exit;
+mod external_editor;
 mod guide;
+mod ineffective_key;
 mod input;
 mod layers;
 mod lesson;
 mod orders;
 mod overlay;
+mod own_commands;
 mod pages;
 mod pause_screen;
 mod playback;
@@ -31,11 +35,12 @@ use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
 use super::attention::{EditSource, PresenceWatch, Stopwatch, TypingLog};
-use super::context::{ScreenContext, ScreenId};
+use super::context::{EditorDocument, ScreenContext, ScreenId};
 use super::dialogs::Dialog;
 use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
 use super::keys::KeyBindings;
+use super::own_commands::{OwnCommands, ProgramCall};
 use super::playback::PlaybackViewer;
 use super::screens::menu::StartMenu;
 use super::screens::{Screen, Screens};
@@ -51,9 +56,11 @@ use novamind_tui::canvas::Click;
 use novamind_tui::chord::Chord;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
+use novamind_tui::widgets::ColumnLayout;
 use novamind_worker::Job;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::{Message, SimulatedDay};
+use novamind_worker::preferences::Preferences;
 use novamind_worker::question::{OutgoingQuestion, Pending};
 use novamind_worker::request::Request;
 use novamind_worker::screen_queries::Reading;
@@ -62,6 +69,7 @@ pub use busy::BusyState;
 use exit::ExitTarget;
 pub use layers::Layer;
 use layers::Layers;
+pub use own_commands::own_commands_refusal;
 pub use pause_screen::PauseScreen;
 pub use settings::Settings;
 
@@ -81,6 +89,10 @@ pub enum Order {
     Write(Vec<(PathBuf, Vec<u8>)>),
     /// Save a named query. The strings are the name, the title and the statement of the query.
     SaveQuery(Configuration, [String; 3]),
+    /// Run an external program of the user.
+    RunProgram(ProgramCall),
+    /// Open a text in the user's editor.
+    OpenEditor(EditorDocument),
     /// Redraw the whole window.
     Redraw,
     /// Capture the mouse (`true`) or leave the mouse to the terminal (`false`).
@@ -190,6 +202,10 @@ pub struct App {
     themes: Vec<Theme>,
     configuration: Configuration,
     library: QueryLibrary,
+    /// Commands of the user.
+    own_commands: OwnCommands,
+    /// Lines of an own command that are being executed.
+    own_lines: own_commands::LineQueue,
     resume_command: String,
     /// The part of the program that the user is in.
     pub stage: Stage,
@@ -212,6 +228,9 @@ pub struct App {
     pub busy: Option<BusyState>,
     /// Chords of an unfinished key sequence.
     pub pending_chords: Vec<Chord>,
+    /// Whether a text is open in the user's editor.
+    is_editing_externally: bool,
+    key_effects: ineffective_key::KeyEffects,
     opponents: PlayOpponentsFn,
     exit_target: Option<ExitTarget>,
     /// The initial screen of the run that is being opened, if not the default.
@@ -221,6 +240,8 @@ pub struct App {
     starts_tour: bool,
     study: Option<StudyState>,
     time_limit: time_limits::TimeLimitState,
+    /// Layouts of the columns by the name of the table.
+    column_layouts: BTreeMap<String, ColumnLayout>,
     /// Clickable areas of the last frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Rows of the focused list in the last frame.
@@ -235,8 +256,14 @@ impl App {
     pub fn new(settings: Settings) -> App {
         let menu = Box::new(StartMenu::new(&settings.configuration));
         let library = QueryLibrary::load(&settings.configuration);
+        let column_layouts = Preferences::load(&settings.configuration).tables;
+        let own_commands = OwnCommands::load(&settings.configuration, &settings.keys, &library);
+        let status = own_commands.problems.first();
+        let status = status.map(|problem| StatusMessage { text: problem.clone(), is_error: true });
         App {
             library,
+            own_commands,
+            own_lines: own_commands::LineQueue::default(),
             theme: settings.theme,
             keys: settings.keys,
             glyphs: settings.glyphs,
@@ -254,9 +281,11 @@ impl App {
             explained_term: None,
             code_check: None,
             drafts: drafts::DraftState::default(),
-            status: None,
+            status,
             busy: None,
             pending_chords: Vec::new(),
+            is_editing_externally: false,
+            key_effects: ineffective_key::KeyEffects::default(),
             opponents: settings.opponents,
             exit_target: None,
             initial_screen: None,
@@ -264,6 +293,7 @@ impl App {
             starts_tour: false,
             study: None,
             time_limit: time_limits::TimeLimitState::default(),
+            column_layouts,
             clicks: Vec::new(),
             page_rows: 10,
             window: (0, 0),
@@ -285,6 +315,7 @@ impl App {
                 delivery.deliver();
                 self.take_answers();
             }
+            Message::EditorClosed(result) => self.finish_external_edit(result),
             Message::Signal(number) => self.exit_run(ExitTarget::Signal(number)),
             Message::RedrawDue => {
                 if self.busy.as_ref().is_some_and(|busy| busy.is_stopping_script) {
@@ -296,6 +327,7 @@ impl App {
         self.advance_tour();
         self.enforce_week_limit();
         self.show_due_questions();
+        self.apply_column_layouts();
         self.record_user_state();
     }
 
@@ -336,6 +368,11 @@ impl App {
         };
         scopes.push(Scope::Global);
         scopes
+    }
+
+    /// Returns whether keys type characters: the focused pane or dialog is in edit mode.
+    pub fn is_editing_text(&self) -> bool {
+        self.scopes().first().is_some_and(|scope| scope.is_text())
     }
 
     /// Returns the actions to show in the footer.
@@ -407,6 +444,10 @@ impl App {
     fn switch_screen(&mut self, screen: ScreenId) {
         self.record_view();
         if let Stage::Run(run) = &mut self.stage {
+            // Leaving a screen ends an edit, so that digits show screens after the user has returned.
+            let left = run.screens.get_mut(run.screen);
+            let pane = left.focused_index();
+            left.set_focus(pane);
             run.previous_screen = Some(run.screen);
             run.set_screen(screen);
         }

@@ -90,6 +90,15 @@ impl ScreenContext<'_> {
     }
 }
 
+/// A text that can be edited in another program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EditorDocument {
+    /// The text.
+    pub text: String,
+    /// Extension of the file, from which editors derive the highlighting.
+    pub extension: &'static str,
+}
+
 /// A figure that can be explained and traced to its source rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {

@@ -9,6 +9,7 @@ use novamind_session::SeekTarget;
 use novamind_session::identifiers::Group;
 use novamind_study::Study;
 use novamind_tools::ToolId;
+use novamind_tui::widgets::ColumnLayout;
 use novamind_worker::question::OutgoingQuestion;
 use novamind_worker::request::{RecordSource, Request};
 use novamind_worker::screen_queries::Reading;
@@ -21,7 +22,8 @@ impl Effect {
             Effect::ConfirmCall { .. }
             | Effect::ConfirmCalls { .. }
             | Effect::ConfirmCommand(_)
-            | Effect::SendCommand(_) => true,
+            | Effect::SendCommand(_)
+            | Effect::RunLines(_) => true,
             _ => false,
         }
     }
@@ -77,6 +79,8 @@ pub enum Effect {
     ShowStatus(String),
     /// Show an error message.
     ShowError(String),
+    /// Arrange the columns of the focused table, and save the layout if the table has a name.
+    ArrangeColumns(ColumnLayout),
     /// Clear the breadcrumbs before the following effects are executed.
     ClearBreadcrumbs,
     /// Show a screen.
@@ -125,13 +129,17 @@ pub enum Effect {
         /// Description of the consequences, shown to the user.
         text: String,
     },
+    /// Run the own command with this index.
+    RunOwnCommand(usize),
+    /// Execute the confirmed lines of the own command with this index.
+    RunLines(usize),
     /// Ask for confirmation before a step of the lesson, counted from 0, is retried.
     TryStepAgain(usize),
     /// Open the debrief.
     ShowDebrief,
     /// Open the explanation of a subject.
     Explain(Subject),
-    /// Open the practice run with the tour.
+    /// Open the run of the tour, with the tour.
     StartTour,
     /// Show the pages of a study to participants.
     StartStudy(Box<Study>),

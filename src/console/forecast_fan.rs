@@ -35,7 +35,7 @@ pub fn draw_fan(
     let from = (filed as usize).saturating_sub(3 * reach.max(28));
     let cash = company.cash_by_day.iter().enumerate().skip(from);
     let cash: Vec<(f64, f64)> = cash.map(|(day, cash)| (day as f64, *cash)).collect();
-    let values = cash.iter().map(|point| point.1).chain(forecasts.iter().map(|forecast| forecast.lower));
+    let values = cash.iter().map(|point| point.1).chain(forecasts.iter().map(|forecast| forecast.point));
     let zero = zero_if_near(values);
     let lines = [
         Curve::from_points(std::iter::once(first).chain(expected).collect(), Role::Series(1))

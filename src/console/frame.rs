@@ -115,7 +115,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let warned = draw_time_limit(app, canvas, Rect { y: area.y + 2 + banner, height: 2, ..area });
     let banner = banner + warned;
     let body = Rect { y: area.y + 2 + banner, height: area.height - 3 - banner, ..area };
-    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, &run.company.numbers, area.width)));
+    let tour = run.tour.as_ref().map(|tour| (tour, tour.height(area.width)));
     let strip = u16::from(run.playback.is_some());
     let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
     let body = Rect { height: body.height.saturating_sub(below), ..body };
@@ -151,7 +151,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     }
     draw_layers(app, run, canvas, body, &screen_context);
     if let Some((tour, height)) = tour {
-        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys, &run.company.numbers);
+        tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys);
     }
 }
 
@@ -197,11 +197,10 @@ fn draw_time_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
 fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &DisplayedCompany) {
     let seen = &company.observation;
     let change = seen.cash_change;
-    let runway = match seen.whole_runway_weeks() {
-        // ASCII has no unambiguous symbol for infinity.
-        None if app.glyphs == Glyphs::Ascii => "endless".to_owned(),
-        None => "∞".to_owned(),
-        Some(weeks) => format!("{weeks} wk"),
+    let runway = match (seen.ended, seen.runway.describe_weeks()) {
+        (Some(_), _) => String::new(),
+        (None, Some(weeks)) => format!("   runway {weeks} wk"),
+        (None, None) => "   runway to end".to_owned(),
     };
     let poor = seen.runway_weeks.is_some_and(|weeks| weeks < 8.0);
     let wide = row.width >= 110;
@@ -216,7 +215,7 @@ fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Displaye
         (format!(" · wk {}/{}", seen.week, seen.last_day.div_ceil(7)), Role::Text),
         (format!("   cash {}", money(seen.cash)), if poor { Role::Warning } else { Role::Strong }),
         (format!(" {moved}"), if change < 0.0 { Role::Bad } else { Role::Good }),
-        (format!("   runway {runway}"), if poor { Role::Warning } else { Role::Text }),
+        (runway, if poor { Role::Warning } else { Role::Text }),
         (format!("   subs {}", count(seen.subscribers)), Role::Text),
         (format!("   seats {}", count(seen.seats)), Role::Text),
     ];
@@ -336,6 +335,9 @@ fn tab_badge(run: &Run, screen: ScreenId) -> String {
     if count > 0 { format!(" ●{count}") } else { String::new() }
 }
 
+/// Label of the footer while keys type characters.
+const EDIT_MODE: &str = " EDIT ";
+
 fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     let right = match (&app.busy, &app.status) {
         // The error explains that an action was rejected because a script is running.
@@ -353,6 +355,14 @@ fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
     // A message has two spaces before it and one space after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
+    if app.is_editing_text() {
+        canvas.draw_text(
+            Rect { x: row.x, width: EDIT_MODE.width() as u16, ..row },
+            EDIT_MODE,
+            Role::ActiveTab,
+        );
+        x += EDIT_MODE.width() as u16;
+    }
     let mut actions = footer_actions(app).into_iter().peekable();
     while let Some(action) = actions.next() {
         let Some(mut key) = app.keys.label(action) else { continue };
@@ -395,7 +405,6 @@ fn action_title(app: &App, action: Action) -> &'static str {
 fn footer_actions(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
     if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {
-        let typing = app.scopes().first().is_some_and(|scope| scope.is_text());
         let always = [
             Action::NextWeek,
             Action::Palette,
@@ -413,7 +422,10 @@ fn footer_actions(app: &App) -> Vec<Action> {
         };
         let of_end = [Action::Report, Action::Branches].into_iter().filter(|_| over && !replay);
         let always = always.into_iter().filter(|action| !left_out(action)).chain(of_end);
-        if !typing {
+        if app.external_editor_rejection().is_none() && app.is_editing_text() {
+            actions.push(Action::ExternalEditor);
+        }
+        if !app.is_editing_text() {
             let screen_actions = actions.clone();
             actions.extend(always.filter(|action| !screen_actions.contains(action)));
         }

@@ -10,9 +10,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::app::{App, Order, Settings};
+use super::context::EditorDocument;
 use super::effect::Effect;
 use super::files;
-use super::frame;
+use super::own_commands;
 use novamind_record::trajectory::record::DetachCause;
 use novamind_session::{Access, PlaybackPosition, SeekTarget};
 use novamind_study::Study;
@@ -33,6 +34,8 @@ pub struct Headless {
     pub exit: Option<(u8, Option<String>)>,
     /// Texts that were copied to the clipboard.
     pub clipboard: Vec<String>,
+    /// The text that was opened last in the user's editor.
+    pub editor_document: Option<EditorDocument>,
     /// Cursor position in the last frame.
     pub cursor: Option<Position>,
     workers: Workers,
@@ -59,6 +62,7 @@ impl Headless {
             size,
             exit: None,
             clipboard: Vec::new(),
+            editor_document: None,
             cursor: None,
             workers,
             sender,
@@ -243,7 +247,7 @@ impl Headless {
                     | Response::DatabaseCurrent
                     | Response::Study(StudyResponse::QuestionsDue(_))
             ),
-            Message::Input(_) | Message::Signal(_) | Message::RedrawDue => false,
+            Message::Input(_) | Message::Signal(_) | Message::EditorClosed(_) | Message::RedrawDue => false,
         };
         self.pending_responses -= u32::from(is_answer).min(self.pending_responses);
     }
@@ -279,8 +283,13 @@ impl Headless {
                     self.pending_responses += 1;
                     files::save_query_in_background(configuration, query, self.sender.clone());
                 }
+                Order::RunProgram(call) => {
+                    self.pending_responses += 1;
+                    own_commands::run_in_background(call, self.sender.clone());
+                }
                 Order::Copy(text) => self.clipboard.push(text),
                 Order::Exit(code, text) => self.exit = Some((code, text)),
+                Order::OpenEditor(document) => self.editor_document = Some(document),
                 Order::CancelQuery | Order::Redraw | Order::Mouse(_) => {}
             }
         }
@@ -295,11 +304,7 @@ impl Headless {
 
     /// Draws a frame into a buffer.
     pub fn draw_into(&mut self, buffer: &mut Buffer) {
-        let drawn = frame::draw_frame(&self.app, buffer);
-        self.app.clicks = drawn.clicks;
-        self.app.page_rows = drawn.page_rows;
-        self.app.window = drawn.window;
-        self.cursor = drawn.cursor;
+        self.cursor = self.app.draw(buffer);
     }
 
     /// Advances the time and waits for all responses.

@@ -12,15 +12,20 @@ mod attention;
 pub mod benchmark;
 mod consent;
 pub mod context;
+mod curve_chart;
 mod dialogs;
 pub mod effect;
+#[cfg(unix)]
+mod external_editor;
 mod files;
 mod forecast_fan;
 mod frame;
 pub mod headless;
+mod input_gate;
 pub mod keys;
 mod lesson;
 pub mod manual;
+pub mod own_commands;
 mod playback;
 mod projector;
 pub mod screens;
@@ -31,11 +36,15 @@ pub mod themes;
 mod tour;
 
 use std::io;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use app::{App, Order, Settings, Stage};
 use effect::Effect;
+#[cfg(unix)]
+use external_editor::OpenEditor;
+use input_gate::InputGate;
 use novamind_tui::terminal::{TerminalScreen, set_panic_note};
 use novamind_worker::Workers;
 use novamind_worker::message::Message;
@@ -68,7 +77,8 @@ pub fn run_console(settings: Settings, start: Option<Effect>) -> io::Result<(u8,
         app.start(effect);
     }
     let screen = TerminalScreen::open()?;
-    spawn_input_threads(sender.clone());
+    let gate = Arc::new(InputGate::default());
+    spawn_input_threads(sender.clone(), &gate);
     let mut console = Console {
         app,
         workers,
@@ -76,6 +86,9 @@ pub fn run_console(settings: Settings, start: Option<Effect>) -> io::Result<(u8,
         messages,
         sender,
         resume_command: again,
+        gate,
+        #[cfg(unix)]
+        editor: None,
         #[cfg(unix)]
         has_resumed: false,
     };
@@ -93,6 +106,10 @@ struct Console {
     messages: Receiver<Message>,
     sender: Sender<Message>,
     resume_command: String,
+    /// Pauses the thread that reads keys while the editor uses the terminal.
+    gate: Arc<InputGate>,
+    #[cfg(unix)]
+    editor: Option<OpenEditor>,
     /// Whether the program has resumed but has not received the continue signal yet.
     #[cfg(unix)]
     has_resumed: bool,
@@ -104,12 +121,9 @@ impl Console {
             if let Some(end) = self.execute_orders()? {
                 return Ok(end);
             }
-            self.screen.draw(|buffer| {
-                let drawn = frame::draw_frame(&self.app, buffer);
-                (self.app.clicks, self.app.page_rows, self.app.window) =
-                    (drawn.clicks, drawn.page_rows, drawn.window);
-                drawn.cursor
-            })?;
+            if !self.is_editor_open() {
+                self.screen.draw(|buffer| self.app.draw(buffer))?;
+            }
             let patience = if self.app.is_waiting() { BUSY_FRAME_INTERVAL } else { IDLE_TIMEOUT };
             match self
                 .messages
@@ -126,10 +140,23 @@ impl Console {
         }
     }
 
+    /// Returns whether the user's editor uses the terminal.
+    fn is_editor_open(&self) -> bool {
+        #[cfg(unix)]
+        return self.editor.is_some();
+        #[cfg(not(unix))]
+        return false;
+    }
+
     fn handle_message(&mut self, message: Message) -> io::Result<()> {
         #[cfg(debug_assertions)]
         inject_panic(&message);
         match message {
+            #[cfg(unix)]
+            Message::EditorClosed(_) => {
+                self.close_editor()?;
+                self.app.handle_message(message);
+            }
             #[cfg(unix)]
             Message::Signal(signal_hook::consts::SIGTSTP) => {
                 self.app.suspend();
@@ -137,7 +164,11 @@ impl Console {
                     self.workers.send(job);
                 }
                 self.workers.wait_for_jobs(SUSPEND_TIMEOUT);
-                self.screen.suspend(self.app.mouse)?;
+                match self.is_editor_open() {
+                    // The editor has restored the terminal. The shell stops and continues the editor together with the console.
+                    true => signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)?,
+                    false => self.screen.suspend(self.app.mouse)?,
+                }
                 // The resume is recorded before the continue signal arrives, because a key that ends the program could
                 // be handled first.
                 self.app.resume();
@@ -148,7 +179,9 @@ impl Console {
                 if !std::mem::take(&mut self.has_resumed) {
                     self.app.resume();
                 }
-                self.screen.resume(self.app.mouse)?;
+                if !self.is_editor_open() {
+                    self.screen.resume(self.app.mouse)?;
+                }
             }
             message => self.app.handle_message(message),
         }
@@ -166,9 +199,21 @@ impl Console {
                 Order::SaveQuery(configuration, query) => {
                     files::save_query_in_background(configuration, query, self.sender.clone());
                 }
+                Order::RunProgram(call) => own_commands::run_in_background(call, self.sender.clone()),
+                #[cfg(unix)]
+                Order::OpenEditor(document) => self.open_editor(document)?,
+                #[cfg(not(unix))]
+                Order::OpenEditor(_) => {
+                    let reason = "your editor can be opened only on Unix systems".to_owned();
+                    let _ = self.sender.send(Message::EditorClosed(Err(reason)));
+                }
                 Order::Redraw => self.screen.clear()?,
                 Order::Mouse(taken) => self.screen.set_mouse_capture(taken),
-                Order::Exit(code, text) => return Ok(Some((code, text))),
+                Order::Exit(code, text) => {
+                    #[cfg(unix)]
+                    self.end_editor();
+                    return Ok(Some((code, text)));
+                }
             }
         }
         let folder = match &self.app.stage {
@@ -197,23 +242,37 @@ fn inject_panic(message: &Message) {
 }
 
 /// Receives keys and signals on two threads that end with the program.
-fn spawn_input_threads(sender: Sender<Message>) {
-    let keys = sender.clone();
+///
+/// While the user's editor is open, keys are not read. The terminal sends the signals of ctrl-c and ctrl-\\ to the
+/// editor and to the console; the console ignores them.
+fn spawn_input_threads(sender: Sender<Message>, gate: &Arc<InputGate>) {
+    let (keys, key_gate) = (sender.clone(), gate.clone());
     std::thread::spawn(move || {
         while let Ok(event) = crossterm::event::read() {
+            if key_gate.is_closed() && matches!(event, crossterm::event::Event::Resize(..)) {
+                // The event is the one that interrupts the read.
+                key_gate.pass();
+                continue;
+            }
             if keys.send(Message::Input(event)).is_err() {
                 return;
             }
+            key_gate.pass();
         }
         // The terminal was closed: report a hangup signal.
         let _ = keys.send(Message::Signal(1));
     });
+    #[cfg(unix)]
+    let gate = gate.clone();
     #[cfg(unix)]
     std::thread::spawn(move || {
         use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGTSTP};
         let all = [SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT, SIGQUIT];
         let Ok(mut signals) = signal_hook::iterator::Signals::new(all) else { return };
         for signal in signals.forever() {
+            if matches!(signal, SIGINT | SIGQUIT) && gate.is_closed() {
+                continue;
+            }
             if signal == SIGQUIT {
                 novamind_tui::terminal::quit_with_core_dump();
             }

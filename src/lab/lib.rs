@@ -22,6 +22,7 @@ mod metrics;
 mod normal_distribution;
 mod opponents;
 mod policy;
+mod random_settings;
 mod ranks;
 pub mod results;
 mod runner;
@@ -35,7 +36,8 @@ mod weekly_routine;
 
 pub use enterprise_answers::{EnterpriseRule, OfferRule, PriceFactor, ThreadTypes};
 pub use forecast_backtest::{
-    PlayedWeeks, forecast_horizons, interval_coverage, measure_naive_intervals, play_weeks, policy_names,
+    CompanyForecasts, StageResult, backtest_policy, backtest_recorded_run, forecast_horizons,
+    measure_intervals, stage_results,
 };
 pub use golden_figures::{
     GoldenComparison, GoldenError, ReferenceFigures, compare_with_reference, read_reference,
@@ -49,6 +51,7 @@ pub use novamind_rules::calls_for_waiting_threads;
 pub use novamind_world::params::Params;
 pub use opponents::play_opponents;
 pub use policy::{Policy, PolicyError};
+pub use random_settings::random_policy;
 pub use runner::{PolicyRunOutcome, RunEnd, RunError, RunSpec, play_policy};
 pub use seeds::{SeedRange, parse_seeds};
 pub use strong_policies::STRONG_POLICIES;

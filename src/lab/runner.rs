@@ -12,7 +12,6 @@ use super::policy::Policy;
 use super::symbols::SymbolTable;
 use super::weekly_routine;
 use novamind_record::error::RunError as SessionError;
-use novamind_record::figures::WeekFigures;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::policy_rationale;
@@ -176,16 +175,6 @@ pub fn play_policy(
     let started = Instant::now();
     let session = play_session(policy, spec, configuration, collector)?;
     Ok(policy_outcome(policy, spec.seed, &session, started.elapsed()))
-}
-
-/// Plays a policy to the end of its run and returns the figures of the weeks.
-pub(super) fn play_all_weeks(
-    policy: &Policy,
-    spec: &RunSpec,
-    configuration: &Configuration,
-) -> Result<Vec<WeekFigures>, RunError> {
-    let session = play_session(policy, spec, configuration, &mut MetricsCollector::disabled())?;
-    Ok(session.weeks().to_vec())
 }
 
 /// Plays a policy to the end of its run and returns the session.

@@ -15,7 +15,7 @@ use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_report::cost_review::identical_plan_lines;
 use novamind_report::research::late_project_lines;
-use novamind_session::{Session, TIME_LIMIT_RATIONALE, WeekResult};
+use novamind_session::{Forecasts, Observation, Session, TIME_LIMIT_RATIONALE, WeekResult};
 use novamind_tools::{FORECAST_KEYS, Forecast, Rejection};
 
 /// Rationale and forecasts that are submitted before a week.
@@ -88,7 +88,11 @@ pub fn parse_next_week_input(
         [why] if fills && why.key.is_none() => {
             Ok(given(why.value.clone(), naive.to_predictions(), [true; 4]))
         }
-        [why, numbers @ ..] => Ok(given(why.value.clone(), parse_predictions(why, numbers)?, [false; 4])),
+        [why, numbers @ ..] => {
+            let asked = session.company().horizons_in_run();
+            let (predictions, filled) = parse_predictions(why, numbers, &naive, asked)?;
+            Ok(given(why.value.clone(), predictions, filled))
+        }
     }
 }
 
@@ -113,8 +117,14 @@ fn check_argument_name(name: &str, column: usize) -> Result<(), ParseError> {
     })
 }
 
-/// Parses twelve numbers: point, lower and upper for each of four horizons.
-fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, ParseError> {
+/// Parses point, lower and upper for each of four horizons, or for the first `asked` horizons, which end within the run.
+/// The other forecasts are naive.
+fn parse_predictions(
+    why: &Argument,
+    numbers: &[Argument],
+    naive: &Forecasts,
+    asked: usize,
+) -> Result<(Value, [bool; 4]), ParseError> {
     let wrong = |column, text: String| ParseError { text, column };
     if let Some(named) = std::iter::once(why).chain(numbers).find(|argument| argument.key.is_some()) {
         return Err(wrong(
@@ -122,10 +132,19 @@ fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Pars
             "next takes no named arguments. Type: next \"WHY\" and twelve numbers".to_owned(),
         ));
     }
-    if numbers.len() != 12 {
+    if numbers.len() != 12 && numbers.len() != 3 * asked {
         let column = numbers.last().unwrap_or(why).column;
+        let (count, horizons) = match asked {
+            0 => {
+                return Err(wrong(column, "the run ends within a week; type: next \"WHY\" naive".to_owned()));
+            }
+            1 => ("three", "1 week"),
+            2 => ("six", "1 and 4 weeks"),
+            3 => ("nine", "1, 4 and 12 weeks"),
+            _ => ("twelve", "1, 4, 12 and 26 weeks"),
+        };
         let text = format!(
-            "after the rationale, give exactly twelve numbers (point lower upper for 1, 4, 12 and 26 weeks) or naive; you gave {}",
+            "after the rationale, give exactly {count} numbers (point lower upper for {horizons}) or naive; you gave {}",
             numbers.len()
         );
         return Err(wrong(column, text));
@@ -134,7 +153,11 @@ fn parse_predictions(why: &Argument, numbers: &[Argument]) -> Result<Value, Pars
         let fields = json!({ "point": three[0].value, "lower": three[1].value, "upper": three[2].value });
         (key.to_owned(), fields)
     };
-    Ok(FORECAST_KEYS.into_iter().zip(numbers.chunks(3)).map(one).collect())
+    let mut predictions = naive.to_predictions();
+    if let Value::Object(all) = &mut predictions {
+        all.extend(FORECAST_KEYS.into_iter().zip(numbers.chunks(3)).map(one));
+    }
+    Ok((predictions, std::array::from_fn(|at| 3 * at >= numbers.len())))
 }
 
 /// Submits rationale and forecasts, and simulates a week.
@@ -225,8 +248,11 @@ pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Res
         let predictions = forecasts.to_predictions();
         return Ok(Some(NextWeekInput::Given { rationale: rationale.into(), predictions, naive: [true; 4] }));
     }
+    if let Some(coverage) = naive_coverage(session, &seen) {
+        show_prompt(&format!("{coverage}\n"))?;
+    }
     let fields = forecasts.all.iter_mut().zip(&mut forecasts.filled_naively);
-    for ((forecast, filled), weeks) in fields.zip([1, 4, 12, 26]) {
+    for ((forecast, filled), weeks) in fields.zip([1, 4, 12, 26]).take(seen.horizons_in_run) {
         match ask_forecast(input, weeks, *forecast)? {
             None => return Ok(None),
             Some((given, naive)) => {
@@ -236,6 +262,13 @@ pub fn ask_next_week_input(session: &Session, input: &mut LineSource) -> io::Res
     }
     let (predictions, naive) = (forecasts.to_predictions(), forecasts.filled_naively);
     Ok(Some(NextWeekInput::Given { rationale: rationale.into(), predictions, naive }))
+}
+
+/// Describes the measured coverage of naive forecasts. Returns `None` in baseline runs, because agents do not know the
+/// coverage.
+fn naive_coverage(session: &Session, seen: &Observation) -> Option<String> {
+    let is_shown = session.manifest().mode != Mode::Baseline && seen.horizons_in_run > 0;
+    is_shown.then(|| seen.describe_coverage()).flatten()
 }
 
 /// Asks for the rationale. Returns `None` if the player cancels.

@@ -11,6 +11,7 @@ mod help;
 mod inbox;
 mod lesson;
 mod notes;
+mod offers;
 mod overview;
 mod parameters;
 mod queries;
@@ -385,12 +386,14 @@ impl Interpreter {
     }
 
     fn call_tool_by_id(&mut self, tool: ToolId, arguments: &Value) -> CommandResponse {
+        let planned = self.planned_offers(tool, arguments);
         match self.call_cancellable(tool, arguments) {
             Ok(data) if tool.executes_code() => queries::script_response(tool, &data),
             Ok(data) => {
                 let shown = groups::answer_with_ranges(&self.session, &data);
                 let answer = CommandResponse::tool_result(tool.name(), data.to_json(), shown);
-                answer.with_notes(&self.late_project_warnings(&data))
+                let offers = self.describe_offers(&planned.sent_in(&data));
+                answer.with_notes(&self.late_project_warnings(&data)).with_notes(&offers)
             }
             Err(refusal) => CommandResponse::rejected(tool.name(), refusal),
         }
@@ -435,6 +438,25 @@ impl Interpreter {
             Err(refusal) => CommandResponse::rejected("step", refusal),
         }
     }
+}
+
+/// Parses a line that calls a tool. `next_week` and `query` are separate commands and not accepted.
+///
+/// # Errors
+/// The line is not a tool call. The message says what is wrong.
+pub fn parse_tool_call(line: &str) -> Result<(ToolId, Value), String> {
+    let parsed = grammar::parse_line(line).map_err(|problem| problem.text)?;
+    let ParsedLine::Call { word, column, arguments } = parsed else {
+        return Err("write one call of a tool, for example set_prices B=30".to_owned());
+    };
+    let Some(tool) = find_tool(&word) else {
+        return Err(match COMMANDS.iter().any(|(name, _)| *name == grammar::current_name(&word)) {
+            true => format!("{word} is a command of plain mode. Only calls of tools are possible here."),
+            false => unknown_command(&word, column).text,
+        });
+    };
+    let arguments = parse_call_arguments(tool, &arguments).map_err(|problem| problem.text)?;
+    Ok((tool.spec().id, arguments))
 }
 
 /// Finds a tool by its name, with or without its module. `next_week` and `query` are separate commands.

@@ -23,6 +23,8 @@ pub use participant_session::run_participant_session;
 
 pub use novamind_database::text::{format_cell, format_result};
 
+pub use commands::parse_tool_call;
+
 use commands::Interpreter;
 use end_reason::EndReason;
 use input::InputLine;

@@ -1,12 +1,12 @@
-//! Review of costs before a week runs: committed costs by day and week, one-time costs, and the resulting runway.
+//! Review of costs before a week runs: committed costs by day and week, one-time costs, expected income and runway.
 
-use super::formatting::{format_money, pluralize};
-use novamind_base::formatting::{dollars, price_to_cents, signed_dollars};
+use super::formatting::{describe_runway, format_money, pluralize};
+use novamind_base::formatting::{capitalize, dollars, price_to_cents, signed_dollars};
 use novamind_session::{IdenticalPlans, Observation, Preview};
 
 /// Describes income, committed costs and runway before the next week, one line per topic.
 pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
-    let (pace, now) = (seen.pace, seen.pace.committed);
+    let now = seen.committed;
     let change = now - seen.committed_before;
     let changed = match change {
         0.0 => String::new(),
@@ -20,25 +20,16 @@ pub fn income_and_cost_lines(seen: &Observation) -> Vec<String> {
     if spent > 0.0 {
         lines.push(format!("One-time costs since the last week: {}", format_money(spent)));
     }
-    let weeks = seen.last_week.map_or(0, |_| seen.week.min(4));
-    let income = match weeks {
-        0 => "No income yet".to_owned(),
-        _ => {
-            let (income, variable) = (format_money(pace.income * 7.0), format_money(pace.variable * 7.0));
-            match weeks {
-                1 => format!("Last week: income {income}, compute and lead costs {variable}"),
-                _ => format!(
-                    "Last {}: income {income} a week, compute and lead costs {variable}",
-                    pluralize(weeks, "week")
-                ),
-            }
-        }
-    };
-    let runway = match seen.whole_runway_weeks() {
-        Some(weeks) => format!("at this rate, cash lasts {}", pluralize(weeks, "week")),
-        None => "at this rate, cash lasts to the last day".to_owned(),
-    };
-    lines.push(format!("{income}; {runway}"));
+    let flows = seen.expected_flows();
+    lines.push(match seen.last_week {
+        None => "No income yet".to_owned(),
+        Some(_) => format!(
+            "Expected in the next 4 weeks: income {} a week, compute and lead costs {}",
+            format_money(flows.income),
+            format_money(flows.variable)
+        ),
+    });
+    lines.push(capitalize(&describe_runway(&seen.runway)));
     lines
 }
 
@@ -96,18 +87,18 @@ mod tests {
         ] {
             session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
         }
-        assert_eq!(
-            income_and_cost_lines(&session.company().observe()),
-            [
-                "Committed: $5,585 a day = $39,095 a week",
-                "One-time costs since the last week: $25,000",
-                "No income yet; at this rate, cash lasts 24 weeks",
-            ]
-        );
+        let lines = income_and_cost_lines(&session.company().observe());
+        let expected = [
+            "Committed: $5,585 a day = $39,095 a week",
+            "One-time costs since the last week: $25,000",
+            "No income yet",
+        ];
+        assert_eq!(lines[..3], expected);
+        assert!(lines[3].starts_with("Cash should last at least "), "{lines:?}");
         let played = test_kit::play_weeks(3);
         let lines = income_and_cost_lines(&played.company().observe());
         assert!(lines[0].starts_with("Committed: $") && !lines[0].contains("since"), "{lines:?}");
-        assert!(lines[1].starts_with("Last 3 weeks: income $"), "{lines:?}");
+        assert!(lines[1].starts_with("Expected in the next 4 weeks: income $"), "{lines:?}");
     }
 
     #[test]

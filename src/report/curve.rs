@@ -4,6 +4,8 @@ use novamind_base::formatting::{dollars_and_cents, percent, price_to_cents};
 use novamind_insight::{CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Plan};
 
+use crate::measured_conversion::MeasuredConversion;
+
 /// Number of curve points per table row.
 const POINTS_PER_ROW: usize = 6;
 
@@ -40,7 +42,7 @@ pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
-/// Explains the dash in [`rows`] and the assumptions of the curve.
+/// Explains the dash in [`rows`], and what the estimates leave out.
 pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
     if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {
@@ -48,34 +50,62 @@ pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
             "{UNREACHABLE} the price is above the budget of too many leads: no quality is sufficient"
         ));
     }
-    if !curve_explorer.shows_true_values() {
-        lines.push(
-            "studies estimate means only; spread and slope of the curve are assumed to be the same for all groups"
-                .to_owned(),
-        );
-    }
+    lines.push(describe_omissions(curve_explorer));
     lines
 }
 
-/// Describes the expected conversion and revenue: `conversion 31.2% (4.1% to 70.2%), revenue per lead $6.12 ($0.70 to
-/// $20.31)`.
+/// Describes the estimated conversion and revenue: `estimated conversion 31.2% (4.1% to 70.2%), revenue per lead $6.12
+/// ($0.70 to $20.31)`.
 pub fn describe_outcome(outcome: &CurveOutcome) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 1));
     match &outcome.revenue_per_lead {
         Some(revenue) => {
-            format!("conversion {conversion}, revenue per lead {}", format_range(revenue, dollars_and_cents))
+            let revenue = format_range(revenue, dollars_and_cents);
+            format!("estimated conversion {conversion}, revenue per lead {revenue}")
         }
-        None => format!("{conversion} ask for an offer; enterprises negotiate the price"),
+        None => format!("an estimated {conversion} ask for an offer; enterprises negotiate the price"),
     }
 }
 
-/// Describes the expected conversion and revenue briefly: `31% (4% to 70%) · $6.12 ($0.70 to $20.31) a lead`.
-pub fn describe_outcome_briefly(outcome: &CurveOutcome) -> String {
+/// Describes the estimated and the measured conversion briefly: `estimated 31% (4% to 70%), measured 26% of 1,230 leads`.
+pub fn describe_conversion_briefly(outcome: &CurveOutcome, measured: Option<&MeasuredConversion>) -> String {
     let conversion = format_range(&outcome.conversion, |value| percent(value, 0));
-    match &outcome.revenue_per_lead {
-        Some(revenue) => format!("{conversion} · {} a lead", format_range(revenue, dollars_and_cents)),
-        None => format!("{conversion} ask for an offer"),
+    let asked = if outcome.revenue_per_lead.is_none() { " ask for an offer" } else { "" };
+    let measured = measured.map_or(String::new(), |measured| format!(", {}", measured.describe_briefly()));
+    format!("estimated {conversion}{asked}{measured}")
+}
+
+/// Describes briefly what the estimated conversion leaves out: `leaves out market changes since day 0; spread assumed`.
+pub fn describe_omissions_briefly(explorer: &CurveExplorer) -> String {
+    let assumed = if explorer.shows_true_values() { "" } else { "; spread assumed" };
+    format!("leaves out {}{assumed}", market_changes(explorer))
+}
+
+fn market_changes(explorer: &CurveExplorer) -> String {
+    match explorer.basis {
+        CurveBasis::Truth { day } => format!("market changes after day {day}"),
+        CurveBasis::Estimates { as_of, .. } => format!("market changes since day {as_of}"),
     }
+}
+
+/// Describes what the estimated conversion leaves out, in one sentence.
+pub fn describe_omissions(explorer: &CurveExplorer) -> String {
+    let mut omitted = vec![market_changes(explorer)];
+    if !explorer.group.is_enterprise() {
+        omitted.push("discounts for single channels".to_owned());
+    }
+    if explorer.omits_service() {
+        omitted.push("overload and outages".to_owned());
+    }
+    let text = match omitted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => omitted.concat(),
+    };
+    let assumed = match explorer.shows_true_values() {
+        true => "",
+        false => "; it assumes the spread and slope of the curve",
+    };
+    format!("The estimate leaves out {text}{assumed}.")
 }
 
 /// Formats an expected value with its range, if any. `write` formats each number.
@@ -120,6 +150,32 @@ mod tests {
             CurveExplorer::open(&mut session, Group::parse("E1").expect("a group")).expect("an explorer");
         let text = describe_outcome(&companies.outcome_for_plans(&companies.plans));
         assert!(text.contains("ask for an offer"), "{text}");
+    }
+
+    #[test]
+    fn omissions_depend_on_the_basis_and_the_group() {
+        let mut session = play_weeks(0);
+        let explorer = |group: &str, session: &mut novamind_session::Session| {
+            CurveExplorer::open(session, Group::parse(group).expect("a group")).expect("an explorer")
+        };
+        assert_eq!(
+            describe_omissions(&explorer("S1", &mut session)),
+            "The estimate leaves out market changes since day 0 and discounts for single channels; it assumes the spread \
+             and slope of the curve."
+        );
+        let text = describe_omissions(&explorer("E1", &mut session));
+        assert!(!text.contains("discounts"), "{text}");
+    }
+
+    #[test]
+    fn brief_conversion_contains_estimate_and_measurement() {
+        let mut session = play_weeks(3);
+        let group = Group::parse("S1").expect("a group");
+        let measured = MeasuredConversion::of_group(&session, group);
+        let explorer = CurveExplorer::open(&mut session, group).expect("an explorer");
+        let text = describe_conversion_briefly(&explorer.outcome_for_plans(&explorer.plans), Some(&measured));
+        let parts = ["estimated ", " to ", "), measured ", " leads"];
+        assert!(parts.iter().all(|part| text.contains(part)), "{text}");
     }
 
     #[test]

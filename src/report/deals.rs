@@ -26,17 +26,31 @@ pub fn describe_deals(tool: ToolId, arguments: &Value, names: &EnterpriseNames) 
 }
 
 fn describe_deal(deal: &Value, names: &EnterpriseNames) -> Option<String> {
+    let (customer, offerings) = parse_deal(deal)?;
+    let company = names.name_with_number(customer);
+    if offerings.is_empty() {
+        return Some(company);
+    }
+    let offering = |(plan, price): &(&str, f64)| format!("{plan} {}", dollars_and_cents(*price));
+    Some(format!("{company}: {}", offerings.iter().map(offering).collect::<Vec<_>>().join(" or ")))
+}
+
+/// Parses one deal of a tool call: the customer, and each plan with its price in dollars per seat per month. A
+/// rejection has no plans. Returns `None` if the deal is invalid.
+pub fn parse_deal(deal: &Value) -> Option<(u32, Vec<(&str, f64)>)> {
     let part = |name: &str, at: usize| deal.get(name).or_else(|| deal.get(at));
-    let customer = part("customer_id", 0).unwrap_or(deal).as_u64()?;
-    let company = names.name_with_number(u32::try_from(customer).ok()?);
-    let Some(offerings) = part("offerings", 1).and_then(Value::as_array) else { return Some(company) };
-    let offering = |offering: &Value| {
-        let part = |name: &str, at: usize| offering.get(name).or_else(|| offering.get(at));
-        let price = part("price_per_seat", 1).or_else(|| offering.get("price"))?.as_f64()?;
-        Some(format!("{} {}", part("plan", 0)?.as_str()?, dollars_and_cents(price)))
+    let customer = u32::try_from(part("customer_id", 0).unwrap_or(deal).as_u64()?).ok()?;
+    let Some(offerings) = part("offerings", 1).and_then(Value::as_array) else {
+        return Some((customer, Vec::new()));
     };
-    let offerings: Option<Vec<String>> = offerings.iter().map(offering).collect();
-    Some(format!("{company}: {}", offerings?.join(" or ")))
+    let offerings: Option<Vec<(&str, f64)>> = offerings.iter().map(parse_offering).collect();
+    Some((customer, offerings?))
+}
+
+fn parse_offering(offering: &Value) -> Option<(&str, f64)> {
+    let part = |name: &str, at: usize| offering.get(name).or_else(|| offering.get(at));
+    let price = part("price_per_seat", 1).or_else(|| offering.get("price"))?.as_f64()?;
+    Some((part("plan", 0)?.as_str()?, price))
 }
 
 #[cfg(test)]

@@ -5,12 +5,10 @@
 use serde::Serialize;
 
 use super::formatting::{format_range, format_whole};
-use novamind_base::formatting::{dollars, dollars_and_cents, percent, price_to_cents};
+use super::measured_conversion::{MEASURED_WEEKS, MeasuredConversion};
+use novamind_base::formatting::{QUALITY_DECIMALS, dollars, dollars_and_cents, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
-
-/// Number of weeks in [`Fit::recent`].
-const RECENT_WEEKS: usize = 4;
 
 /// Smallest and largest true value that are consistent with an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -49,7 +47,7 @@ impl TrueValueRange {
 
     /// Formats a range of qualities: `0.181 to 0.858`.
     pub fn format_quality(&self) -> String {
-        format_range(self.least, self.most, 3)
+        format_range(self.least, self.most, QUALITY_DECIMALS)
     }
 
     /// Formats a range of dollars: `$18 to $87`.
@@ -121,6 +119,8 @@ pub struct LeadFlow {
     pub channel_leads: u32,
     /// Number of leads by word of mouth.
     pub word_of_mouth: u32,
+    /// Number of enterprises among the leads that requested an offer.
+    pub requests: u32,
     /// Number of individuals who signed up, or of enterprises that accepted their first deal.
     pub signups: u32,
 }
@@ -150,26 +150,26 @@ pub struct Fit {
     pub last_week: Option<LeadFlow>,
     /// Leads of the last four weeks.
     pub recent: LeadFlow,
+    /// Measured conversion of the last four weeks.
+    pub measured: MeasuredConversion,
 }
 
 /// Returns the fit of every known group, in the fixed order of groups.
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
     let delivered = |group: Group| quality.iter().find(|delivered_quality| delivered_quality.group == group);
-    let of = |estimates: &Estimates| {
-        Some(group_fit(estimates, delivered(estimates.group)?, session.settings(), weeks, session.day()))
-    };
+    let of = |estimates: &Estimates| Some(group_fit(session, estimates, delivered(estimates.group)?, weeks));
     session.company().estimates().iter().filter_map(of).collect()
 }
 
 fn group_fit(
+    session: &Session,
     estimates: &Estimates,
     quality: &DeliveredQuality,
-    settings: &Settings,
     weeks: &[ByGroup<GroupWeek>],
-    day: u32,
 ) -> Fit {
-    let recent = &weeks[weeks.len().saturating_sub(RECENT_WEEKS)..];
+    let recent = &weeks[weeks.len().saturating_sub(MEASURED_WEEKS)..];
+    let (settings, day) = (session.settings(), session.day());
     Fit {
         group: estimates.group,
         level: estimates.level,
@@ -181,10 +181,8 @@ fn group_fit(
         usage: estimates.account_usage_range().into(),
         plans: ByPlan::from_fn(|plan| plan_fit(estimates.group, plan, quality.by_plan[plan], settings)),
         last_week: weeks.last().map(|week| LeadFlow::from_week(&week[estimates.group])),
-        recent: recent
-            .iter()
-            .map(|week| LeadFlow::from_week(&week[estimates.group]))
-            .fold(LeadFlow::default(), LeadFlow::add),
+        recent: LeadFlow::sum(recent.iter().map(|week| &week[estimates.group])),
+        measured: MeasuredConversion::of_group(session, estimates.group),
     }
 }
 
@@ -204,13 +202,20 @@ fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> Plan
 }
 
 impl LeadFlow {
-    fn from_week(week: &GroupWeek) -> LeadFlow {
+    /// Returns the leads and signups of a week.
+    pub fn from_week(week: &GroupWeek) -> LeadFlow {
         LeadFlow {
             leads: week.leads,
             channel_leads: week.paid_leads(),
             word_of_mouth: week.word_of_mouth,
+            requests: week.asked,
             signups: week.signed,
         }
+    }
+
+    /// Returns the leads and signups of several weeks.
+    pub fn sum<'a>(weeks: impl IntoIterator<Item = &'a GroupWeek>) -> LeadFlow {
+        weeks.into_iter().map(LeadFlow::from_week).fold(LeadFlow::default(), LeadFlow::add)
     }
 
     fn add(self, other: LeadFlow) -> LeadFlow {
@@ -218,6 +223,7 @@ impl LeadFlow {
             leads: self.leads + other.leads,
             channel_leads: self.channel_leads + other.channel_leads,
             word_of_mouth: self.word_of_mouth + other.word_of_mouth,
+            requests: self.requests + other.requests,
             signups: self.signups + other.signups,
         }
     }
@@ -285,7 +291,7 @@ impl Fit {
             format!("may not suit all customers: {}", open.join(", "))
         };
         match (missing.is_empty(), open.is_empty()) {
-            (true, true) => "meets the estimated needs".to_owned(),
+            (true, true) => "price, quality and quota suit the estimated mean customer".to_owned(),
             (true, false) => open,
             (false, true) => describe_certain_gaps(&missing),
             (false, false) => format!("{}; {open}", describe_certain_gaps(&missing)),

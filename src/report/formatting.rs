@@ -3,12 +3,20 @@
 pub use novamind_base::formatting::pluralize;
 use novamind_base::formatting::{compact_number, grouped_number, signed_dollars};
 use novamind_insight::{BranchOrigin, FirstChange};
-use novamind_session::{Category, Observation};
+use novamind_session::{Category, MAX_RUNWAY_DAYS, Observation, Runway};
 
 /// Formats dollars with the sign before the dollar sign: `$1,234`, `-$45`.
 pub fn format_money(value: f64) -> String {
     let sign = if value < -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped_number(value.abs(), 0))
+}
+
+/// Returns the label of a figure of the week. The unit is part of the label if neither the name nor the value shows it.
+pub fn figure_label(name: &'static str) -> &'static str {
+    match name {
+        "recurring revenue" => "recurring $/month",
+        name => name,
+    }
 }
 
 /// Describes the last change in cash and its period: `+$1,234 over the last week`.
@@ -19,6 +27,22 @@ pub fn describe_cash_change(seen: &Observation) -> String {
         days => pluralize(days, "day"),
     };
     format!("{} over the last {span}", signed_dollars(seen.cash_change))
+}
+
+/// Describes for how long cash should last, as an 80 % range: `cash should last 9 to 19 weeks`.
+pub fn describe_runway(runway: &Runway) -> String {
+    let whole = |weeks: f64| pluralize(weeks as u32, "week");
+    match (runway.earliest, runway.latest) {
+        (None, _) if runway.is_cut => {
+            format!("cash should last at least {} weeks", MAX_RUNWAY_DAYS / 7)
+        }
+        (None, _) => "cash should last to the last day".to_owned(),
+        (Some(least), None) => format!("cash should last at least {}", whole(least)),
+        (Some(least), Some(most)) if least as u32 == most as u32 => {
+            format!("cash should last {}", whole(most))
+        }
+        (Some(least), Some(most)) => format!("cash should last {} to {}", least as u32, whole(most)),
+    }
 }
 
 /// Describes the origin of a branch: `branch of 1a2b3c4d from week 5, first change set_prices on day 28`.

@@ -29,6 +29,7 @@ pub mod lead_costs;
 pub mod lesson;
 pub mod logbook;
 mod markdown;
+pub mod measured_conversion;
 pub mod measures;
 pub mod opponents;
 mod outline;
@@ -57,7 +58,7 @@ pub mod why;
 use novamind_course::Debrief;
 
 pub use formatting::{
-    category_name, describe_cash_change, describe_first_change, describe_origin, pluralize,
+    category_name, describe_cash_change, describe_first_change, describe_origin, figure_label, pluralize,
 };
 pub use logbook::Logbook;
 pub use run_report::RunReport;

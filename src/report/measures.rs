@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 
 use super::database_figures::ChannelRow;
-use novamind_record::trajectory::record::RunEndReason;
+use novamind_record::trajectory::record::{RunEndReason, is_naive_week};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_session::{
     Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, submitted_forecasts,
@@ -66,7 +66,7 @@ impl BehaviorMeasures {
             channels: best_tried_channel_share(channels),
             targeted_development: targeted_development(session.company().decisions()),
             forecasts: session.company().forecast_scores(),
-            filled_naively: naive_forecast_weeks(journal),
+            filled_naively: naive_forecast_weeks(journal, session.manifest().days),
             first_forecasts: first_forecasts(journal, session.cash_by_day()),
             truly_best: true_best_channel_share(channels, |group| session.company().true_best_channel(group)),
             tools: tool_use(journal),
@@ -352,10 +352,13 @@ pub fn planning_measures(journal: &[JournalEntry]) -> PlanningMeasures {
     PlanningMeasures { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
-/// Returns the number of weeks with naive forecasts, and the number of all weeks.
-pub fn naive_forecast_weeks(journal: &[JournalEntry]) -> (u32, u32) {
+/// Returns the number of weeks with naive forecasts that end within the run, and the number of all weeks.
+pub fn naive_forecast_weeks(journal: &[JournalEntry], last_day: u32) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
-        JournalEntry::Advance { filled_naively, .. } => Some(filled_naively.contains(&true)),
+        JournalEntry::Advance { day, forecasts, filled_naively, rationale: _ } => {
+            let horizons = forecasts.iter().map(|forecast| forecast.horizon_days);
+            Some(is_naive_week(horizons.zip(*filled_naively), last_day.saturating_sub(*day)))
+        }
         _ => None,
     });
     filed.fold((0, 0), |(naive, all), is_naive| (naive + u32::from(is_naive), all + 1))
@@ -468,7 +471,7 @@ mod tests {
         let planning = planning_measures(session.journal());
         assert_eq!(planning.rationales, 4);
         assert_eq!(planning.planning_each, 0.5, "if, otherwise");
-        assert_eq!(naive_forecast_weeks(session.journal()), (4, 4));
+        assert_eq!(naive_forecast_weeks(session.journal(), 500), (4, 4));
         assert_eq!(super::planning_measures(&[]), PlanningMeasures::default());
     }
 

@@ -2,7 +2,9 @@
 
 mod charts;
 
-use super::formatting::{describe_cash_change, describe_origin, format_money, format_whole, pluralize};
+use super::formatting::{
+    describe_cash_change, describe_origin, describe_runway, format_money, format_whole, pluralize,
+};
 use super::measures::{BehaviorMeasures, MIN_CHANNEL_LEADS, PLANNING_WORDS};
 use super::page::{Bar, Block, NamedValue, Page, Table};
 use super::ranking::{ResultOrigin, published_results, published_targeted_shares};
@@ -69,14 +71,10 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
-    // The runway follows from the current settings and from the income and usage of recent weeks. The runway does not
-    // follow from the cash change since the start.
-    let runway = match (seen.ended, seen.whole_runway_weeks()) {
-        (Some(_), _) => String::new(),
-        (None, None) => "at current costs and income, cash lasts to the last day".to_owned(),
-        (None, Some(weeks)) => {
-            format!("at current costs and income, cash lasts {}", pluralize(weeks, "week"))
-        }
+    // The runway does not follow from the cash change since the start.
+    let runway = match seen.ended {
+        Some(_) => String::new(),
+        None => describe_runway(&seen.runway),
     };
     let change = signed_dollars(seen.cash - report.start_cash);
     vec![

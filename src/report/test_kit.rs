@@ -13,6 +13,14 @@ pub fn play_weeks(weeks: usize) -> Session {
     play_run(200, 1_000_000.0, weeks, &opening_calls())
 }
 
+/// Simulates weeks with naive forecasts.
+pub fn advance_weeks(session: &mut Session, weeks: usize) {
+    for _ in 0..weeks {
+        let forecasts = session.company().naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+}
+
 /// Returns a run in memory that has reached its last day.
 pub fn finished_run() -> Session {
     play_run(35, 1_000_000.0, 5, &opening_calls())

@@ -3,8 +3,9 @@
 use serde_json::{Value, json};
 
 use super::grammar::{Action, OfferLine, Price, Rule};
-use super::thread::{PlanEconomics, RULE_TOOLS, ThreadContext};
-use novamind_base::formatting::{dollars, dollars_and_cents, grouped_number, percent};
+use super::plan_economics::{OfferTotals, PlanEconomics};
+use super::thread::{RULE_TOOLS, ThreadContext};
+use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_session::identifiers::Plan;
 use novamind_session::{EnterpriseNames, Session};
 use novamind_tools::{Rejection, ToolId};
@@ -29,72 +30,6 @@ pub struct RuleOutcome {
     pub reply: Result<RuleReply, &'static str>,
 }
 
-/// Totals over the threads that a rule matches.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct RuleTotals {
-    /// Number of threads that receive a reply.
-    pub thread_count: u32,
-    /// Number of seats in the threads that receive a reply.
-    pub seats: u32,
-    /// Largest possible revenue from the offers, in dollars per month.
-    pub monthly_revenue: f64,
-    /// Revenue from enterprises with known compute cost, and this compute cost, in dollars per month.
-    known_margin: (f64, f64),
-    /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
-    pub above_quota: u32,
-    /// Number of threads that receive no reply.
-    pub skipped: u32,
-}
-
-impl RuleTotals {
-    /// Returns the share of revenue that remains after compute cost, or `None` if no compute cost is known.
-    pub fn margin(&self) -> Option<f64> {
-        (self.known_margin.0 > 0.0).then(|| 1.0 - self.known_margin.1 / self.known_margin.0)
-    }
-
-    fn add(&mut self, ruled: &RuleOutcome, market: &PlanEconomics) {
-        let Ok(reply) = &ruled.reply else {
-            self.skipped += 1;
-            return;
-        };
-        let seats = ruled.thread.waiting.seats;
-        self.thread_count += 1;
-        self.seats += seats;
-        let RuleReply::Offer(lines) = reply else { return };
-        let Some(dearest) = lines.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) else {
-            return;
-        };
-        let monthly = dearest.1 * f64::from(seats);
-        self.monthly_revenue += monthly;
-        if let Some(wanted) = ruled.thread.required_quota {
-            self.known_margin =
-                (self.known_margin.0 + monthly, self.known_margin.1 + market.compute_cost(dearest.0, wanted));
-            let short = |(plan, _): &(Plan, f64)| market.quotas[*plan as usize] < wanted;
-            self.above_quota += u32::from(lines.iter().any(short));
-        }
-    }
-
-    fn describe(&self, rejects: bool) -> String {
-        let noun = if self.thread_count == 1 { "enterprise" } else { "enterprises" };
-        let seats = if self.seats == 1 { "seat" } else { "seats" };
-        let count = |value: u32| grouped_number(f64::from(value), 0);
-        let mut words = format!("{} {noun}, {} {seats}", count(self.thread_count), count(self.seats));
-        if self.thread_count > 0 && !rejects {
-            words += &format!(", at most {} a month", dollars(self.monthly_revenue));
-            words += &self
-                .margin()
-                .map_or(String::new(), |margin| format!(", margin after compute {}", percent(margin, 0)));
-        }
-        if self.above_quota > 0 {
-            words += &format!(", {} above the quota of an offered plan", count(self.above_quota));
-        }
-        if self.skipped > 0 {
-            words += &format!(", {} skipped", count(self.skipped));
-        }
-        words
-    }
-}
-
 /// The result of applying rules to all waiting threads.
 #[derive(Debug, Clone)]
 pub struct RuleBatch {
@@ -103,7 +38,7 @@ pub struct RuleBatch {
     /// All waiting threads, ordered by deadline.
     pub threads: Vec<RuleOutcome>,
     /// Totals of each rule, followed by the totals of threads without a matching rule.
-    pub totals: Vec<RuleTotals>,
+    pub totals: Vec<OfferTotals>,
 }
 
 /// Returns the tool calls that send the replies of rules to all waiting enterprises.
@@ -125,9 +60,9 @@ impl RuleBatch {
     pub fn new(rules: Vec<Rule>, threads: Vec<ThreadContext>, market: &PlanEconomics) -> RuleBatch {
         let threads: Vec<RuleOutcome> =
             threads.into_iter().map(|thread| apply_rules(&rules, thread, market)).collect();
-        let mut sums = vec![RuleTotals::default(); rules.len() + 1];
+        let mut sums = vec![OfferTotals::default(); rules.len() + 1];
         for ruled in &threads {
-            sums[ruled.rule_index.unwrap_or(rules.len())].add(ruled, market);
+            add_outcome(&mut sums[ruled.rule_index.unwrap_or(rules.len())], ruled, market);
         }
         RuleBatch { rules, threads, totals: sums }
     }
@@ -168,7 +103,7 @@ impl RuleBatch {
 
     /// Returns the totals by rule as JSON.
     pub fn totals_to_json(&self) -> Vec<Value> {
-        let one = |(rule, sums): (&Rule, &RuleTotals)| {
+        let one = |(rule, sums): (&Rule, &OfferTotals)| {
             json!({
                 "rule": rule.text,
                 "companies": sums.thread_count,
@@ -180,6 +115,18 @@ impl RuleBatch {
             })
         };
         self.rules.iter().zip(&self.totals).map(one).collect()
+    }
+}
+
+fn add_outcome(totals: &mut OfferTotals, ruled: &RuleOutcome, market: &PlanEconomics) {
+    let waiting = &ruled.thread.waiting;
+    match &ruled.reply {
+        Ok(RuleReply::Offer(lines)) => {
+            let line = |line: &(Plan, f64)| market.offer_line(waiting.group, waiting.seats, *line);
+            totals.add_offer(&lines.iter().map(line).collect::<Vec<_>>(), waiting.seats);
+        }
+        Ok(RuleReply::Rejection) => totals.add_reply(waiting.seats),
+        Err(_) => totals.skipped += 1,
     }
 }
 
@@ -263,6 +210,7 @@ mod tests {
     use super::super::seat_usage::SeatUsage;
     use super::*;
     use novamind_session::WaitingThread;
+    use novamind_session::identifiers::Group;
 
     fn thread(customer: u32, seats: u32, asked: Option<(Plan, f64)>, last: &[(Plan, f64)]) -> ThreadContext {
         let waiting = WaitingThread {
@@ -290,7 +238,11 @@ mod tests {
             quotas: [1_000.0, 1_000.0, 5_000.0],
             unit_costs: [0.001, 0.01, 0.1],
             usage: SeatUsage::default(),
-            estimated_usage: Default::default(),
+            estimated_usage: ["E1", "E2"]
+                .into_iter()
+                .filter_map(Group::parse)
+                .map(|group| (group, (1, 10.0)))
+                .collect(),
         }
     }
 
@@ -376,7 +328,7 @@ mod tests {
         let compute = 1_000.0 * 30.0 * 0.01 + 3_000.0 * 30.0 * 0.1;
         assert_eq!(accepted.margin(), Some(1.0 - compute / accepted.monthly_revenue));
         assert_eq!(batch.totals[1].monthly_revenue, 10.0 * 150.0);
-        assert_eq!(batch.totals[2], RuleTotals::default());
+        assert_eq!(batch.totals[2], OfferTotals::default());
         let calls = batch.tool_calls();
         assert_eq!(calls.len(), 1);
         assert_eq!(

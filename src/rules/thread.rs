@@ -1,20 +1,19 @@
-//! Data that rules use: waiting threads, and prices and costs of the plans.
+//! Waiting threads with all fields that rules use.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
+use super::plan_economics::PlanEconomics;
 use super::seat_usage::{SEAT_USAGE_SQL, SeatUsage};
 use novamind_base::formatting::json_number;
 use novamind_database::{QueryResult, number_at, text_at};
-use novamind_session::identifiers::{Group, Plan};
+use novamind_session::identifiers::Plan;
 use novamind_session::{EnterpriseNames, Session, WaitingThread};
 use novamind_tools::{Rejection, ToolId};
 
 /// SQL query for the last messages of enterprises. A thread ends a week after the last message.
 pub const LAST_MESSAGES_SQL: &str = include_str!("../../assets/readings/last_letters.sql");
-
-const DAYS_PER_MONTH: f64 = 30.0;
 
 /// The plan that the enterprise named in its latest message, with a price or as a request, by thread.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,7 +36,7 @@ pub fn first_plan_in(text: &str) -> Option<Plan> {
 }
 
 /// Returns the first plan in a text that is not the enterprise's current plan. A request may name both plans.
-fn other_plan_in(text: &str, present: Option<Plan>) -> Option<Plan> {
+pub(super) fn other_plan_in(text: &str, present: Option<Plan>) -> Option<Plan> {
     plans_in(text).into_iter().find(|plan| Some(*plan) != present)
 }
 
@@ -50,56 +49,6 @@ fn plans_in(text: &str) -> Vec<Plan> {
         Plan::parse(&letter).filter(|_| ends)
     };
     lower.match_indices("plan ").filter_map(named).collect()
-}
-
-/// Prices, quotas and costs of the plans, and the usage per seat of each group.
-#[derive(Debug, Clone, Default)]
-pub struct PlanEconomics {
-    /// List price of each plan, in dollars per seat per month.
-    pub list_prices: [f64; 3],
-    /// Quota of each plan, in units per customer per day.
-    pub quotas: [f64; 3],
-    /// Compute cost of each plan, in dollars per unit.
-    pub unit_costs: [f64; 3],
-    /// Usage per seat measured on the last day, by group.
-    pub usage: SeatUsage,
-    /// Usage estimated by the last market study, in units per seat per day.
-    pub estimated_usage: BTreeMap<Group, f64>,
-}
-
-impl PlanEconomics {
-    /// Returns the plans and the usage on the current day of a run.
-    pub fn from_session(session: &Session, usage: SeatUsage) -> PlanEconomics {
-        let (core, terms) = (&session.settings().core, session.company().tool_limits());
-        let unit_cost = |plan: Plan| {
-            let model = terms.models.iter().find(|model| model.tier == core.tiers[plan]);
-            model.map_or(0.0, |model| model.unit_cost)
-        };
-        let studied = session
-            .company()
-            .estimates()
-            .into_iter()
-            .map(|estimates| (estimates.group, estimates.usage))
-            .collect();
-        PlanEconomics {
-            list_prices: Plan::ALL.map(|plan| core.prices[plan]),
-            quotas: Plan::ALL.map(|plan| core.quotas[plan].units()),
-            unit_costs: Plan::ALL.map(unit_cost),
-            usage,
-            estimated_usage: studied,
-        }
-    }
-
-    /// Returns the expected usage of all seats of an enterprise, in units per day.
-    pub fn required_usage(&self, group: &str, seats: u32) -> Option<f64> {
-        let studied = || Group::parse(group).and_then(|group| self.estimated_usage.get(&group)).copied();
-        self.usage.measured_usage(group).or_else(studied).map(|units| units * f64::from(seats))
-    }
-
-    /// Returns the compute cost of an enterprise on a plan, in dollars per month. All seats of an enterprise share one quota.
-    pub fn compute_cost(&self, plan: Plan, wanted: f64) -> f64 {
-        wanted.min(self.quotas[plan as usize]) * DAYS_PER_MONTH * self.unit_costs[plan as usize]
-    }
 }
 
 /// A waiting thread with all fields that rules use.

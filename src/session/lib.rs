@@ -39,13 +39,15 @@ pub use database::{
 pub use figures::attendance::{
     Attendance, AttendedWeek, Attention, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent,
 };
-pub use figures::cash_rate::CashRate;
 pub use figures::changes::{Decisions, SettingChange};
 pub use figures::dashboard::DeliveredQuality;
 pub use figures::estimates::{Estimates, true_value_range};
-pub use figures::groups::{GroupWeek, PaidLeads};
+pub use figures::groups::{GroupWeek, PaidLeads, PlanRevenue};
 pub use figures::journal::JournalEntry;
-pub use figures::naive::{Coverage, ErrorIntervals, GrowthStage, Hindcast, hindcasts};
+pub use figures::outlook::{
+    BillingCalendar, CommittedCosts, ErrorIntervals, ExpectedFlows, ForecastError, GrowthStage, Level,
+    MAX_RUNWAY_DAYS, Outlook, Runway, StageInterval,
+};
 pub use figures::scored_forecast::{ForecastScore, IntervalPosition, ScoredForecast, submitted_forecasts};
 pub use figures::session_count::SessionCount;
 pub use figures::setting::{Audience, SettingId, setting_values};

@@ -127,11 +127,11 @@ impl<'a> Canvas<'a> {
         // Spaces at the end align columns and may be cut without a mark.
         let text: String = line.spans.iter().map(|span| span.content.as_ref()).collect();
         if text.trim_end().width() > area.width as usize {
-            let last = Position::new(area.right() - 1, area.y);
-            if area.width > 1 && self.buffer[(last.x - 1, last.y)].symbol().width() > 1 {
-                self.buffer[(last.x - 1, last.y)].set_symbol(" ");
+            let kept = truncate_to_width(&text, area.width as usize).width().max(1) as u16;
+            self.buffer[(area.x + kept - 1, area.y)].set_symbol("…");
+            for x in area.x + kept..area.right() {
+                self.buffer[(x, area.y)].set_symbol(" ");
             }
-            self.buffer[last].set_symbol("…");
         }
     }
 
@@ -185,7 +185,63 @@ impl<'a> Canvas<'a> {
         let row = Rect { x: area.x + 2, y: area.bottom() - 1, width: area.width - 4, height: 1 };
         let shown = format!(" {} ", fitting_keys(text, row.width.saturating_sub(2) as usize));
         let width = shown.width() as u16;
-        self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Dim);
+        self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Text);
+    }
+
+    /// Returns the first visible row of a list, for which the selected row is near the middle, and draws the marks of
+    /// [`Canvas::draw_scroll_marks`].
+    pub fn scroll_to_row(&mut self, list: Rect, selected: usize, rows: usize) -> usize {
+        let from = first_visible_row(selected, list.height as usize, rows);
+        self.draw_scroll_marks(list, from, rows);
+        from
+    }
+
+    /// Draws arrows at the right border of a list if rows above or below are not visible.
+    pub fn draw_scroll_marks(&mut self, list: Rect, first: usize, rows: usize) {
+        if list.is_empty() {
+            return;
+        }
+        let marks = [(first > 0, list.y, "↑"), (rows > first + list.height as usize, list.bottom() - 1, "↓")];
+        for (_, y, mark) in marks.into_iter().filter(|(is_cut, ..)| *is_cut) {
+            self.draw_mark_beside(Rect { y, height: 1, ..list }, mark);
+        }
+    }
+
+    /// Draws arrows in the headings of a matrix if columns to the left or to the right are not visible. `names` is the
+    /// width of the first column.
+    pub fn draw_column_marks(&mut self, head: Rect, names: u16, before: bool, after: bool) {
+        if before && names < head.width {
+            self.draw_text(Rect { x: head.x + names, width: 1, ..head }, "←", Role::Key);
+        }
+        if after && !head.is_empty() {
+            self.draw_mark_beside(head, "→");
+        }
+    }
+
+    /// Draws a mark next to the right end of a row, on the border or in a gap. Without either, the mark covers the end
+    /// of the row.
+    fn draw_mark_beside(&mut self, row: Rect, mark: &str) {
+        let style = self.style(Role::Key);
+        let beside = Position::new(row.right(), row.y);
+        let is_free = self.buffer.cell(beside).is_some_and(|cell| " │┃".contains(cell.symbol()));
+        let place = if is_free { beside } else { Position::new(row.right() - 1, row.y) };
+        if let Some(cell) = self.buffer.cell_mut(place) {
+            cell.set_symbol(mark).set_style(style);
+        }
+    }
+
+    /// Draws the position of a pane among the panes that share its area into the lower border, if the border has space.
+    pub fn draw_stack_mark(&mut self, area: Rect, at: usize, panes: usize) {
+        let mark = format!(" pane {} of {panes} ", at + 1);
+        let width = mark.width() as u16;
+        if area.width < width + 4 || area.height < 2 {
+            return;
+        }
+        let place = Rect { x: area.right() - width - 1, y: area.bottom() - 1, width, height: 1 };
+        let is_border = |x| self.buffer.cell((x, place.y)).is_some_and(|cell| "─━".contains(cell.symbol()));
+        if (place.left()..place.right()).all(is_border) {
+            self.draw_text(place, &mark, Role::Dim);
+        }
     }
 
     /// Makes an area clickable.
@@ -225,7 +281,13 @@ pub fn row_rects(area: Rect) -> impl Iterator<Item = Rect> {
     (area.top()..area.bottom()).map(move |y| Rect { y, height: 1, ..area })
 }
 
-/// Truncates text to a width with an ellipsis, between graphemes.
+/// Returns the first visible row for which the selected row is near the middle.
+pub fn first_visible_row(selected: usize, height: usize, rows: usize) -> usize {
+    selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
+}
+
+/// Truncates text to a width with an ellipsis, between graphemes. A number is either complete or omitted, so that no
+/// digits of a larger number are shown.
 pub fn truncate_to_width(text: &str, width: usize) -> String {
     if text.width() <= width && !text.contains(|letter: char| letter.is_control()) {
         return text.to_owned();
@@ -245,9 +307,19 @@ pub fn truncate_to_width(text: &str, width: usize) -> String {
         fitted.push_str(piece);
     }
     if whole > width && width > 0 {
+        fitted.truncate(without_last_number(&fitted).len());
         fitted.push('…');
     }
     fitted
+}
+
+/// Returns the text without a number at its end, which may be incomplete.
+fn without_last_number(text: &str) -> &str {
+    let digits = text.trim_end_matches(['k', 'M', 'B', '%', '.', ',', '$', '+', '-', '±']);
+    if !digits.ends_with(|letter: char| letter.is_ascii_digit()) {
+        return text.trim_end_matches(['$', '+', '±']);
+    }
+    digits.trim_end_matches(|letter: char| letter.is_ascii_digit() || ".,$+-±−#".contains(letter))
 }
 
 /// Returns a rectangle in the middle of an area, limited to the size of the area.
@@ -286,5 +358,41 @@ mod tests {
         assert_eq!(truncate_to_width("a\nb\tc", 9), "a b c");
         assert_eq!(truncate_to_width("abc", 0), "");
         assert_eq!(truncate_to_width("abc", 1), "…");
+    }
+
+    #[test]
+    fn numbers_are_complete_or_omitted() {
+        assert_eq!(truncate_to_width("cash $1,234,567 now", 12), "cash …");
+        assert_eq!(truncate_to_width("12 weeks $1.34M to", 15), "12 weeks …");
+        assert_eq!(truncate_to_width("0.3 to 12.5% a day", 13), "0.3 to …");
+        assert_eq!(truncate_to_width("weeks 3 and 4", 9), "weeks 3 …");
+        assert_eq!(truncate_to_width("123456", 4), "…");
+    }
+
+    #[test]
+    fn lines_are_truncated_like_text() {
+        let theme = Theme::bundled("mono").expect("a theme");
+        for (text, shown) in [("cash $1,234,567 now", "cash …      "), ("plain long text", "plain long …")]
+        {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, 12, 1));
+            let area = buffer.area;
+            Canvas::new(&mut buffer, &theme).draw_line(area, &Line::from(text));
+            assert_eq!((0..12).map(|x| buffer[(x, 0)].symbol()).collect::<String>(), shown);
+        }
+    }
+
+    #[test]
+    fn scroll_marks_show_rows_above_and_below() {
+        let theme = Theme::bundled("mono").expect("a theme");
+        let marks = |selected, rows, width| {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, 5, 4));
+            let list = Rect::new(0, 0, width, 4);
+            let from = Canvas::new(&mut buffer, &theme).scroll_to_row(list, selected, rows);
+            (from, buffer[(4, 0)].symbol().to_owned() + buffer[(4, 3)].symbol())
+        };
+        assert_eq!(marks(0, 4, 4), (0, "  ".to_owned()));
+        assert_eq!(marks(0, 5, 4), (0, " ↓".to_owned()));
+        assert_eq!(marks(9, 20, 4), (7, "↑↓".to_owned()));
+        assert_eq!(marks(19, 20, 5), (16, "↑ ".to_owned()), "without a border");
     }
 }

@@ -119,23 +119,33 @@ impl Chord {
             && !self.alt
     }
 
+    /// Returns whether the chord deletes a character of a text.
+    pub fn is_deletion(&self) -> bool {
+        matches!(self.code, KeyCode::Backspace | KeyCode::Delete)
+    }
+
+    /// Returns whether the chord moves the cursor of a text.
+    pub fn is_movement(&self) -> bool {
+        matches!(
+            self.code,
+            KeyCode::Left
+                | KeyCode::Right
+                | KeyCode::Up
+                | KeyCode::Down
+                | KeyCode::Home
+                | KeyCode::End
+                | KeyCode::PageUp
+                | KeyCode::PageDown
+        )
+    }
+
     /// Returns whether a text field or an editor handles the chord.
     pub fn is_text_input(&self) -> bool {
         match self.code {
             KeyCode::Char(_) => !self.ctrl && !self.alt,
-            KeyCode::Backspace
-            | KeyCode::Delete
-            | KeyCode::Left
-            | KeyCode::Right
-            | KeyCode::Up
-            | KeyCode::Down
-            | KeyCode::Home
-            | KeyCode::End
-            | KeyCode::PageUp
-            | KeyCode::PageDown
-            | KeyCode::Enter => true,
+            KeyCode::Enter => true,
             KeyCode::Tab => !self.shift,
-            _ => false,
+            _ => self.is_deletion() || self.is_movement(),
         }
     }
 }

@@ -24,6 +24,29 @@ pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
 }
 
+/// Settings of the terminal, such as echo and line mode, in the format of `stty -g`. `None` if they are unknown.
+#[cfg(unix)]
+pub struct TerminalSettings(Option<String>);
+
+#[cfg(unix)]
+impl TerminalSettings {
+    fn read() -> TerminalSettings {
+        use std::process::{Command, Stdio};
+        let output = Command::new("stty").arg("-g").stdin(Stdio::inherit()).stderr(Stdio::null()).output();
+        let output = output.ok().filter(|output| output.status.success());
+        TerminalSettings(output.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()))
+    }
+
+    /// Restores the settings, because a program that was killed can leave the terminal without echo.
+    pub fn restore(&self) {
+        if let Some(settings) = &self.0 {
+            // Errors are ignored, because the terminal may be closed already.
+            let _ =
+                std::process::Command::new("stty").arg(settings).stderr(std::process::Stdio::null()).status();
+        }
+    }
+}
+
 /// Line that is printed after the message of a panic.
 static PANIC_NOTE: Mutex<Option<String>> = Mutex::new(None);
 
@@ -63,6 +86,24 @@ impl TerminalScreen {
     pub fn suspend(&mut self, mouse: bool) -> io::Result<()> {
         restore_terminal();
         signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)?;
+        self.resume(mouse)
+    }
+
+    /// Leaves the terminal to another program. Returns the settings for [`TerminalScreen::reclaim`].
+    #[cfg(unix)]
+    pub fn release(&mut self) -> TerminalSettings {
+        restore_terminal();
+        TerminalSettings::read()
+    }
+
+    /// Prepares the terminal again after another program has used it.
+    ///
+    /// # Errors
+    /// The terminal cannot be prepared.
+    #[cfg(unix)]
+    pub fn reclaim(&mut self, settings: &TerminalSettings, mouse: bool) -> io::Result<()> {
+        // The settings are restored first, because they are the ones that apply after the program has ended.
+        settings.restore();
         self.resume(mouse)
     }
 

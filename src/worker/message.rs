@@ -25,6 +25,8 @@ pub enum Message {
     Delivered(Delivery),
     /// A signal that ends, suspends or resumes the program.
     Signal(i32),
+    /// The user's editor has ended: the edited text, or the reason why the text is unchanged.
+    EditorClosed(Result<String, String>),
     /// The time after which the console wants to redraw has passed.
     RedrawDue,
 }
@@ -138,6 +140,8 @@ pub enum Response {
     ReportFilesReady(Vec<(&'static str, String)>),
     /// Files were written, with a message, or writing failed.
     FilesWritten(Result<String, String>),
+    /// An external program of the user ended, with a title and its output, or did not end normally.
+    ProgramEnded(Result<(String, String), String>),
     /// The run was closed. Contains the error if saving failed.
     Closed(Option<String>),
     /// A response to a request in a study.

@@ -49,6 +49,21 @@ impl Question for CurveQuestion {
     }
 }
 
+/// A question that asks for the curve of a group by the estimates of market studies, for panes that show the curve
+/// without a request of the user. The answer reveals no hidden state and is not recorded.
+#[derive(Debug, Clone)]
+pub struct EstimatedCurveQuestion(pub Group);
+
+impl Question for EstimatedCurveQuestion {
+    type Answer = CurveExplorer;
+    type Progress = ();
+
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let Some(run) = &mut thread.active_run else { return };
+        reply.answer(CurveExplorer::from_estimates(run.session(), self.0));
+    }
+}
+
 /// A question that asks for the true values of a day.
 #[derive(Debug, Clone)]
 pub struct HiddenValuesQuestion {

@@ -1,10 +1,13 @@
-//! Appearance preferences that the user chose by key, saved as `console.toml` in the configuration folder.
+//! Preferences that the user chose by key, for the appearance and the columns of tables, saved as `console.toml` in the configuration folder.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_tui::glyphs::Glyphs;
+use novamind_tui::widgets::ColumnLayout;
 
 const PREFERENCES_FILE: &str = "console.toml";
 
@@ -18,6 +21,9 @@ pub struct Preferences {
     /// Characters with which charts are drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker: Option<Glyphs>,
+    /// Layouts of the columns by the name of the table.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub tables: BTreeMap<String, ColumnLayout>,
 }
 
 impl Preferences {
@@ -34,10 +40,14 @@ impl Preferences {
     pub fn save(self, configuration: &Configuration) -> Result<(), RunError> {
         let Some(folder) = &configuration.folder else { return Ok(()) };
         let before = Preferences::load(configuration);
-        let all = Preferences { theme: self.theme.or(before.theme), marker: self.marker.or(before.marker) };
+        let mut tables = before.tables;
+        tables.extend(self.tables);
+        tables.retain(|_, layout| !layout.is_default());
+        let all =
+            Preferences { theme: self.theme.or(before.theme), marker: self.marker.or(before.marker), tables };
         std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
         let (path, draft) = (folder.join(PREFERENCES_FILE), folder.join("console.draft"));
-        let text = toml::to_string(&all).expect("names are plain values");
+        let text = toml::to_string(&all).expect("preferences are plain values");
         std::fs::write(&draft, text).map_err(RunError::io(&draft))?;
         std::fs::rename(&draft, &path).map_err(RunError::io(&path))
     }
@@ -52,13 +62,34 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let configuration = Configuration { folder: Some(folder.path().join("not-yet")), voice: None };
         assert_eq!(Preferences::load(&configuration), Preferences::default());
-        let light = Preferences { theme: Some("light".to_owned()), marker: None };
+        let light = Preferences { theme: Some("light".to_owned()), ..Preferences::default() };
         light.save(&configuration).expect("kept");
-        let ascii = Preferences { theme: None, marker: Some(Glyphs::Ascii) };
+        let ascii = Preferences { marker: Some(Glyphs::Ascii), ..Preferences::default() };
         ascii.save(&configuration).expect("kept");
-        let both = Preferences { theme: Some("light".to_owned()), marker: Some(Glyphs::Ascii) };
+        let both = Preferences {
+            theme: Some("light".to_owned()),
+            marker: Some(Glyphs::Ascii),
+            ..Preferences::default()
+        };
         assert_eq!(Preferences::load(&configuration), both);
         std::fs::write(folder.path().join("not-yet/console.toml"), "marker = 3").expect("written");
         assert_eq!(Preferences::load(&configuration), Preferences::default());
+    }
+
+    #[test]
+    fn save_replaces_the_layout_of_one_table() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let configuration = Configuration { folder: Some(folder.path().to_owned()), voice: None };
+        let save = |table: &str, layout: ColumnLayout| {
+            let tables = [(table.to_owned(), layout)].into();
+            Preferences { tables, ..Preferences::default() }.save(&configuration).expect("saved");
+        };
+        let hidden = ColumnLayout { hidden: ["kind".to_owned()].into(), ..ColumnLayout::default() };
+        let wide = ColumnLayout { widths: [("billed/mo".to_owned(), 12)].into(), ..ColumnLayout::default() };
+        save("customers.groups", hidden);
+        save("cash.ledger", wide.clone());
+        save("customers.groups", ColumnLayout::default());
+        let saved = Preferences::load(&configuration).tables;
+        assert_eq!(saved, [("cash.ledger".to_owned(), wide)].into(), "a default layout is not saved");
     }
 }

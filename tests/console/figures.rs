@@ -49,7 +49,7 @@ const FIGURES: [Figure; 29] = [
          AND customer_type = 'large'",
     ),
     Figure(
-        &["recurring revenue"],
+        &["recurring revenue", "recurring $/month"],
         "SELECT total(effective_price * seat_count) FROM subscriptions WHERE status = 'subscribed'",
     ),
     Figure(
@@ -106,7 +106,7 @@ const FIGURES: [Figure; 29] = [
          WHERE customer_type = 'small' AND start_day BETWEEN {from} AND {to} AND status IN ('subscribed', 'cancelled')) \
          / (SELECT count(*) FROM customers WHERE customer_type = 'small' AND created_day BETWEEN {from} AND {to})",
     ),
-    Figure(&["runway", "cash lasts"], ""),
+    Figure(&["runway", "cash should last", "cash should last at least"], ""),
     Figure(&["upgrades"], ""),
     Figure(&["downgrades"], ""),
     Figure(
@@ -387,12 +387,12 @@ fn shown_figures_parses_numbers_in_context() {
             |(figure, written, _): (usize, ShownNumber, String)| (FIGURES[figure].0[0], written.value);
         shown_figures(text).into_iter().map(named).collect()
     };
-    let top = " NovaMind  day 49/84 · wk 7/12   cash $952k ▼ $9.86k   runway ∞";
+    let top = " NovaMind  day 49/84 · wk 7/12   cash $952k ▼ $9.86k   runway to end";
     assert_eq!(of(top), [("cash", 952_000.0), ("cash change", -9_860.0)]);
     assert_eq!(of("┌ Cash ───── $952,425 ▲ $9 ┐"), [("cash", 952_425.0), ("cash change", 9.0)]);
     assert_eq!(of("cash $9 (-$7 over the last week)"), [("cash", 9.0), ("cash change", -7.0)]);
     assert_eq!(of("subscribers 65 → 150; of it 7"), [("subscribers", 150.0)]);
     assert_eq!(of("New Individual Subscribers: 3"), [("new subscribers", 3.0)]);
     assert_eq!(of("! 4 enterprises wait for an answer (9 seats)"), [("# waiting for you", 4.0)]);
-    assert_eq!(of("operations: 0 → 100 $/day · cash lasts 12 weeks"), [("runway", 12.0)]);
+    assert_eq!(of("operations: 0 → 100 $/day · cash should last 12 to 19 weeks"), [("runway", 12.0)]);
 }

@@ -6,6 +6,7 @@ mod curve;
 mod figures;
 mod focus;
 mod harness;
+mod keys;
 mod lessons;
 mod monkey;
 mod overlay;
@@ -22,8 +23,10 @@ mod sizes;
 mod stale_database;
 #[path = "../support/mod.rs"]
 mod support;
+mod tables;
 mod tasks;
 mod tour;
+mod validity;
 mod what_if;
 mod why;
 mod xray;

@@ -133,7 +133,7 @@ fn random_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
 
 /// Text fields with drafts: keys that open the field, and keys that return to it.
 const DRAFTS: [(&str, &str); 5] = [
-    ("9 esc i ctrl-n", "9 esc"),
+    ("9 esc esc i ctrl-n", "9"),
     ("5 esc esc p ctrl-u", "5 esc esc p"),
     ("0 esc esc tab tab e", "0"),
     ("n enter ctrl-u", "n enter"),

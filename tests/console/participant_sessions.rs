@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use novamind::record::consent::ConsentMeans;
+use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Activity;
 use novamind::record::trajectory::{Record, Trajectory};
@@ -14,7 +15,7 @@ use novamind::worker::request::{RecordSource, Request};
 use super::harness::Console;
 
 /// A study of two weeks with every kind of question, and its folder.
-struct StudyHome(tempfile::TempDir);
+pub(super) struct StudyHome(tempfile::TempDir);
 
 const PROTOCOL: &str = r#"
 name = "pilot"
@@ -83,7 +84,7 @@ required = true
 "#;
 
 impl StudyHome {
-    fn new() -> StudyHome {
+    pub(super) fn new() -> StudyHome {
         let lab = StudyHome(tempfile::tempdir().expect("a folder"));
         let folder = lab.folder();
         std::fs::create_dir_all(folder.join("questions")).expect("a folder");
@@ -106,7 +107,7 @@ impl StudyHome {
         std::fs::write(path, text.replace(from, to)).expect("written");
     }
 
-    fn folder(&self) -> PathBuf {
+    pub(super) fn folder(&self) -> PathBuf {
         self.0.path().join("pilot")
     }
 
@@ -115,14 +116,18 @@ impl StudyHome {
     }
 
     fn open_console(&self, size: (u16, u16)) -> Console {
+        self.open_console_with(Configuration::bundled(), size)
+    }
+
+    pub(super) fn open_console_with(&self, configuration: Configuration, size: (u16, u16)) -> Console {
         let study = Study::load(&self.folder()).expect("a study");
-        let mut console = Console::start(&self.runs(), size);
+        let mut console = Console::start_with(configuration, &self.runs(), size);
         console.start_study(study).expect("the label page");
         console.assert_shows("Type the label");
         console
     }
 
-    fn participant_runs(&self, label: &str) -> Vec<PathBuf> {
+    pub(super) fn participant_runs(&self, label: &str) -> Vec<PathBuf> {
         let folders = std::fs::read_dir(self.runs().join("participants").join(label)).into_iter().flatten();
         folders.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect()
     }
@@ -477,10 +482,10 @@ fn naive_forecasts_are_labeled() {
         console.press("enter");
         console.assert_shows("Required, and saved with the run.");
         console.press("'test' enter");
-        console.assert_shows("f fills empty cells: the cash flow of the last four");
+        console.assert_shows("f fills empty cells: billing dates, recent renewals");
         console.press("f");
         let screen = console.screen();
-        assert!(screen.contains("marked as naive forecasts") && !screen.contains("back-tests"), "{screen}");
+        assert!(screen.contains("marked as naive forecasts") && !screen.contains("back-test"), "{screen}");
         console.press("esc ; q");
     }
 }

@@ -155,7 +155,7 @@ fn drafts_record_how_text_was_entered() {
     console.send(Event::Paste(" pasted".to_owned()));
     console.press("ctrl-s");
     // An SQL statement is typed and not run.
-    console.press("9 'SELECT1' esc esc 1");
+    console.press("9 enter 'SELECT1' esc esc 1");
     drop(console);
     let drafts = drafts(runs.path());
     let [notes, sql] = &drafts[..] else { panic!("{drafts:#?}") };
@@ -236,7 +236,7 @@ fn drafts_survive_a_crash_until_discarded() {
     console.press("esc 8 enter");
     console.press("enter '77' enter");
     advance_clock(&mut console, 4);
-    console.press("g q 'SELECT' _ '4'");
+    console.press("g q enter 'SELECT' _ '4'");
     advance_clock(&mut console, 4);
     let file = find_run(runs.path(), "latest").expect("a run").join("drafts.json");
     let all = ["because of S1", "77", "SELECT 4"];
@@ -276,7 +276,7 @@ fn queries_record_their_source() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     console.advance_week();
-    console.press("esc 9 'SELECT' _ '1' esc f5 v ctrl-o enter 2 f esc");
+    console.press("esc 9 enter 'SELECT' _ '1' esc f5 v ctrl-o enter 2 f esc");
     drop(console);
     let via: Vec<QuerySource> = recorded_lines(runs.path())
         .into_iter()
@@ -295,7 +295,7 @@ fn attention_records_do_not_change_the_state_hash() {
         let mut console = Console::in_latest_run(runs.path(), (120, 40));
         for _ in 0..2 {
             if attentive {
-                console.press("2 i esc 3 enter 9 'SELECT' _ '1' esc esc ; p enter");
+                console.press("2 i esc 3 enter 9 enter 'SELECT' _ '1' esc esc ; p enter");
                 advance_clock(&mut console, 70);
             }
             console.advance_week();

@@ -116,7 +116,7 @@ fn playback_steps_by_weeks_and_actions_and_seeks() {
     console.press("{");
     assert_eq!(shown_day(&console), 0);
     // The screens show the run at the current position of the playback.
-    console.press("# '2' enter 9 esc i ctrl-n 'SELECT_max(day)_FROM_ledger' f5");
+    console.press("# '2' enter 9 i ctrl-n 'SELECT_max(day)_FROM_ledger' f5");
     console.assert_shows("14");
     console.press("esc 0");
     console.assert_shows("Journal");

@@ -42,7 +42,7 @@ fn text_has_the_expected_palette_role() {
         assert_role(&mut console, "S2  ", Role::Text);
         console.press("8 enter enter '7' enter");
         assert_role(&mut console, "→", Role::Changed);
-        console.press("esc esc 9 esc i 'SELECT' _ '12' _ 'AS' _ 'x' esc");
+        console.press("esc esc 9 i 'SELECT' _ '12' _ 'AS' _ 'x' esc");
         assert_role(&mut console, "SELECT 12", Role::Keyword);
         assert_role(&mut console, "12 AS x", Role::Number);
         console.press("1");

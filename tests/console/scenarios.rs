@@ -4,6 +4,7 @@ use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::list_runs;
 use novamind::session::verify;
 
+use super::company::copy_played_run;
 use super::harness::Console;
 
 /// Sets initial prices, tiers, quotas and budgets in the forms.
@@ -230,6 +231,29 @@ fn drafts_survive_quitting() {
     console.assert_shows("Unsent");
     console.press("8");
     console.assert_shows("draft, kept until sent or reset: A 0 → 14");
+}
+
+#[test]
+fn unsent_offers_survive_quitting() {
+    let runs = tempfile::tempdir().expect("a folder");
+    copy_played_run("companies.toml", 3, 35, runs.path());
+    let offers = |console: &Console| {
+        let run = console.app.run().expect("a run");
+        run.screens.inbox.draft_offers(&run.company)
+    };
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.press("6 b b e '31.5' enter");
+    let unsent = offers(&console);
+    assert!(unsent.values().any(|text| text.contains("31.5")), "{unsent:?}\n{}", console.screen());
+    console.press("esc esc q");
+    console.assert_shows("is saved with the run");
+    console.press("y");
+    assert!(matches!(console.exit, Some((0, _))), "the program ends: {:?}", console.exit);
+    drop(console);
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    console.assert_shows("31.5");
+    console.press("enter");
+    assert_eq!(offers(&console), unsent);
 }
 
 #[test]

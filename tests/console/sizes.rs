@@ -7,7 +7,7 @@ use novamind::tui::glyphs::Glyphs;
 use super::harness::Console;
 
 /// Keys that open each screen and dialog of the console, and keys that close it.
-const PLACES: [(&str, &str); 42] = [
+pub const PLACES: [(&str, &str); 42] = [
     ("1", ""),
     ("1 z", "z"),
     ("2", ""),

@@ -14,28 +14,6 @@ use super::harness::Console;
 /// Window sizes of the tasks.
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 
-/// Heading and keys of each step of the tour: the keys that the step's text names, with typed example texts.
-const TOUR: [(&str, &str); 18] = [
-    ("The idea", "3"),
-    ("Required quality", "down enter"),
-    ("A price", "8 enter down enter '45' enter ctrl-s"),
-    ("A model", "down enter down enter '2' enter ctrl-s"),
-    ("A quota", "down enter down enter '400' enter ctrl-s"),
-    ("Operations", "down down enter enter '160' enter ctrl-s"),
-    ("Leads", "down enter right enter '700' enter ctrl-s"),
-    ("A week", "n"),
-    ("Why", "enter 'A_first_try.' enter"),
-    ("Forecasts", "f enter"),
-    ("Report", "esc"),
-    ("Who signed", "3"),
-    ("Fix it", "1 enter ctrl-s"),
-    ("Development", "3 down enter enter '1100' enter ctrl-s"),
-    ("The second week", "n f enter"),
-    ("Any figure", "esc 2 f o"),
-    ("Who buys", "esc esc n f enter"),
-    ("Who stays", "esc n f enter"),
-];
-
 /// Maximum numbers of keys of the tasks, including typed letters.
 const CHANGE_ONE_QUOTA: usize = 14;
 const RAISE_A_PRICE: usize = 7;
@@ -98,24 +76,6 @@ fn console_in_played_run(policy: &str, seed: u64, until: u32, size: (u16, u16)) 
 }
 
 #[test]
-fn tour_texts_name_the_keys_of_their_step() {
-    for size in SIZES {
-        let runs = tempfile::tempdir().expect("a folder");
-        let mut console = Console::start(runs.path(), size);
-        press_within(&mut console, "enter", 1);
-        for (number, (title, keys)) in TOUR.iter().enumerate() {
-            console.assert_shows(&format!("Tour · {} of {} · {title}", number + 1, TOUR.len()));
-            press_within(&mut console, keys, 40);
-        }
-        console.assert_shows("tour completed");
-        let company = &console.app.run().expect("a run").company;
-        assert_eq!((company.observation.scenario.as_str(), company.observation.day), ("practice", 28));
-        let signed = |week: usize| company.weeks[week].new_individual_subscribers;
-        assert!(0 < signed(0) && signed(0) < signed(1), "the fix has an effect in the second week");
-    }
-}
-
-#[test]
 fn changing_a_quota_takes_few_keys() {
     for size in SIZES {
         let runs = tempfile::tempdir().expect("a folder");
@@ -173,7 +133,7 @@ fn query_chart_and_export_take_few_keys() {
         let mut console = console_with_open_company(runs.path(), size);
         console.advance_week();
         console.press("esc");
-        let keys = "9 'SELECT' _ 'day,amount' _ 'FROM' _ 'ledger' f5 esc . . e c";
+        let keys = "9 enter 'SELECT' _ 'day,amount' _ 'FROM' _ 'ledger' f5 esc . . e c";
         press_within(&mut console, keys, QUERY_CHART_EXPORT);
         let folder = console.app.run().expect("a run").company.folder.clone().expect("a folder");
         let text = std::fs::read_to_string(folder.join("query-0001.csv"))

@@ -340,7 +340,8 @@ fn parameters_are_set_only_in_debug_runs_after_confirmation() {
 fn hidden_table_queries_are_recorded_as_inspections() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console_on_xray_screen(runs.path(), 3, (120, 40));
-    console.press("9 'SELECT' _ 'count(*)' _ 'AS' _ 'days' _ 'FROM' _ 'hidden.pmi' shift-tab end right");
+    console
+        .press("9 enter 'SELECT' _ 'count(*)' _ 'AS' _ 'days' _ 'FROM' _ 'hidden.pmi' shift-tab end right");
     let mut complaints = Vec::new();
     let text = snapshot_text(&mut console, &mut complaints);
     insta::assert_snapshot!("xray-sql", text);
@@ -362,7 +363,7 @@ fn replay_of_a_finished_run_queries_hidden_tables() {
     drop(session);
     let mut console = console_in_replay(runs.path(), (120, 40), SeekTarget::Week(1));
     // The inspection that precedes the query opens the run without its database.
-    console.press("g x 9 'SELECT' _ 'max(day)+100' _ 'FROM' _ 'hidden.drift' f5");
+    console.press("g x 9 enter 'SELECT' _ 'max(day)+100' _ 'FROM' _ 'hidden.drift' f5");
     console.assert_shows("121");
     drop(console);
     let folder = run_folder(runs.path());
@@ -376,7 +377,7 @@ fn hidden_tables_are_unavailable_in_unfinished_non_debug_runs() {
         let runs = tempfile::tempdir().expect("a folder");
         drop(create_run(runs.path(), mode, 1));
         let mut console = Console::in_latest_run(runs.path(), (120, 40));
-        console.press("9 'SELECT' _ '*' _ 'FROM' _ 'hidden.groups' f5");
+        console.press("9 enter 'SELECT' _ '*' _ 'FROM' _ 'hidden.groups' f5");
         let screen = console.screen();
         assert!(!screen.contains("x-ray") && !screen.contains("hidden.drift"), "{screen}");
         assert!(!screen.contains("reputation"), "{screen}");

@@ -681,3 +681,33 @@ fn curve_shows_expected_lead_decisions() {
         "{output}"
     );
 }
+
+/// The answer to an offer compares the price with list price and compute cost. A lost thread shows what the record says.
+#[test]
+fn offers_and_lost_threads_state_their_facts() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let week = "next \"x\" naive\n";
+    let setup = r#"set_prices A=16 B=34 C=70
+set_usage_quotas A=150 B=100000 C=900000
+set_model_tiers A=2 B=3 C=4
+set_targeted_ad_spend {"targeted_spend": {"linkedin": {"E1": 2000}}}
+set_targeted_dev_spend {"targeted_spend": {"E1": 2000}}
+"#;
+    let offer =
+        "check send_enterprise_deal [[8, [[\"B\", 10.2]]]]\nsend_enterprise_deal [[8, [[\"B\", 34]]]]\n";
+    let other = "send_enterprise_deal [[9, [[\"B\", 60]]]]\n";
+    let lines =
+        [setup, &week.repeat(6), offer, &week.repeat(4), other, &week.repeat(3), "thread 1\nthread 2\n"]
+            .concat();
+    let (text, code) = play(runs.path(), &["--seed", "7", "--days", "140"], &lines);
+    assert_eq!(code, 0, "{text}");
+    for part in [
+        "plan B at $10.20 per seat: 30% of the list price $34.00, $898 a month, estimated margin after compute 22%",
+        "\nnote: Clearbrook Lockstone #8, plan B at $34.00 per seat: 100% of the list price $34.00",
+        "received no answer from you to its message of day 49: the thread ended on day 56.\nIt asked $2.56 for plan B",
+        "declined your offer B $60.00 of day 70 on day 77, without a message.\nIt named no price in this thread.",
+        "An enterprise has at least 2 turns, so it had not used them up: no price of plan B was acceptable to it",
+    ] {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+}

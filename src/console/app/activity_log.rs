@@ -36,7 +36,12 @@ impl App {
         }
     }
 
-    fn record_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
+    pub(super) fn record_presence(
+        &mut self,
+        event: PresenceEvent,
+        idle_ms: Option<u64>,
+        window: Option<(u16, u16)>,
+    ) {
         if self.is_played() {
             self.record(move |session| session.activity().record_presence(event, idle_ms, window));
         }
@@ -94,7 +99,7 @@ impl App {
     }
 
     /// Returns the recorded name and the content of the text that is being edited.
-    fn edited_text(&self) -> Option<(String, String)> {
+    pub(super) fn edited_text(&self) -> Option<(String, String)> {
         let run = self.run().filter(|run| run.playback.is_none())?;
         match self.layers.top() {
             Some(Layer::NextWeek) => crate::dialogs::Dialog::edited_text(&run.next_week),
@@ -260,7 +265,8 @@ impl App {
 
     pub(super) fn handle_time(&mut self) {
         let now = self.stopwatch.elapsed();
-        if !self.is_played() || self.stopwatch.is_paused() {
+        // The console receives no input while the user's editor is open, so the user does not count as idle.
+        if !self.is_played() || self.stopwatch.is_paused() || self.is_editing_externally {
             return;
         }
         for (event, idle_ms, window) in self.presence.check_time(now) {
@@ -272,7 +278,7 @@ impl App {
     /// Returns the time until [`novamind_worker::message::Message::RedrawDue`] is due, or `None` if nothing depends
     /// on the time.
     pub fn time_until_wake(&self) -> Option<Duration> {
-        if !self.is_played() || self.stopwatch.is_paused() {
+        if !self.is_played() || self.stopwatch.is_paused() || self.is_editing_externally {
             return None;
         }
         let next = [self.presence.next_deadline(), self.draft_save_due()].into_iter().flatten().min()?;

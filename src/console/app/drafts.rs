@@ -65,6 +65,7 @@ impl App {
             sql: if sql.trim().is_empty() || is_known(&sql) { String::new() } else { sql },
             answers: answers.filter(|_| !post.is_empty()),
             post,
+            offers: run.screens.inbox.draft_offers(&run.company),
             forms: run.screens.tools.draft_values(),
         }
     }
@@ -96,6 +97,7 @@ impl App {
                 run.screens.sql.set_statement(&texts.sql);
             }
             run.screens.social.restore_draft(&texts.post, texts.answers);
+            run.screens.inbox.restore_offers(&texts.offers);
             for (tool, values) in &texts.forms {
                 run.screens.tools.restore_drafts(*tool, values, &run.company);
             }

@@ -37,27 +37,21 @@ impl ExitTarget {
     }
 }
 
-const DRAFTS_KEPT: &str = "Unsent text in a form, the notes, a post or the next-week dialog is saved with the run and offered when you open the run again.";
+const DRAFTS_KEPT: &str = "Unsent text in a form, the notes, a post, an offer or the next-week dialog is saved with the run and offered when you open the run again.";
 /// Warning for a run that has ended, in which drafts can no longer be sent.
 const DRAFTS_DISCARDED: &str = "The notes have unsaved text. The run has ended; the text will be lost.";
-const OFFERS_DISCARDED: &str = "Unsent offers in the inbox will be lost.";
 
 impl App {
     /// Describes what happens to drafts and asks whether to leave the run. Returns `None` if there are no drafts.
     fn draft_warning(&self) -> Option<String> {
         let run = self.run().filter(|run| run.playback.is_none())?;
-        let holds = |screen: &ScreenId| run.screens.get(*screen).has_unsent_text();
-        let (offers, texts): (Vec<ScreenId>, Vec<ScreenId>) =
-            ScreenId::ALL.into_iter().filter(holds).partition(|screen| *screen == ScreenId::Inbox);
-        let mut sentences = Vec::new();
-        if run.next_week.has_draft() || !texts.is_empty() {
-            sentences.push(if run.company.is_running() { DRAFTS_KEPT } else { DRAFTS_DISCARDED });
-        }
-        if !offers.is_empty() {
-            sentences.push(OFFERS_DISCARDED);
-        }
-        let question = || format!("{} Leave this run now?", sentences.join(" "));
-        (!sentences.is_empty()).then(question)
+        let is_running = run.company.is_running();
+        let has_text = ScreenId::ALL.into_iter().any(|screen| {
+            // Offers cannot be sent after the end of the run.
+            (is_running || screen != ScreenId::Inbox) && run.screens.get(screen).has_unsent_text()
+        });
+        let outcome = if is_running { DRAFTS_KEPT } else { DRAFTS_DISCARDED };
+        (run.next_week.has_draft() || has_text).then(|| format!("{outcome} Leave this run now?"))
     }
 
     pub(super) fn quit(&mut self) {

@@ -1,17 +1,20 @@
 //! Explanations, the glossary and the tour.
 
 use super::{App, Layer, Stage};
-use crate::action::Action;
-use crate::context::{ScreenContext, ScreenId};
+use crate::action::{Action, Scope};
+use crate::context::ScreenId;
+use crate::dialogs::DialogView;
 use crate::dialogs::explanation::ExplainDialog;
 use crate::dialogs::glossary::GlossaryDialog;
 use crate::effect::Effect;
-use crate::screens::ScreenState;
 use crate::study_pages::StudyState;
-use crate::tour::{self, TourFacts};
+use crate::tour::{self, NextWeekFacts, TourFacts};
 use novamind_glossary::Subject;
 use novamind_session::Access;
 use novamind_worker::request::Request;
+
+/// Name of the query of cancelled subscribers.
+const CANCELLATIONS_QUERY: &str = "issues-of-leavers";
 
 impl App {
     /// Explains the selected figure, or the screen if no figure is selected.
@@ -41,12 +44,12 @@ impl App {
     pub(super) fn start_tour(&mut self) {
         self.starts_tour = true;
         let begun = match &self.stage {
-            Stage::Menu(menu) => menu.practice_run().map(str::to_owned),
+            Stage::Menu(menu) => menu.tour_run().map(str::to_owned),
             Stage::Run(_) | Stage::Study(_) => None,
         };
         self.execute_effects(vec![Effect::Request(match begun {
             Some(id) => Request::Open(id, Access::Write),
-            None => Request::Create(Box::new(tour::practice_run())),
+            None => Request::Create(Box::new(tour::tour_run())),
         })]);
     }
 
@@ -59,10 +62,11 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         if run.company.is_baseline() && !of_practice {
             return self
-                .show_error("baseline runs have no tour; Tour in the start menu opens a practice run");
+                .show_error("baseline runs have no tour; Tour in the start menu opens a run for the tour");
         }
-        // The steps of the tour apply only to the practice run.
-        if run.company.observation.scenario != tour::scenario() {
+        // The settings that the tour proposes suit its own run and a practice run.
+        let seen = &run.company.observation;
+        if !of_practice && !tour::is_tour_run(&seen.scenario, seen.seed.unwrap_or_default(), seen.last_day) {
             return self.show_error("the tour has its own run; open that run with Tour in the start menu");
         }
         run.tour.get_or_insert_default();
@@ -70,7 +74,7 @@ impl App {
 
     pub(super) fn skip_tour_step(&mut self) {
         match self.running_tour() {
-            Some(tour) => tour.skip_step(),
+            Some(tour) => tour.continue_to_next_step(),
             None => self.show_error("no tour is shown"),
         }
     }
@@ -95,24 +99,52 @@ impl App {
     }
 
     pub(super) fn advance_tour(&mut self) {
+        let Some(facts) = self.tour_facts() else { return };
+        let (scopes, layer) = facts;
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };
-        let filing = matches!(self.layers.top(), Some(Layer::NextWeek)).then(|| run.next_week.step_number());
-        let context = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
-        let group_open =
-            run.screen == ScreenId::Customers && run.screens.customers.open_item_title(&context).is_some();
+        let is_on = |screen| run.screen == screen && !layer.is_open;
         let facts = TourFacts {
             company: &run.company,
             screen: run.screen,
-            back_history: &run.back_history,
-            next_week_step: filing,
-            has_dialog: !self.layers.is_empty(),
-            is_group_open: group_open,
+            is_typing: scopes.first().is_some_and(|scope| scope.is_text()),
+            scopes,
+            has_dialog: layer.is_open,
+            dialog: layer.view,
+            next_week: NextWeekFacts {
+                open_step: layer.is_next_week.then(|| run.next_week.step_number()),
+                has_rationale: !run.next_week.draft().0.trim().is_empty(),
+            },
+            customers: run.screens.customers.tour_facts(&run.company),
+            form: is_on(ScreenId::Tools).then(|| run.screens.tools.tour_facts()).flatten(),
+            shows_cancellations: run.screens.sql.shows_rows_of(CANCELLATIONS_QUERY),
         };
-        if !tour.skip_finished_steps(&facts) {
+        if !tour.update(&facts, &self.keys) {
             run.tour = None;
             let last = run.company.observation.last_day;
             self.show_status(format!("tour completed; you can play on until day {last}"));
         }
     }
+
+    /// Returns the key scopes and the top layer, while a tour is shown.
+    fn tour_facts(&self) -> Option<(Vec<Scope>, TopLayer)> {
+        self.run()?.tour.as_ref()?;
+        let top = self.layers.top();
+        let layer = TopLayer {
+            is_open: top.is_some(),
+            is_next_week: matches!(top, Some(Layer::NextWeek)),
+            view: match top {
+                Some(Layer::Dialog(dialog)) => dialog.tour_view(),
+                Some(Layer::NextWeek) | None => None,
+            },
+        };
+        Some((self.scopes(), layer))
+    }
+}
+
+/// The top dialog, as far as the tour depends on it.
+struct TopLayer {
+    is_open: bool,
+    is_next_week: bool,
+    view: Option<DialogView>,
 }

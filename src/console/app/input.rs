@@ -15,7 +15,7 @@ use crate::dialogs::{Dialog, DialogResponse};
 use crate::effect::Effect;
 use crate::keys::KeyMeaning;
 use novamind_tui::canvas::Click;
-use novamind_tui::chord::{Chord, format_sequence};
+use novamind_tui::chord::Chord;
 use novamind_tui::text::format_number;
 use novamind_worker::Job;
 use novamind_worker::preferences::Preferences;
@@ -41,17 +41,21 @@ impl App {
 
     fn handle_key(&mut self, key: KeyEvent) {
         self.status = None;
-        let scopes = self.scopes();
-        let typing = scopes.first().is_some_and(|scope| scope.is_text());
+        let orders = self.orders.len();
         let chord = Chord::from_event(&key);
+        let pressed = self.pending_chords.iter().copied().chain([chord]).collect();
+        self.execute_key(key, chord);
+        self.note_handled_key(pressed, self.orders.len() > orders);
+    }
+
+    fn execute_key(&mut self, key: KeyEvent, chord: Chord) {
+        let scopes = self.scopes();
+        let typing = self.is_editing_text();
         if chord.is_escape() && self.stop_seeking() {
             return;
         }
         if !self.pending_chords.is_empty() {
             return self.continue_key_sequence(chord);
-        }
-        if chord.starts_number() && self.accepts_digits() {
-            return self.forward_key(&key);
         }
         let action = if typing && chord.is_text_input() {
             // The bindings of the text field take precedence over the bindings of the surrounding scopes.
@@ -70,14 +74,9 @@ impl App {
             None if !typing && self.keys.meaning(&scopes, &[chord]) == KeyMeaning::Prefix => {
                 self.pending_chords.push(chord);
             }
+            None if !typing && self.handle_own_key(&[chord]) => {}
             None => self.forward_key(&key),
         }
-    }
-
-    /// Returns whether a digit starts a number in the focused pane or dialog. A run in playback has no editable cells.
-    fn accepts_digits(&self) -> bool {
-        let run = self.run().filter(|run| self.layers.is_empty() && run.playback.is_none());
-        run.is_some_and(|run| run.screens.get(run.screen).accepts_digits())
     }
 
     /// Handles a chord that continues a key sequence.
@@ -89,10 +88,12 @@ impl App {
                 self.pending_chords.clear();
                 self.handle_action(action);
             }
+            KeyMeaning::Unbound if self.handle_own_key(&self.pending_chords.clone()) => {}
             KeyMeaning::Unbound => {
-                let pressed = format_sequence(&std::mem::take(&mut self.pending_chords));
+                let pressed = std::mem::take(&mut self.pending_chords);
                 if !chord.is_escape() {
-                    self.show_error(format!("{pressed} is not bound here"));
+                    let reason = self.reason_without_effect(&pressed);
+                    self.show_error(reason);
                 }
             }
         }
@@ -206,6 +207,7 @@ impl App {
             Action::Redraw => return self.orders.push(Order::Redraw),
             Action::TourSkip => return self.skip_tour_step(),
             Action::TourClose => return self.close_tour(),
+            Action::ExternalEditor => return self.open_external_editor(),
             // Participants can withdraw without answering the open questions.
             Action::Withdraw if matches!(self.stage, Stage::Run(_)) => return self.leave_to_withdraw(),
             _ => {}
@@ -279,6 +281,7 @@ impl App {
         if let Some(screen) = ScreenId::ALL.into_iter().find(|screen| screen.action() == action) {
             if let Stage::Run(run) = &mut self.stage {
                 run.clear_breadcrumbs();
+                run.screens.get_mut(screen).show_first_view();
             }
             return self.show_screen(screen);
         }
@@ -288,7 +291,7 @@ impl App {
                     let palette = CommandPalette::new(&self.keys, &run.company, &self.library);
                     let palette = match &self.study {
                         Some(visit) => palette.for_participant(visit.has_tour()),
-                        None => palette,
+                        None => palette.with_own_commands(&self.own_commands, &run.company),
                     };
                     self.open_dialog(palette);
                 }
@@ -321,6 +324,7 @@ impl App {
             Action::Forward => self.go_forward(),
             Action::Zoom => self.toggle_zoom(),
             Action::Rows => self.open_selected_rows(),
+            Action::Columns => self.open_column_chooser(),
             Action::NextTheme => self.switch_theme(),
             Action::NextMarker => {
                 self.glyphs = self.glyphs.next();
@@ -398,7 +402,7 @@ impl App {
         }
     }
 
-    fn save_preferences(&mut self, chosen: Preferences) {
+    pub(super) fn save_preferences(&mut self, chosen: Preferences) {
         self.orders.push(Order::Job(Job::SavePreferences(chosen)));
     }
 

@@ -101,6 +101,7 @@ impl App {
             Effect::ShowRows(figure) => self.show_source_rows(figure),
             Effect::CloseDialogs => self.close_layers(),
             Effect::ShowError(text) => self.show_error(text),
+            Effect::ArrangeColumns(layout) => self.arrange_columns(layout),
             Effect::ClearBreadcrumbs => {
                 if let Stage::Run(run) = &mut self.stage {
                     run.clear_breadcrumbs();
@@ -150,6 +151,8 @@ impl App {
                 let confirm = ConfirmDialog::new("send by rules", text, calls.collect());
                 self.push_layer(Layer::Dialog(Box::new(confirm)));
             }
+            Effect::RunOwnCommand(at) => self.run_own_command(at),
+            Effect::RunLines(at) => self.run_lines(at),
             Effect::Explain(subject) => self.open_subject(subject),
             Effect::TryStepAgain(step) => self.confirm_retry(step),
             Effect::ShowDebrief => self.open_debrief(),

@@ -114,6 +114,7 @@ impl App {
             }
             Response::LessonUpdated(refused, company) => self.handle_lesson_response(refused, company),
             Response::DebriefReady(found) => self.set_debrief(found),
+            Response::ProgramEnded(end) => self.show_program_end(end),
             Response::FilesWritten(Ok(text)) => self.show_status(text),
             Response::FilesWritten(Err(problem)) => self.show_error(problem),
             Response::Study(news) => self.handle_study_response(news),
@@ -134,6 +135,7 @@ impl App {
                     Ok(_) => self.show_status(format!("{tool}: done")),
                     Err(refusal) => self.show_error(format!("{tool}: {refusal}")),
                 }
+                self.continue_lines(*tool, answer.is_ok());
                 ScreenId::Tools
             }
             Response::SettingRestored(what, changes, company) => {

@@ -3,11 +3,12 @@
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::{Dialog, DialogResponse};
+use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use novamind_insight::{Cause, CauseProgress, ChangeExplanation, WeekQuantity};
+use novamind_record::figures::WeekFigure;
 use novamind_report::why::{CauseLine, cause_lines, equation, heading};
 use novamind_tools::Rejection;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects, truncate_to_width};
@@ -110,6 +111,13 @@ impl Dialog for CausesDialog {
         format!("why {}, week {}", self.quantity.name(), self.week)
     }
 
+    fn tour_view(&self) -> Option<DialogView> {
+        let is_rejected = matches!(self.answer, Some(Err(_)));
+        let is_of_cancellations = self.quantity.figure() == WeekFigure::Cancellations;
+        let view = DialogView::new(DialogContent::CancellationCauses, self.causes().is_some());
+        (is_of_cancellations && !is_rejected).then_some(view)
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::List, Scope::Dialog]
     }
@@ -210,7 +218,6 @@ mod tests {
     use super::*;
     use crate::test_kit::{dialog_action, dialog_text, new_company};
     use novamind_insight::{CauseContribution, CauseDetail, InputDetail};
-    use novamind_record::figures::WeekFigure;
     use novamind_tools::ToolId;
 
     fn cancellations() -> WeekQuantity {

@@ -7,6 +7,7 @@ use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
+use novamind_base::formatting::pluralize;
 use novamind_tui::canvas::{Canvas, Click, centered_rect};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -70,8 +71,15 @@ impl Dialog for ConfirmDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
-        let lines = wrap(&self.text, 56);
+        let mut lines = wrap(&self.text, 56);
         let dialog_area = centered_rect(area, 60, lines.len() as u16 + 4);
+        // The answers are in the last row inside the border.
+        let room = usize::from(dialog_area.height.saturating_sub(3));
+        if lines.len() > room && room > 0 {
+            let hidden = lines.len() - (room - 1);
+            lines.truncate(room - 1);
+            lines.push(format!("… {} in a larger window", pluralize(hidden as u32, "more line")));
+        }
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, &self.title, "", true);
         let shown: Vec<Line<'_>> =
@@ -88,5 +96,23 @@ impl Dialog for ConfirmDialog {
             canvas.draw_text(place.intersection(row), &context.hint(action), Role::Key);
             canvas.register_click(place, Click::Command(action.into()));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dialogs::dialog_text;
+    use crate::test_kit::new_company;
+
+    #[test]
+    fn long_texts_keep_the_answers_visible() {
+        let text: Vec<String> = (1..=30).map(|line| format!("line {line}.")).collect();
+        let confirm = ConfirmDialog::new("lines", text.join("\n"), Vec::new());
+        let shown = dialog_text(&confirm, &new_company(), 60, 13);
+        assert!(shown.contains("y yes") && shown.contains("more lines in a larger window"), "{shown}");
+        assert!(shown.contains("line 9.") && !shown.contains("line 10."), "{shown}");
+        let all = dialog_text(&confirm, &new_company(), 80, 40);
+        assert!(all.contains("line 30.") && !all.contains("larger window"), "{all}");
     }
 }

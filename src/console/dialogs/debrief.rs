@@ -147,7 +147,7 @@ impl Dialog for DebriefPage {
         draw_curves(canvas, curves, debrief);
         let lines = debrief_lines(debrief, words.width as usize);
         let last = lines.len().saturating_sub(words.height as usize);
-        let from = self.scroll.clamped_first_row(last);
+        let from = self.scroll.scroll_rows(canvas, words, lines.len());
         canvas.page_rows = words.height.max(1);
         draw_lines(canvas, words, &lines, from);
         if from < last {

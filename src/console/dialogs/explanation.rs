@@ -14,7 +14,6 @@ use novamind_tools::ParameterNumbers;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 
 #[derive(Debug, Clone, Copy)]
 enum Link {
@@ -262,7 +261,7 @@ impl ExplainDialog {
         let place = format!("{} of {}", page.selected + 1, page.links.len());
         canvas.draw_text(area, &format!("see also · {place}"), Role::Header);
         let list = Rect { y: area.y + 1, height: area.height - 1, ..area };
-        let from = first_visible_row(page.selected, list.height as usize, page.links.len());
+        let from = canvas.scroll_to_row(list, page.selected, page.links.len());
         for (row, (at, link)) in row_rects(list).zip(page.links.iter().enumerate().skip(from)) {
             let role = |other| if at == page.selected { Role::Selection } else { other };
             if at == page.selected {

@@ -2,7 +2,7 @@
 
 use ratatui::layout::Rect;
 
-use super::{Dialog, DialogResponse};
+use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{ACTIONS, Action, Scope};
 use crate::context::{PaneKeys, ScreenContext, ScreenId};
 use crate::keys::KeyBindings;
@@ -148,6 +148,10 @@ fn scope_actions(scope: Scope) -> impl Iterator<Item = Action> {
 impl Dialog for HelpDialog {
     fn record_name(&self) -> String {
         "keys".to_owned()
+    }
+
+    fn tour_view(&self) -> Option<DialogView> {
+        Some(DialogView::new(DialogContent::Help, true))
     }
 
     fn scopes(&self) -> Vec<Scope> {

@@ -309,7 +309,7 @@ impl Dialog for LessonDialog {
         let inside = canvas.draw_pane_frame(dialog_area, "Lesson", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.page_rows = inside.height.max(1);
-        let from = self.scroll.clamped_first_row(lines.len().saturating_sub(inside.height as usize));
+        let from = self.scroll.scroll_rows(canvas, inside, lines.len());
         draw_lines(canvas, inside, &lines, from);
         let cut = lines.len() > inside.height as usize;
         let keys = self.actions(page).into_iter().filter(|action| cut || *action != Action::ScrollDown);

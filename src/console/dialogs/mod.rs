@@ -2,6 +2,7 @@
 
 pub mod branches;
 pub mod causes;
+pub mod column_chooser;
 pub mod confirm;
 pub mod curve;
 pub mod debrief;
@@ -74,6 +75,39 @@ impl DialogResponse {
     }
 }
 
+/// Content of a dialog that a step of the tour shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DialogContent {
+    /// The participation curve of a group.
+    Curve,
+    /// The report on the last week.
+    WeekReport,
+    /// The causes of a change in cancellations.
+    CancellationCauses,
+    /// The comparison of alternatives.
+    WhatIf,
+    /// The keys of a screen.
+    Help,
+}
+
+/// The state of a dialog, for the tour.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DialogView {
+    /// The content of the dialog.
+    pub content: DialogContent,
+    /// Whether the content is visible. Some dialogs need actions or an answer of the worker first.
+    pub is_shown: bool,
+    /// Actions that lead to the content. The list is empty while the dialog waits for an answer.
+    pub actions: Vec<Action>,
+}
+
+impl DialogView {
+    /// Returns the view of a dialog that needs no actions.
+    pub fn new(content: DialogContent, is_shown: bool) -> DialogView {
+        DialogView { content, is_shown, actions: Vec::new() }
+    }
+}
+
 /// A dialog that is drawn over a screen and handles keys before the screen.
 pub trait Dialog {
     /// Returns the name of the dialog in the record.
@@ -81,6 +115,11 @@ pub trait Dialog {
 
     /// Returns the current step, if the dialog has steps.
     fn step(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Returns what the dialog shows to a step of the tour.
+    fn tour_view(&self) -> Option<DialogView> {
         None
     }
 

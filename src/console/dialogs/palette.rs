@@ -5,10 +5,12 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, DialogResponse};
 use crate::action::{ACTIONS, Action, Scope};
+use crate::app::own_commands_refusal;
 use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::keys::KeyBindings;
 use crate::lesson::closed_reason;
+use crate::own_commands::{COMMANDS_FILE, OwnCommand, OwnCommands};
 use novamind_glossary::Subject;
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_session::JournalEntry;
@@ -17,7 +19,6 @@ use novamind_tui::canvas::{Align, Canvas, Click, centered_rect, row_rects};
 use novamind_tui::fuzzy::{self, FuzzyMatch};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 const MAX_RECENT_TOOLS: usize = 5;
@@ -68,7 +69,7 @@ impl PaletteEntry {
 
     /// Returns the rank of the entry's kind: actions before queries, and queries before texts.
     fn kind_rank(&self) -> usize {
-        ["tool", "command", "group", "query", "table", "term"]
+        ["tool", "command", "own", "group", "query", "table", "term"]
             .iter()
             .position(|kind| *kind == self.kind)
             .unwrap_or(usize::MAX)
@@ -132,6 +133,33 @@ impl CommandPalette {
         self
     }
 
+    /// Adds the commands of the user.
+    pub fn with_own_commands(mut self, own: &OwnCommands, company: &DisplayedCompany) -> CommandPalette {
+        let refusal = own_commands_refusal(company, false);
+        let entry = |(at, command): (usize, &OwnCommand)| PaletteEntry {
+            kind: "own",
+            code: "",
+            title: command.name.clone(),
+            doc: match refusal {
+                Some(reason) => format!("unavailable ({reason}): {}", command.describe()),
+                None => command.describe(),
+            },
+            keys: command.key_label(),
+            effect: Effect::RunOwnCommand(at),
+        };
+        self.entries.extend(own.commands.iter().enumerate().map(entry));
+        self.entries.extend(own.problems.iter().map(|problem| PaletteEntry {
+            kind: "error",
+            code: "",
+            title: COMMANDS_FILE.to_owned(),
+            doc: problem.clone(),
+            keys: String::new(),
+            effect: Effect::ShowText(COMMANDS_FILE.to_owned(), problem.clone()),
+        }));
+        self.update_matches();
+        self
+    }
+
     fn update_matches(&mut self) {
         let typed = self.field.text().trim();
         let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));
@@ -166,7 +194,7 @@ impl CommandPalette {
             }
             let closeness = entry.match_rank(typed, !letters.is_empty());
             // A tool, command or group whose name is exactly the typed text ranks before all other names.
-            let whole = entry.kind_rank() < 3 && entry.title.eq_ignore_ascii_case(typed);
+            let whole = entry.kind_rank() < 4 && entry.title.eq_ignore_ascii_case(typed);
             let tier = match closeness {
                 _ if whole => 1,
                 MatchRank::Prefix | MatchRank::Word => 2,
@@ -361,7 +389,7 @@ impl Dialog for CommandPalette {
         if self.matches.is_empty() {
             canvas.draw_text(list, "no match", Role::Dim);
         }
-        let from = first_visible_row(self.selected, list.height as usize, self.matches.len());
+        let from = canvas.scroll_to_row(list, self.selected, self.matches.len());
         for (row, (place, (at, letters))) in row_rects(list).zip(self.matches.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *at, letters, place == self.selected);
             canvas.register_click(row, Click::Row(0, place));

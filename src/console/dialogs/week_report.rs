@@ -5,17 +5,17 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr;
 
-use super::{Dialog, DialogResponse};
+use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::overview::action_items::item_screen;
 use crate::screens::overview::figures::{self, METRICS};
-use novamind_base::formatting::{dollars, grouped_number, pluralize, short_dollars, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigure;
-use novamind_report::WeekReport;
 use novamind_report::action_items::ActionItem;
 use novamind_report::week::MovedFigure;
+use novamind_report::{WeekReport, figure_label};
 use novamind_session::{IntervalPosition, ScoredForecast};
 use novamind_tools::Forecast;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, truncate_to_width};
@@ -27,6 +27,10 @@ const MAX_PAGE_WIDTH: u16 = 116;
 /// Minimum width for comments next to the figures. In narrower windows, comments are below the figures.
 const MIN_WIDTH_FOR_SIDE_TEXT: u16 = 100;
 const CHANGES_SECTION: usize = 2;
+/// Minimum height at which the optional lines are omitted instead of scrolled.
+const MIN_HEIGHT_WITHOUT_SCROLLING: usize = 18;
+/// Number of rows for the changes and the next steps if the report is scrolled.
+const MAX_SCROLLED_LINES: usize = 200;
 
 /// The dialog that reports the last week.
 pub struct WeekReportDialog {
@@ -64,6 +68,10 @@ impl Dialog for WeekReportDialog {
         "week report".to_owned()
     }
 
+    fn tour_view(&self) -> Option<DialogView> {
+        Some(DialogView::new(DialogContent::WeekReport, true))
+    }
+
     fn scopes(&self) -> Vec<Scope> {
         vec![Scope::Dialog, Scope::Global]
     }
@@ -99,24 +107,34 @@ impl Dialog for WeekReportDialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let Some(week_report) = &context.company.last_week else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
-        let (lines, places) = self.report_lines(
+        let (lines, mut places) = self.report_lines(
             canvas,
             week_report,
             context,
             width.saturating_sub(4),
             area.height.saturating_sub(2),
         );
+        let selectable = places.len();
+        // The rows below the last selectable line are reached by selecting them.
+        places.extend(places.last().map_or(0, |last| last + 1)..lines.len());
         canvas.page_rows = places.len().max(1) as u16;
         let dialog_area = centered_rect(area, width, lines.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         let title = format!("Week {} · day {}", week_report.week.day.div_ceil(7), week_report.week.day);
         let inside = canvas.draw_pane_frame(dialog_area, &title, "", true);
-        canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
+        let selected = places.get(self.selected).copied().unwrap_or(0);
+        let from = canvas.scroll_to_row(inside, selected, lines.len());
+        let text = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        canvas.draw_lines(text, &lines[from..]);
         canvas.register_click(dialog_area, Click::Command(Action::Cancel.into()));
-        for (at, place) in places.iter().enumerate().filter(|(_, place)| **place < usize::from(inside.height))
-        {
-            let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };
-            canvas.register_click(row, Click::Row(0, at));
+        for (at, place) in places.iter().enumerate().take(selectable) {
+            let row = place.checked_sub(from).filter(|row| *row < usize::from(inside.height));
+            if let Some(row) = row {
+                canvas.register_click(
+                    Rect { y: inside.y + row as u16, height: 1, ..inside },
+                    Click::Row(0, at),
+                );
+            }
         }
         let close = context.hint(Action::Cancel);
         // The change in the first week has no explanation, because there is no previous week.
@@ -131,8 +149,8 @@ impl Dialog for WeekReportDialog {
 }
 
 impl WeekReportDialog {
-    /// Returns the lines that fit into a height, and the positions of selectable lines. If the height is small,
-    /// optional lines are omitted first.
+    /// Returns the lines and the positions of selectable lines. If the height is small, optional lines are omitted. If it
+    /// is too small for all sections, no line is omitted, because the user must scroll anyway.
     fn report_lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -142,18 +160,20 @@ impl WeekReportDialog {
         height: u16,
     ) -> (Vec<Line<'a>>, Vec<usize>) {
         let height = height as usize;
-        let head = self.header_section(canvas, week_report, width, if height >= 26 { 4 } else { 1 });
+        let scrolls = height < MIN_HEIGHT_WITHOUT_SCROLLING;
+        let is_complete = scrolls || height >= 26;
+        let head = self.header_section(canvas, week_report, width, if is_complete { 4 } else { 1 });
         let needs = &context.company.action_items;
         let notices = &context.company.notices;
         let news = news_section(canvas, week_report, width, context);
-        let decided = decisions_section(canvas, week_report, width, if height >= 26 { 6 } else { 2 });
+        let decided = decisions_section(canvas, week_report, width, if is_complete { 6 } else { 2 });
         // `fixed` includes two headings and, in tall windows, the four blank lines between the five sections.
         let airy = height >= 24;
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
-        let room = height.saturating_sub(fixed);
+        let room = if scrolls { MAX_SCROLLED_LINES } else { height.saturating_sub(fixed) };
         let shown_needs = needs.len().min((room / 5).max(1)).max(1);
         let coming =
-            next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, context);
+            next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, is_complete, context);
         let taken = coming.len() + usize::from(!notices.is_empty());
         let (moves, starts) = self.changes_section(canvas, week_report, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
@@ -162,7 +182,7 @@ impl WeekReportDialog {
             decided,
             match moves.is_empty() {
                 true => Vec::new(),
-                false => with_heading(canvas, &changes_heading(week_report), moves),
+                false => with_heading(canvas, &changes_heading(week_report, starts.len()), moves),
             },
             news.into_iter().chain(notices_section(canvas, context.company, width, left.min(8))).collect(),
             with_heading(canvas, "Action needed", coming),
@@ -178,15 +198,6 @@ impl WeekReportDialog {
             }
             lines.extend(part);
         }
-        let is_cut = lines.len() > height;
-        if is_cut && height > 0 {
-            let hidden = lines.len() - (height - 1);
-            lines.truncate(height - 1);
-            let text = format!("… {} more in a larger window", pluralize(hidden as u32, "line"));
-            lines.push(Line::from(canvas.span(text, Role::Dim)));
-        }
-        lines.truncate(height);
-        places.retain(|place| *place < height.saturating_sub(usize::from(is_cut)));
         (lines, places)
     }
 
@@ -264,11 +275,14 @@ impl WeekReportDialog {
     }
 }
 
-/// Returns the heading of the changes. The heading names the reference period if the two weeks differ in length.
-fn changes_heading(week_report: &WeekReport) -> String {
+/// Returns the heading of the changes with the number of changes that are shown, if some are omitted. The heading names
+/// the reference period if the two weeks differ in length.
+fn changes_heading(week_report: &WeekReport, shown: usize) -> String {
+    let all = week_report.moved_figures.len();
+    let number = if shown < all { format!(" · {shown} of {all}") } else { String::new() };
     match &week_report.short_week_note {
-        Some(short) => format!("Most unusual changes · a week {short}"),
-        None => "Most unusual changes".to_owned(),
+        Some(short) => format!("Most unusual changes{number} · a week {short}"),
+        None => format!("Most unusual changes{number}"),
     }
 }
 
@@ -358,7 +372,7 @@ fn change_lines<'a>(
     let share = moved_figure.format_size().unwrap_or_default();
     let mark = if name == Role::Selection { "›" } else { " " };
     let mut line = vec![
-        canvas.span(format!("{mark} {:<17}", moved_figure.name), name),
+        canvas.span(format!("{mark} {:<17}", figure_label(moved_figure.name)), name),
         canvas.span(format!("{:>12} → ", moved_figure.old), Role::Dim),
         canvas.span(format!("{:>12}", moved_figure.new), Role::Strong),
         canvas.span(format!("  {glyph} {share:<7}"), role),

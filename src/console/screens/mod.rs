@@ -4,14 +4,18 @@
 pub mod menu;
 pub mod panes;
 
+use std::collections::BTreeMap;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::context::{Figure, PaneKeys, ScreenContext, ScreenId};
+use super::context::{EditorDocument, Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
+use super::own_commands::ListRows;
 use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
+use novamind_tui::widgets::{ColumnLayout, Table};
 use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
 
@@ -115,6 +119,9 @@ pub trait ScreenState {
         0
     }
 
+    /// Called when the user selects the screen by its key, also while the screen is shown. Opens the same view each time.
+    fn show_first_view(&mut self) {}
+
     /// Returns the recorded kind and the recorded name of the open object.
     fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         None
@@ -137,9 +144,6 @@ pub trait Screen: ScreenState {
     /// scope is a text scope, keys type characters.
     fn scopes(&self) -> Vec<Scope>;
 
-    /// Returns whether a digit starts a number in the focused cell instead of switching screens.
-    fn accepts_digits(&self) -> bool;
-
     /// Returns the actions to show in the footer.
     fn hints(&self) -> Vec<Action>;
 
@@ -158,8 +162,25 @@ pub trait Screen: ScreenState {
     /// Returns the number of levels that esc closes on this screen.
     fn escape_depth(&self) -> usize;
 
+    /// Returns the number of rows of the focused table that pass the filter, and of all rows, if the focused pane has
+    /// a table.
+    fn row_counts(&self) -> Option<(usize, usize)>;
+
     /// Returns the selected figure, if a figure is selected.
     fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure>;
+
+    /// Returns the title of the focused pane and its table, if the pane has a table with several columns.
+    fn focused_table(&self, look: &ScreenContext<'_>) -> Option<(String, &Table)>;
+
+    /// Arranges the columns of the focused table. Returns the name with which the layout is saved, or `None` if the layout
+    /// applies only until the table is rebuilt.
+    fn set_focused_layout(&mut self, layout: ColumnLayout) -> Option<&'static str>;
+
+    /// Arranges the columns of all tables of the screen that have a name.
+    fn set_layouts(&mut self, layouts: &BTreeMap<String, ColumnLayout>);
+
+    /// Returns the selected rows of the focused list, or all its displayed rows, if the focused pane has a list.
+    fn list_rows(&self, all: bool) -> Option<ListRows>;
 
     /// Handles an action of one of the screen's scopes.
     fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect>;
@@ -169,6 +190,12 @@ pub trait Screen: ScreenState {
 
     /// Handles text that is pasted into a field.
     fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
+
+    /// Returns the text of the focused pane that can be edited in another program, if any.
+    fn editor_document(&self) -> Option<EditorDocument>;
+
+    /// Replaces the text of the focused pane with the text that another program returned.
+    fn replace_document(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a click on a row. Clicking the selected row opens it.
     fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect>;

@@ -3,15 +3,18 @@
 //! The screen owns the state, because the panes of the screen share the state. Each pane is a type without state that
 //! defines the behavior and the drawing of one area.
 
+use std::collections::BTreeMap;
+
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, PaneKeys, ScreenContext};
+use crate::context::{EditorDocument, Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
+use crate::own_commands::ListRows;
 use novamind_tui::canvas::{Canvas, Click};
-use novamind_tui::widgets::{Table, TextField};
+use novamind_tui::widgets::{ColumnLayout, Table, TextField};
 
 /// Texts in the border of a pane.
 #[derive(Default)]
@@ -49,17 +52,18 @@ pub trait Pane<S> {
         None
     }
 
+    /// Returns the name with which the column layout of the table is saved. If the columns depend on a query, the table has
+    /// no name.
+    fn table_name(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Returns the scopes that apply while the pane has the focus, the innermost first.
     fn scopes(&self, screen: &S) -> Vec<Scope> {
         match self.table(screen) {
             Some(table) if table.is_filter_open() => vec![Scope::Field, Scope::List],
             _ => vec![Scope::List],
         }
-    }
-
-    /// Returns whether a digit starts a number in the pane instead of switching screens.
-    fn accepts_digits(&self, _: &S) -> bool {
-        false
     }
 
     /// Returns the actions to show in the footer.
@@ -70,6 +74,13 @@ pub trait Pane<S> {
     /// Returns the figure that is selected in the pane, if any.
     fn figure(&self, _: &S, _: &ScreenContext<'_>) -> Option<Figure> {
         None
+    }
+
+    /// Returns the selected rows of the pane, or all displayed rows, if the pane has a list.
+    fn list_rows(&self, screen: &S, all: bool) -> Option<ListRows> {
+        let table = self.table(screen)?;
+        let selected = table.selected();
+        Some(ListRows::from_table(table, |row| all || selected == Some(row)))
     }
 
     /// Handles an action of one of the pane's scopes.
@@ -99,6 +110,16 @@ pub trait Pane<S> {
         if let Some(table) = self.table_mut(screen) {
             table.edit_filter(edit);
         }
+    }
+
+    /// Returns the text of the pane that can be edited in another program, if any.
+    fn editor_document(&self, _: &S) -> Option<EditorDocument> {
+        None
+    }
+
+    /// Replaces the text of the pane with the text that another program returned.
+    fn replace_document(&self, _: &mut S, _: &str) -> Vec<Effect> {
+        Vec::new()
     }
 
     /// Handles a click on a row. A second click on the same row opens the row.
@@ -172,7 +193,7 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Returns the focused pane.
     fn focused_pane(&self) -> Self::PaneId;
 
-    /// Moves the focus to a pane.
+    /// Moves the focus to a pane, and ends an edit in any pane. The typed text is kept as a draft.
     fn set_focused_pane(&mut self, name: Self::PaneId);
 
     /// Returns the overlay that temporarily covers the panes and receives all keys. For clicks on rows of the overlay,
@@ -207,6 +228,26 @@ pub fn draw_pane<S: PaneScreen>(
     S::pane(name).draw_with_border(screen, canvas, placement, context);
 }
 
+/// Draws one of several panes that share an area: the focused pane, or the first pane if none of them has the focus. The
+/// area does not depend on the focus, so moving the focus does not move other panes. A mark in the lower border shows
+/// the number of panes.
+pub fn draw_stack<S: PaneScreen>(
+    screen: &S,
+    names: &[S::PaneId],
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    context: &ScreenContext<'_>,
+) {
+    let available: Vec<S::PaneId> =
+        names.iter().copied().filter(|name| screen.panes().contains(name)).collect();
+    let front = available.iter().position(|name| *name == screen.focused_pane()).unwrap_or(0);
+    let Some(name) = available.get(front) else { return };
+    draw_pane(screen, *name, canvas, area, context);
+    if available.len() > 1 {
+        canvas.draw_stack_mark(area, front, available.len());
+    }
+}
+
 fn pane_index<S: PaneScreen>(screen: &S, name: S::PaneId) -> usize {
     screen.panes().iter().position(|id| *id == name).unwrap_or(0)
 }
@@ -218,10 +259,6 @@ fn active_pane<S: PaneScreen>(screen: &S) -> &'static dyn Pane<S> {
 impl<S: PaneScreen> Screen for S {
     fn scopes(&self) -> Vec<Scope> {
         active_pane(self).scopes(self)
-    }
-
-    fn accepts_digits(&self) -> bool {
-        active_pane(self).accepts_digits(self)
     }
 
     fn hints(&self) -> Vec<Action> {
@@ -262,8 +299,43 @@ impl<S: PaneScreen> Screen for S {
         usize::from(self.overlay().is_some()) + usize::from(filtered) + self.screen_escape_depth()
     }
 
+    fn row_counts(&self) -> Option<(usize, usize)> {
+        active_pane(self).table(self).map(|table| (table.visible_rows().len(), table.rows().len()))
+    }
+
     fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
         active_pane(self).figure(self, context)
+    }
+
+    fn focused_table(&self, context: &ScreenContext<'_>) -> Option<(String, &Table)> {
+        let pane = active_pane(self);
+        let table = pane.table(self).filter(|table| table.columns().len() > 1)?;
+        Some((pane.border(self, TYPICAL_AREA, context).title, table))
+    }
+
+    fn set_focused_layout(&mut self, layout: ColumnLayout) -> Option<&'static str> {
+        let pane = active_pane(self);
+        pane.table_mut(self)?.set_layout(layout);
+        pane.table_name()
+    }
+
+    fn set_layouts(&mut self, layouts: &BTreeMap<String, ColumnLayout>) {
+        if layouts.is_empty() {
+            return;
+        }
+        let panes = PaneScreen::panes(self).iter().map(|name| S::pane(*name)).chain(self.overlay());
+        for pane in panes.collect::<Vec<_>>() {
+            let layout = pane.table_name().and_then(|name| layouts.get(name));
+            if let (Some(layout), Some(table)) = (layout, pane.table_mut(self))
+                && table.layout() != layout
+            {
+                table.set_layout(layout.clone());
+            }
+        }
+    }
+
+    fn list_rows(&self, all: bool) -> Option<ListRows> {
+        active_pane(self).list_rows(self, all)
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
@@ -282,6 +354,14 @@ impl<S: PaneScreen> Screen for S {
 
     fn paste(&mut self, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         active_pane(self).paste(self, text, context)
+    }
+
+    fn editor_document(&self) -> Option<EditorDocument> {
+        active_pane(self).editor_document(self)
+    }
+
+    fn replace_document(&mut self, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).replace_document(self, text)
     }
 
     fn handle_click(&mut self, pane: usize, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {

@@ -8,6 +8,7 @@ use novamind_session::{InspectionPermit, Session};
 use novamind_tools::Rejection;
 use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
+use novamind_world::params::Params;
 use novamind_world::retention::renewal::ongoing_discount;
 
 /// A customer number that does not exist, so that no discount for a single customer applies.
@@ -68,34 +69,51 @@ impl CurveExplorer {
     /// # Errors
     /// `group_not_discovered`, `guess_first`.
     pub fn from_estimates(run: &Session, group: Group) -> Result<CurveExplorer, Rejection> {
-        if let Some(lesson) = run.lesson() {
-            lesson.check_guess_submitted(run.day() / run.params().run.days_per_week)?;
-        }
-        let all = run.company().estimates();
-        let delivered = run.company().delivered_quality();
-        let quality = delivered
-            .iter()
-            .find(|delivered_quality| delivered_quality.group == group)
-            .map(|delivered_quality| delivered_quality.by_plan);
-        let estimates = all.iter().find(|estimates| estimates.group == group);
-        let Some((estimates, quality)) = estimates.zip(quality) else {
-            let known: Vec<&str> = all.iter().map(|estimates| estimates.group.id()).collect();
-            let message =
-                format!("group {group} is not known yet; the known groups are {}", known.join(", "));
-            return Err(Rejection::for_field("group", "group_not_discovered", message));
-        };
-        // The drift since the study is unknown.
-        let market =
-            |reading| (Expectation::default(), Arc::new(assumed_params(estimates, reading, run.params())));
-        let markets =
-            [EstimateVariant::Likely, EstimateVariant::Strict, EstimateVariant::Generous].map(market).into();
-        let basis = CurveBasis::Estimates {
-            level: estimates.level,
-            noise: estimates.max_relative_error,
-            as_of: estimates.as_of,
-        };
-        Ok(CurveExplorer::from_markets(group, basis, current_offer(run, group, &quality), markets))
+        let (basis, offer, markets) = estimated_markets(run, group)?;
+        Ok(CurveExplorer::from_markets(group, basis, offer, markets))
     }
+
+    /// Returns the curve explorer for the estimates of market studies without the points of the curve, for texts that
+    /// contain only the expected decisions of leads.
+    ///
+    /// # Errors
+    /// `group_not_discovered`, `guess_first`.
+    pub fn from_estimates_without_points(run: &Session, group: Group) -> Result<CurveExplorer, Rejection> {
+        let (basis, offer, markets) = estimated_markets(run, group)?;
+        Ok(CurveExplorer::without_points(group, basis, offer, markets))
+    }
+}
+
+/// Source of a curve, current plans, and the markets that match the estimates: the likely market first.
+type EstimatedMarkets = (CurveBasis, CurrentOffer, Vec<(Expectation, Arc<Params>)>);
+
+fn estimated_markets(run: &Session, group: Group) -> Result<EstimatedMarkets, Rejection> {
+    if let Some(lesson) = run.lesson() {
+        lesson.check_guess_submitted(run.day() / run.params().run.days_per_week)?;
+    }
+    let all = run.company().estimates();
+    let delivered = run.company().delivered_quality();
+    let quality = delivered
+        .iter()
+        .find(|delivered_quality| delivered_quality.group == group)
+        .map(|delivered_quality| delivered_quality.by_plan);
+    let estimates = all.iter().find(|estimates| estimates.group == group);
+    let Some((estimates, quality)) = estimates.zip(quality) else {
+        let known: Vec<&str> = all.iter().map(|estimates| estimates.group.id()).collect();
+        let message = format!("group {group} is not known yet; the known groups are {}", known.join(", "));
+        return Err(Rejection::for_field("group", "group_not_discovered", message));
+    };
+    // The drift since the study is unknown.
+    let market =
+        |reading| (Expectation::default(), Arc::new(assumed_params(estimates, reading, run.params())));
+    let markets =
+        [EstimateVariant::Likely, EstimateVariant::Strict, EstimateVariant::Generous].map(market).into();
+    let basis = CurveBasis::Estimates {
+        level: estimates.level,
+        noise: estimates.max_relative_error,
+        as_of: estimates.as_of,
+    };
+    Ok((basis, current_offer(run, group, &quality), markets))
 }
 
 /// Returns the current prices, qualities, quotas and discounts. The player can see all of these values elsewhere.

@@ -9,7 +9,7 @@ use novamind_world::customers::choice::PlanOffer;
 use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::market::lead_sample::{LeadChoices, LeadSample};
-use novamind_world::params::Params;
+use novamind_world::params::{Params, ServicePenalty};
 use novamind_world::random::Streams;
 
 /// Number of simulated leads per market.
@@ -140,12 +140,26 @@ impl CurveExplorer {
         on_offer: CurrentOffer,
         markets: Vec<(Expectation, Arc<Params>)>,
     ) -> CurveExplorer {
+        let mut explorer = CurveExplorer::without_points(group, basis, on_offer, markets);
+        let most = explorer.max_price();
+        let price = |step: usize| most * step as f64 / PRICE_STEPS as f64;
+        explorer.points = (0..=PRICE_STEPS).map(|step| explorer.curve_point(price(step))).collect();
+        explorer
+    }
+
+    /// Creates a curve explorer without the points of the curve, which take much longer than the decisions of leads.
+    pub(super) fn without_points(
+        group: Group,
+        basis: CurveBasis,
+        on_offer: CurrentOffer,
+        markets: Vec<(Expectation, Arc<Params>)>,
+    ) -> CurveExplorer {
         let CurrentOffer { plans, discount: promotion, ongoing_discounts: ongoing } = on_offer;
         let markets: Vec<Market> = markets
             .into_iter()
             .map(|(expectation, params)| Market::draw_leads(group, expectation, params))
             .collect();
-        let mut explorer = CurveExplorer {
+        CurveExplorer {
             group,
             basis,
             plans,
@@ -153,11 +167,7 @@ impl CurveExplorer {
             ongoing_discounts: ongoing,
             points: Vec::new(),
             markets,
-        };
-        let most = explorer.max_price();
-        let price = |step: usize| most * step as f64 / PRICE_STEPS as f64;
-        explorer.points = (0..=PRICE_STEPS).map(|step| explorer.curve_point(price(step))).collect();
-        explorer
+        }
     }
 
     /// Returns the highest price of the curve, $ per month. All plan prices and nearly all budgets are below this price.
@@ -186,6 +196,11 @@ impl CurveExplorer {
     /// Returns whether the curve shows true traits, in which case figures have no range.
     pub fn shows_true_values(&self) -> bool {
         matches!(self.basis, CurveBasis::Truth { .. })
+    }
+
+    /// Returns whether overload and outages affect the decisions of leads. The explorer does not include this effect.
+    pub fn omits_service(&self) -> bool {
+        self.markets[0].params.fidelity.service_penalty == ServicePenalty::Everywhere
     }
 
     /// Returns the expected decisions of leads about `plans`, with current discounts.

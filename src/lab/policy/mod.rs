@@ -7,9 +7,7 @@ use std::fmt;
 use serde::Deserialize;
 use toml::Table;
 
-#[cfg(test)]
-pub use rule_based::PriceBook;
-pub use rule_based::{CapacityRule, OperationsRule, RuleBased, TargetGroups};
+pub use rule_based::{CapacityRule, OperationsRule, PerPlan, PriceBook, RuleBased, TargetGroups};
 
 use super::enterprise_answers::EnterpriseRule;
 use novamind_record::folder::configuration::Configuration;

@@ -19,7 +19,7 @@ use novamind_tools::ToolId;
 
 impl Interpreter {
     /// Parses and previews the tool call in a line that begins with `check`. Errors report columns of the whole line.
-    pub(super) fn check_command(&self, line: &str) -> Result<CommandResponse, ParseError> {
+    pub(super) fn check_command(&mut self, line: &str) -> Result<CommandResponse, ParseError> {
         let call = line.replacen("check", "     ", 1);
         let ParsedLine::Call { word, column, arguments } = grammar::parse_line(&call)? else {
             let text = "check needs a call, for example check set_prices B=30".to_owned();
@@ -28,12 +28,15 @@ impl Interpreter {
         let tool = find_tool(&word).ok_or_else(|| not_a_tool_error(&word, column))?;
         let arguments = parse_call_arguments(tool, &arguments)?;
         Ok(match self.session.preview_call(tool.spec().name(), &arguments) {
-            Ok(preview) => self.preview_response(&preview, &arguments),
+            Ok(preview) => {
+                let offers = self.planned_offers(preview.tool, &arguments);
+                self.preview_response(&preview, &arguments, &self.describe_offers(&offers))
+            }
             Err(refusal) => CommandResponse::rejected("check", refusal),
         })
     }
 
-    fn preview_response(&self, preview: &Preview, arguments: &Value) -> CommandResponse {
+    fn preview_response(&self, preview: &Preview, arguments: &Value, offers: &[String]) -> CommandResponse {
         let mut lines = vec![format!("{} would be accepted; nothing was changed", preview.tool)];
         lines.extend(preview.changes.iter().map(|change| format!("  {}", describe_setting_change(change))));
         lines.extend(cost_line(preview).map(|line| format!("  {line}")));
@@ -43,7 +46,8 @@ impl Interpreter {
             .flat_map(outlook_lines)
             .chain(self.describe_capacity(preview.tool, arguments))
             .chain(self.describe_study_level(preview.tool, arguments))
-            .chain(self.describe_margins(preview.tool, arguments));
+            .chain(self.describe_margins(preview.tool, arguments))
+            .chain(offers.iter().cloned());
         lines.extend(notes.map(|note| format!("  {note}")));
         CommandResponse::success("check", lines.join("\n"), json!(preview))
     }

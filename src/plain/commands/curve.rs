@@ -12,6 +12,7 @@ use novamind_insight::{CurveExplorer, CurveOutcome, CurvePoint, LEAD_SAMPLE_SIZE
 use novamind_report::curve::{
     column_names, describe_basis, describe_outcome, describe_plan, footnotes, format_quality, rows,
 };
+use novamind_report::measured_conversion::MeasuredConversion;
 use novamind_session::identifiers::{Group, Plan};
 
 const USAGE: &str = "give a group, and optionally a price and a quality: curve S1, curve S1 30 0.4";
@@ -23,7 +24,10 @@ impl Interpreter {
     pub(super) fn curve(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (group, product) = parse_request(arguments)?;
         Ok(match CurveExplorer::open(&mut self.session, group) {
-            Ok(curve_explorer) => curve_response(&curve_explorer, product),
+            Ok(curve_explorer) => {
+                let measured = MeasuredConversion::of_group(&self.session, group);
+                curve_response(&curve_explorer, product, &measured)
+            }
             Err(refusal) => CommandResponse::rejected("curve", refusal),
         })
     }
@@ -54,7 +58,11 @@ fn parse_request(arguments: &[Argument]) -> Result<CurveRequest, ParseError> {
     }
 }
 
-fn curve_response(curve_explorer: &CurveExplorer, product: Option<(f64, f64)>) -> CommandResponse {
+fn curve_response(
+    curve_explorer: &CurveExplorer,
+    product: Option<(f64, f64)>,
+    measured: &MeasuredConversion,
+) -> CommandResponse {
     let basis = describe_basis(&curve_explorer.basis);
     let mut lines = Vec::new();
     let outcome = match product {
@@ -85,8 +93,22 @@ fn curve_response(curve_explorer: &CurveExplorer, product: Option<(f64, f64)>) -
         );
     }
     lines.push(format!("{}; {LEAD_SAMPLE_SIZE} sampled leads", describe_outcome(&outcome)));
+    let with_plans = if product.is_some() { "with your plans: " } else { "" };
+    lines.push(format!("{with_plans}{}", measured.describe()));
     lines.extend(footnotes(curve_explorer));
-    CommandResponse::success("curve", lines.join("\n"), curve_to_json(curve_explorer, product, &outcome))
+    let mut data = curve_to_json(curve_explorer, product, &outcome);
+    data["measured"] = measured_to_json(measured);
+    CommandResponse::success("curve", lines.join("\n"), data)
+}
+
+pub(super) fn measured_to_json(measured: &MeasuredConversion) -> Value {
+    json!({
+        "conversion": measured.share(),
+        "taken": measured.taken,
+        "leads": measured.leads,
+        "weeks": measured.weeks,
+        "plans_changed_on": measured.changed_on,
+    })
 }
 
 fn curve_to_json(

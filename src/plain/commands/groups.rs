@@ -5,9 +5,12 @@ use serde_json::{Value, json};
 
 use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
+use super::curve::measured_to_json;
 use super::{Interpreter, argument_error};
 use novamind_base::formatting::{dollars, dollars_and_cents, pluralize};
 use novamind_base::similar_names;
+use novamind_insight::CurveExplorer;
+use novamind_report::curve::{describe_omissions, describe_outcome};
 use novamind_report::fit::{Fit, FitCriterion, LeadFlow, PlanFit, fits};
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
 use novamind_report::lead_costs::{AdWindow, LeadCost, lead_costs_by_pair};
@@ -23,11 +26,28 @@ impl Interpreter {
     ) -> Result<CommandResponse, ParseError> {
         let all = fits(&self.session);
         let shown = select_groups(&all, name, arguments)?;
-        let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.describe_lines()).collect();
+        let (mut lines, mut groups): (Vec<String>, Vec<Value>) = Default::default();
+        for fit in shown {
+            let explorer = CurveExplorer::from_estimates_without_points(&self.session, fit.group);
+            let estimated = explorer.as_ref().map(|explorer| explorer.outcome_for_plans(&explorer.plans));
+            lines.extend(fit.describe_lines());
+            lines.push(match &estimated {
+                Ok(outcome) => format!("  signups  {}", describe_outcome(outcome)),
+                Err(refusal) => format!("  signups  {}", refusal.message),
+            });
+            lines.push(format!("           {}", fit.measured.describe()));
+            lines.extend(
+                explorer.iter().map(|explorer| format!("           {}", describe_omissions(explorer))),
+            );
+            let mut data = fit_to_json(fit);
+            data["estimated_conversion"] = json!(estimated.ok().map(|outcome| outcome.conversion));
+            data["measured"] = measured_to_json(&fit.measured);
+            groups.push(data);
+        }
         lines.push(
             "ranges are for group averages; a customer's required quality rises with the price".to_owned(),
         );
-        let data = json!({ "groups": shown.into_iter().map(fit_to_json).collect::<Vec<Value>>() });
+        let data = json!({ "groups": groups });
         Ok(CommandResponse::success("fit", lines.join("\n"), data))
     }
 

@@ -9,7 +9,6 @@ use super::{
     rules, xray,
 };
 use novamind_base::similar_names;
-use novamind_session::ErrorIntervals;
 use novamind_tools::{ParameterNumbers, ToolKind};
 
 const NEEDS_HELP: &str = "\
@@ -82,7 +81,7 @@ fn command_help(name: &str, led: bool) -> Option<String> {
         "pause" => PAUSE_HELP,
         "break" => BREAK_HELP,
         "set" => parameters::HELP,
-        _ if NEXT_WEEK_COMMANDS.contains(&name) => return Some(next_help(led)),
+        _ if NEXT_WEEK_COMMANDS.contains(&name) => return Some(NEXT_HELP.to_owned()),
         _ => return None,
     };
     Some(text.to_owned())
@@ -149,22 +148,16 @@ pub(super) fn help(
     ))
 }
 
-/// Returns the help on `next` with the coverage of naive forecasts. Participants of a study do not see the coverage,
-/// because the coverage was measured with other companies.
-fn next_help(led: bool) -> String {
-    let forms = "\
+const NEXT_HELP: &str = "\
 next \"WHY\" naive                         naive forecasts
 next \"WHY\" P L U  P L U  P L U  P L U    point, lower, upper of cash in 1, 4, 12 and 26 weeks
 next_week {\"rationale\": \"WHY\", \"predictions\": {\"cash_1wk\": {\"point\": 950000, \"lower\": 900000, \"upper\": 990000}, \
 \"cash_4wk\": …, \"cash_12wk\": …, \"cash_26wk\": …}}
 next                                     asks at a terminal; simulates the week in a lesson that needs neither rationale nor
                                          forecasts
-Naive forecasts: income, compute and lead costs continue as in the last four weeks, at the costs set now.";
-    match led {
-        true => forms.to_owned(),
-        false => format!("{forms} {}.", ErrorIntervals::bundled().describe_coverage()),
-    }
-}
+Only forecasts that end within the run are required: 9 numbers instead of 12 if the run ends in 12 to 25 weeks.
+Naive forecasts: current subscribers pay on their billing dates and renew or cancel at recent rates, sign-ups continue
+their trend, and costs stay as they are set now.";
 
 fn callable_names() -> impl Iterator<Item = &'static str> {
     novamind_tools::CATALOGUE

@@ -9,7 +9,7 @@ use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;
 use super::help::not_found_message;
 use super::{Interpreter, argument_error, find_tool};
-use novamind_base::formatting::{dollars, grouped_number, pluralize, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, signed_dollars};
 use novamind_base::similar_names;
 use novamind_database::Interface;
 use novamind_record::trajectory::record::Reversal;
@@ -34,8 +34,11 @@ impl Interpreter {
 
     pub(super) fn status(&self) -> CommandResponse {
         let seen = self.session.company().observe();
-        let runway =
-            seen.whole_runway_weeks().map_or("to the last day".to_owned(), |weeks| pluralize(weeks, "week"));
+        let runway = match (seen.ended, seen.runway.describe_weeks()) {
+            (Some(_), _) => String::new(),
+            (None, Some(weeks)) => format!(" · runway {weeks} weeks"),
+            (None, None) => " · runway to the last day".to_owned(),
+        };
         let ended = seen.ended.map_or(String::new(), |ended| format!("ended: {}\n", ended.id()));
         let tier = self.session.settings().core.capacity_tier;
         let units = self
@@ -50,7 +53,7 @@ impl Interpreter {
         let capacity = next
             .map_or(String::new(), |(next, units)| format!("{}\n", next.describe(u32::from(tier), units)));
         let text = format!(
-            "run {}{} · {}\nday {} of {} · week {}\n{ended}cash {} ({}) · runway {runway}\n\
+            "run {}{} · {}\nday {} of {} · week {}\n{ended}cash {} ({}){runway}\n\
              subscribers {} · seats {}\n{capacity}waiting threads {} · running research {} · changes this week {}",
             seen.run,
             describe_seed(seen.seed),
@@ -128,7 +131,7 @@ impl Interpreter {
             "purchases": seen.purchases,
             "alike_plans": seen.alike_plans,
             "late_projects": seen.late_projects,
-            "committed_per_day": seen.pace.committed,
+            "committed_per_day": seen.committed,
             "one_time_costs": -seen.booked_since.sum(),
             "runway_weeks": seen.runway_weeks,
         });

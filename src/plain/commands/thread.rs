@@ -8,8 +8,10 @@ use super::inbox::{describe_offer, describe_request};
 use super::{Interpreter, argument_error, optional_count};
 use novamind_base::formatting::{dollars_and_cents, grouped_number};
 use novamind_database::{Cell, QueryResult, number_at, text_at};
+use novamind_record::mode::Mode;
 use novamind_report::pluralize;
-use novamind_rules::{ThreadContext, parse_offer};
+use novamind_rules::{LostThread, MIN_TURNS_PARAMETER, Subscription, ThreadContext, Turn};
+use novamind_session::identifiers::Plan;
 use novamind_tools::Rejection;
 
 /// Beginning of a query that selects the turns of a thread.
@@ -17,7 +19,8 @@ const TURNS_SQL: &str = "SELECT thread_id, customer_id, thread_type, turn_number
                      seat_count, close_reason FROM enterprise_turns";
 /// Beginning of a query that selects the profile of an enterprise.
 const ENTERPRISE_SQL: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
-                       c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price \
+                       c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price, \
+                       s.end_day \
                        FROM customers c CROSS JOIN subscriptions s WHERE s.customer_id = c.customer_id";
 
 impl Interpreter {
@@ -80,7 +83,23 @@ impl Interpreter {
         )];
         lines.extend(company.as_ref().and_then(describe_enterprise));
         lines.extend(turns.rows.iter().filter_map(|row| Some(names.insert_names(&describe_turn(row)?))));
-        lines.extend(describe_state(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
+        // The texts of the tools, which agents read, do not state the number of turns.
+        let is_shown = self.session.manifest().mode != Mode::Baseline || self.session.ended().is_some();
+        let min_turns =
+            self.session.numbers().value(MIN_TURNS_PARAMETER).filter(|_| is_shown).map(|turns| turns as u32);
+        let lost = company.as_ref().filter(|_| waiting.is_none()).and_then(|company| {
+            let turns: Vec<Turn> = turns.rows.iter().map(|row| Turn::from_row(row)).collect();
+            LostThread::from_turns(&turns, text_at(first, 2), &subscription(company)?, min_turns)
+        });
+        match lost {
+            Some(lost) => {
+                lines.push(lost.describe(&names.name_with_number(customer)));
+                lines.extend(lost.facts.iter().map(|fact| names.insert_names(fact)));
+            }
+            None => {
+                lines.extend(describe_state(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
+            }
+        }
         let data = json!({
             "thread": thread,
             "customer": customer,
@@ -121,10 +140,22 @@ fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     Some(parts.join("; "))
 }
 
+/// Returns the subscription of an enterprise.
+fn subscription(rows: &QueryResult) -> Option<Subscription> {
+    let row = rows.rows.first()?;
+    let end_day = row.get(9).filter(|cell| !matches!(cell, Cell::Null)).map(|_| number_at(row, 9) as u32);
+    Some(Subscription {
+        status: text_at(row, 6).to_owned(),
+        plan: Plan::parse(text_at(row, 7)),
+        price: number_at(row, 8),
+        end_day,
+    })
+}
+
 /// Formats a turn as one line. Returns `None` for an opening turn without a message.
 fn describe_turn(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
-    let (offers, price) = parse_offer(text_at(row, 6));
+    let Turn { offers, price, .. } = Turn::from_row(row);
     let text = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
         ("agent", _) => format!("you offered {}", describe_offer(&offers)),
@@ -144,6 +175,7 @@ fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32)
         return vec![match text_at(last, 9) {
             "accepted" => "the thread ended with a deal".to_owned(),
             "agent_rejected" => "you ended the thread".to_owned(),
+            _ if text_at(last, 4) == "agent" => "the enterprise has not answered your offer yet".to_owned(),
             _ => "the thread does not wait for you".to_owned(),
         }];
     };
@@ -163,7 +195,7 @@ fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32)
 }
 
 fn turn_to_json(row: &[Cell]) -> Value {
-    let (offers, price) = parse_offer(text_at(row, 6));
+    let Turn { offers, price, .. } = Turn::from_row(row);
     json!({
         "turn": number_at(row, 3),
         "sender": text_at(row, 4),

@@ -27,7 +27,7 @@ macro_rules! bundled_queries {
     };
 }
 
-const BUNDLED_QUERIES: [(&str, &str); 47] = bundled_queries![
+const BUNDLED_QUERIES: [(&str, &str); 48] = bundled_queries![
     "cash-by-week",
     "ledger-by-category",
     "costs-by-week",
@@ -51,6 +51,7 @@ const BUNDLED_QUERIES: [(&str, &str); 47] = bundled_queries![
     "retention-by-plan",
     "churn-by-tenure",
     "leavers-by-group",
+    "issues-of-leavers",
     "usage-against-quota",
     "usage-by-group",
     "capacity-headroom",

@@ -5,28 +5,35 @@ use serde_json::{Map, Value, json};
 use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem, RISK_DAYS};
 use crate::formatting::{format_money, format_whole, pluralize};
 use novamind_base::formatting::json_number;
-use novamind_session::ModelTier;
 use novamind_session::identifiers::{Group, Plan};
+use novamind_session::{MAX_RUNWAY_DAYS, ModelTier, PlanRevenue};
 use novamind_tools::ToolId;
 
 /// Runway in weeks below which low cash is reported.
 const MIN_RUNWAY_WEEKS: f64 = 8.0;
 
-/// Reports a problem if cash lasts less than eight weeks at the current rate.
+/// Minimum number of subscriptions of a plan whose margin is reported. Usage rates have a standard deviation of about
+/// 40 % of their mean, so the mean of ten has a standard error of about 13 %; the loss of fewer subscriptions can be the
+/// usage of one of them.
+const MIN_SUBSCRIPTIONS_FOR_MARGIN: u32 = 10;
+/// Assumed largest ratio of the cancellations on the last day to a mean day of the week. Usage of the last day includes
+/// customers who cancelled on that day, and revenue does not.
+const MAX_LAST_DAY_RATIO: f64 = 3.0;
+
+/// Reports a problem if cash is expected to last less than eight weeks.
 pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     let seen = &situation.observation;
     let weeks = seen.runway_weeks.filter(|weeks| *weeks < MIN_RUNWAY_WEEKS)?;
-    let pace = &seen.pace;
-    let out = (pace.committed + pace.variable) * 7.0;
+    let flows = seen.expected_flows();
+    let out = seen.committed * 7.0 + flows.variable;
     let SpendingBudget { name, dollars, reduced_dollars: kept, target: place } = largest_budget(situation);
     let proposal = (dollars > 0.0).then(|| {
-        let net = pace.net_per_day() + dollars - kept;
-        let lasts = match (seen.cash.max(0.0) / -net / 7.0).round() {
-            weeks if net < 0.0 => format!("lasts {}", pluralize(weeks as u32, "week")),
-            _ => "no longer shrinks".to_owned(),
+        let lasts = match seen.outlook.runway_with_saving(dollars - kept, seen.days_left()) {
+            Some(weeks) => pluralize(weeks.round() as u32, "week"),
+            None => format!("more than {}", pluralize(seen.days_left().min(MAX_RUNWAY_DAYS) / 7, "week")),
         };
         format!(
-            "The largest budget is {name}, {} a day. At {} a day, cash {lasts}.",
+            "The largest budget is {name}, {} a day. At {} a day and with the same income, cash lasts {lasts}.",
             format_money(dollars),
             format_money(kept)
         )
@@ -34,9 +41,9 @@ pub(super) fn diagnose_runway(situation: &DiagnosisContext<'_>) -> Option<Action
     Some(ActionItem {
         problem: Problem::Runway,
         text: format!(
-            "Cash lasts {} at the current rate. Income is {} a week, costs are {}.",
+            "Cash is expected to last {}. In the next four weeks, income should be {} a week and costs {}.",
             pluralize(weeks as u32, "week"),
-            format_money(pace.income * 7.0),
+            format_money(flows.income),
             format_money(out)
         ),
         proposal,
@@ -59,9 +66,8 @@ struct SpendingBudget {
 fn largest_budget(situation: &DiagnosisContext<'_>) -> SpendingBudget {
     let settings = situation.session.settings();
     let (core, development) = (&settings.core, &settings.targeted_development);
-    let missing = situation.observation.cash.max(0.0) / (MIN_RUNWAY_WEEKS * 7.0)
-        + situation.observation.pace.net_per_day();
-    let kept = |dollars: f64| ((dollars + missing.min(0.0)).max(0.0)).floor();
+    let saving = situation.observation.outlook.required_saving((MIN_RUNWAY_WEEKS * 7.0) as u32);
+    let kept = |dollars: f64| (dollars - saving).max(0.0).floor();
     let scaled = |dollars: f64, total: f64| json_number((dollars * kept(total) / total.max(1e-9)).floor());
     let ads: Map<String, Value> = settings
         .targeted_ads
@@ -117,68 +123,79 @@ fn sum_numbers(arguments: &Value) -> f64 {
     }
 }
 
-/// Finds plans whose individual subscribers cost more in compute than they pay.
+/// Finds plans whose subscribers cost more in compute than they pay: revenue of the subscriptions that could use the product
+/// on the last day, and compute of the last day's usage times 30. Every reported plan has a negative gross margin.
 pub(super) fn unprofitable_plans(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let Some(groups) = situation.last_group_week() else { return Vec::new() };
-    let models = &situation.terms.models;
+    let revenue_by_plan = situation.session.company().plan_revenue();
+    let total: u32 = revenue_by_plan.iter().map(|revenue| revenue.subscriptions).sum();
+    let left: u32 = Group::all().map(|group| groups[group].left).sum();
+    let left_on_last_day = MAX_LAST_DAY_RATIO * f64::from(left) / 7.0;
+    // Lower bound of the share of the last day's customers who are still subscribed.
+    let remaining_share = 1.0 - left_on_last_day / (f64::from(total) + left_on_last_day).max(1.0);
     let of_plan = |plan: Plan| {
-        let people = || Group::all().filter(|group| !group.is_enterprise());
-        let subscribers: u32 = people().map(|group| groups[group].subscribers[plan]).sum();
-        let revenue: f64 = people().map(|group| groups[group].revenue[plan]).sum();
-        let units: u64 = people().map(|group| groups[group].last_usage[plan]).sum();
+        let revenue = revenue_by_plan[plan];
+        let PlanRevenue { subscriptions, seats, monthly } = revenue;
+        let units: u64 = Group::all().map(|group| groups[group].last_usage[plan]).sum();
         let a_month = units as f64 * DAYS_PER_MONTH;
-        let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+        let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
         let cost = a_month * now.unit_cost;
-        if subscribers == 0 || cost <= revenue {
+        if subscriptions < MIN_SUBSCRIPTIONS_FOR_MARGIN || cost * remaining_share <= monthly {
             return None;
         }
-        let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue);
+        let (proposal, place) = propose_cheaper_setting(situation, plan, now, a_month, revenue)?;
         Some(ActionItem {
             problem: Problem::Margin,
             text: format!(
                 "Plan {plan} loses money. Revenue from {} is {} a month, and compute costs {} a month at the last day's usage.",
-                pluralize(subscribers, "individual"),
-                format_money(revenue),
+                pluralize(seats as u32, "seat"),
+                format_money(monthly),
                 format_money(cost)
             ),
             proposal: Some(proposal),
             target: place,
-            at_risk: (cost - revenue) * RISK_DAYS / DAYS_PER_MONTH,
+            at_risk: (cost - monthly) * RISK_DAYS / DAYS_PER_MONTH,
             is_urgent: true,
         })
     };
     Plan::ALL.into_iter().filter_map(of_plan).collect()
 }
 
-/// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a smaller quota.
+/// Proposes the best model tier whose compute the plan's revenue covers at the same usage, otherwise a quota at which
+/// compute cannot exceed the revenue. Returns `None` if the current quota already limits compute to the revenue.
 fn propose_cheaper_setting(
     situation: &DiagnosisContext<'_>,
     plan: Plan,
     now: &ModelTier,
     units: f64,
-    revenue: f64,
-) -> (String, ActionTarget) {
-    let lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
-    let covered = lower.filter(|model| units * model.unit_cost < revenue).map(|model| {
+    PlanRevenue { subscriptions, monthly: revenue, .. }: PlanRevenue,
+) -> Option<(String, ActionTarget)> {
+    let held = situation.settings.quotas[plan].units();
+    let compute_at = |quota: f64| f64::from(subscriptions) * quota * DAYS_PER_MONTH * now.unit_cost;
+    // The quota may have been lowered after the last day.
+    if compute_at(held) <= revenue {
+        return None;
+    }
+    let mut lower = situation.terms.models.iter().rev().filter(|model| model.tier < now.tier);
+    if let Some(model) = lower.find(|model| units * model.unit_cost < revenue) {
         let cost = format_money(units * model.unit_cost);
         let text =
             format!("Model tier {} costs {cost} at the same usage and delivers lower quality.", model.tier);
-        (text, ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier })))
-    });
-    covered.into_iter().next().unwrap_or_else(|| {
-        let held = situation.settings.quotas[plan].units();
-        let quota = (held * revenue / (units * now.unit_cost)).floor();
-        let quotas: Map<String, Value> = Plan::ALL
-            .into_iter()
-            .map(|of| {
-                let kept = situation.settings.quotas[of].units();
-                (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
-            })
-            .collect();
-        let text = format!(
-            "A quota below today's {} units a day limits the usage of these subscribers.",
-            format_whole(held)
-        );
-        (text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)))
-    })
+        return Some((text, ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): model.tier }))));
+    }
+    let quota = (revenue / compute_at(1.0)).floor();
+    let quotas: Map<String, Value> = Plan::ALL
+        .into_iter()
+        .map(|of| {
+            let kept = situation.settings.quotas[of].units();
+            (of.id().to_owned(), json_number(if of == plan { quota } else { kept }))
+        })
+        .collect();
+    let text = format!(
+        "A quota of {} units a day limits compute to {} a month. The quota is {} now.",
+        format_whole(quota),
+        format_money(compute_at(quota)),
+        format_whole(held)
+    );
+    Some((text, ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas))))
 }

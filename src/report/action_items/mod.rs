@@ -6,6 +6,10 @@
 
 mod advertising;
 mod cash;
+mod conversion;
+mod offer_changes;
+#[cfg(test)]
+mod property_tests;
 mod retention;
 mod selling;
 mod service;
@@ -36,7 +40,9 @@ pub enum Problem {
     NoLeads,
     /// Leads of a group do not sign up.
     NoSales(Group),
-    /// The individual subscribers of a plan cost more than they pay.
+    /// The conversion of a group fell by more than chance explains.
+    ConversionFall(Group),
+    /// The subscribers of a plan cost more than they pay.
     Margin,
     /// Usage exceeded capacity in the last week.
     Overload,
@@ -44,7 +50,7 @@ pub enum Problem {
     Outages,
     /// Subscribers are waiting for support.
     Backlog,
-    /// Far more subscribers of a group than usual cancelled.
+    /// More subscribers of a group cancelled than chance explains.
     Churn(Group),
     /// Enterprises of a group find no plan with sufficient quality.
     NoRequests(Group),
@@ -64,6 +70,7 @@ impl Problem {
             Problem::NoQuota => "no_quota",
             Problem::NoLeads => "no_leads",
             Problem::NoSales(_) => "no_sales",
+            Problem::ConversionFall(_) => "conversion_fall",
             Problem::Margin => "margin",
             Problem::Overload => "overload",
             Problem::Outages => "outages",
@@ -126,6 +133,9 @@ const RISK_DAYS: f64 = 28.0;
 /// Minimum money at risk for a report, as a share of revenue plus costs.
 const MIN_RISK_SHARE: f64 = 0.01;
 const DAYS_PER_MONTH: f64 = 30.0;
+/// Number of standard errors by which a figure of a week differs by chance. A normal error exceeds three standard errors
+/// in one direction once in 740 weeks, so a company with ten groups has a false report about once in 74 weeks.
+const MAX_CHANCE: f64 = 3.0;
 
 impl<'a> DiagnosisContext<'a> {
     fn new(session: &'a Session) -> DiagnosisContext<'a> {
@@ -164,7 +174,7 @@ impl<'a> DiagnosisContext<'a> {
 
     /// Returns the cost of the current settings over the next four weeks, dollars.
     fn upcoming_costs(&self) -> f64 {
-        self.observation.pace.committed * RISK_DAYS
+        self.observation.committed * RISK_DAYS
     }
 
     fn individuals(&self) -> impl Iterator<Item = &Estimates> {
@@ -193,6 +203,7 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(selling::missing_offers(&situation));
     found.extend(selling::missing_leads(&situation));
     found.extend(selling::groups_without_sales(&situation));
+    found.extend(conversion::conversion_falls(&situation));
     found.extend(advertising::groups_without_requests(&situation));
     found.extend(advertising::rising_lead_costs(&situation));
     found.extend(cash::unprofitable_plans(&situation));
@@ -201,8 +212,10 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     found.extend(service::diagnose_backlog(&situation));
     found.extend(retention::churn_waves(&situation));
     let moved = situation.upcoming_revenue() + situation.upcoming_costs();
-    // Threads that wait for an answer are always reported, even if little money is at risk.
-    found.retain(|need| need.problem == Problem::Threads || need.at_risk >= MIN_RISK_SHARE * moved);
+    // Threads that wait for an answer and plans that lose money are reported even if little money is at risk: an unanswered
+    // thread ends, and the loss of a plan grows with its sales.
+    let is_always_reported = |problem: Problem| matches!(problem, Problem::Threads | Problem::Margin);
+    found.retain(|need| is_always_reported(need.problem) || need.at_risk >= MIN_RISK_SHARE * moved);
     // Excludes problems that link to a tool that the lesson has locked.
     let is_locked =
         |tool: ToolId| session.lesson().is_some_and(|lesson_progress| !lesson_progress.has_tool(tool));

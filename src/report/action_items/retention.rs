@@ -1,19 +1,21 @@
 //! Diagnoses of expiring threads and of churn.
 
-use serde_json::{Map, Value};
-
-use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem, RISK_DAYS};
-use crate::decision_periods::describe_change;
+use super::offer_changes::OfferChange;
+use super::{ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, MAX_CHANCE, Problem, RISK_DAYS};
 use crate::formatting::{format_money, format_whole, pluralize};
-use novamind_base::formatting::{json_number, percent};
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{Decisions, SettingChange};
 use novamind_tools::ToolId;
 
 /// Minimum number of weekly cancellations that count as a churn wave.
 const MIN_WAVE_CANCELLATIONS: f64 = 20.0;
-const BILLING_CYCLE_WEEKS: usize = 4;
-/// Minimum ratio of a churn wave to the usual churn.
+/// Number of weeks before the first bills of customers who signed up in the first week.
+const BILLING_CYCLE_WEEKS: usize = 5;
+/// Number of earlier weeks with which a week is compared.
+const COMPARED_WEEKS: usize = 4;
+/// Minimum number of earlier weeks for a comparison.
+const MIN_COMPARED_WEEKS: usize = 2;
+/// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is an estimate, and a
+/// healthy company in its tenth week has 1.9 times the usual cancellations.
 const MIN_WAVE_RATIO: f64 = 2.0;
 /// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
@@ -67,7 +69,7 @@ pub(super) fn expiring_threads(situation: &DiagnosisContext<'_>) -> Option<Actio
     })
 }
 
-/// Finds groups with far more cancellations than usual.
+/// Finds groups with more cancellations than chance explains.
 pub(super) fn churn_waves(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let people = Group::all().filter(|group| !group.is_enterprise());
     people.filter_map(|group| churn_wave(situation, group)).collect()
@@ -75,81 +77,80 @@ pub(super) fn churn_waves(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
 
 fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionItem> {
     let weeks = situation.groups;
-    let there = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
-    let left = |at: usize| f64::from(weeks[at][group].left);
-    // Subscribers cancel on billing days, at the earliest a month after signup. Cancellations are therefore divided by
-    // the number of subscribers four weeks earlier.
-    let share = |at: usize| left(at) / there(at - BILLING_CYCLE_WEEKS).max(1.0);
+    let subscribers = |at: usize| f64::from(weeks[at][group].subscribers.0.iter().sum::<u32>());
+    let gone = |at: usize| f64::from(weeks[at][group].left);
     let last = weeks.len().checked_sub(1)?;
-    let before = last.saturating_sub(BILLING_CYCLE_WEEKS).max(BILLING_CYCLE_WEEKS)..last;
-    if before.len() < BILLING_CYCLE_WEEKS {
+    // Subscribers cancel on billing days. Cancellations are therefore compared with the number of bills.
+    let signups = |at: usize| f64::from(weeks[at][group].chosen.0.iter().sum::<u32>());
+    let exposed = |at: usize| expected_bills(at, &signups);
+    let before = last.saturating_sub(COMPARED_WEEKS).max(BILLING_CYCLE_WEEKS)..last;
+    if before.len() < MIN_COMPARED_WEEKS {
         return None;
     }
-    let mean = |of: &dyn Fn(usize) -> f64| before.clone().map(of).sum::<f64>() / before.len() as f64;
-    let (gone, usual) = (left(last), mean(&left));
-    if gone <= MIN_WAVE_CANCELLATIONS || share(last) <= MIN_WAVE_RATIO * mean(&share) {
+    let sum = |of: &dyn Fn(usize) -> f64| before.clone().map(of).sum::<f64>();
+    let (gone_before, exposed_before) = (sum(&gone), sum(&exposed));
+    let (gone, expected) = (gone(last), exposed(last) * gone_before / exposed_before.max(1.0));
+    let chance = chance_of_count(expected, exposed(last), exposed_before);
+    if gone <= MIN_WAVE_CANCELLATIONS || gone < MIN_WAVE_RATIO * expected || gone - expected <= chance {
         return None;
     }
-    let (now, had) = (&weeks[last], there(last - 1));
-    let mean_price = now[group].revenue.0.iter().sum::<f64>() / there(last).max(1.0);
-    let set = last_judged_change(situation);
-    let change_text = set.map_or(String::new(), |(day, changes)| {
-        let words: Vec<String> = changes.iter().take(2).map(|change| describe_change(change)).collect();
-        let more = match changes.len().saturating_sub(2) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        format!(" On day {day} you changed {}{more}.", words.join(", "))
-    });
-    let place = last_judged_change(situation)
-        .map_or(ActionTarget::Group(group), |(_, changes)| restore_target(situation, &changes, group));
+    let mean_price = weeks[last][group].revenue.0.iter().sum::<f64>() / subscribers(last).max(1.0);
+    // Older decisions cannot explain the cancellations, because all subscribers were billed after them before last week.
+    let since = situation.observation.day.saturating_sub(BILLING_DAYS + 7);
+    let change = OfferChange::find_last(situation, &SETTINGS_JUDGED_AT_BILLING, since);
+    let change_text = change.as_ref().map_or(String::new(), |change| format!(" {}", change.describe()));
     Some(ActionItem {
         problem: Problem::Churn(group),
         text: format!(
-            "{group}: {} of {} cancelled last week ({}). The four-week average is {}.{change_text}",
-            format_whole(gone),
-            format_whole(had),
-            percent(gone / had.max(1.0), 1),
-            format_whole(usual)
+            "{group}: {} cancelled last week. At the rate per bill of the {} weeks before, it would have been {}.{change_text}",
+            pluralize(gone as u32, "subscriber"),
+            before.len(),
+            format_whole(expected)
         ),
         proposal: None,
-        target: place,
-        at_risk: gone * mean_price * RISK_DAYS / 7.0,
+        target: change.map_or(ActionTarget::Group(group), |change| change.restore_target(situation, group)),
+        at_risk: (gone - expected) * mean_price * RISK_DAYS / 7.0,
         is_urgent: true,
     })
 }
 
-/// Returns the day and the changes of the last decision that could explain last week's cancellations. Older decisions
-/// cannot explain the cancellations, because all subscribers had been billed after these decisions before last week.
-fn last_judged_change<'a>(situation: &'a DiagnosisContext<'_>) -> Option<(u32, Vec<&'a SettingChange>)> {
-    let recent = |decided: &&Decisions| decided.day + BILLING_DAYS + 7 > situation.observation.day;
-    situation.decisions.iter().rev().take_while(recent).find_map(|decided| {
-        let changes: Vec<&SettingChange> = decided
-            .changes
-            .iter()
-            .filter(|change| SETTINGS_JUDGED_AT_BILLING.contains(&change.setting.tool()) && change.old != 0.0)
-            .collect();
-        (!changes.is_empty()).then_some((decided.day, changes))
-    })
+/// Returns about how many subscribers are billed for another month in a week: those who signed up one or more billing
+/// periods earlier. Earlier cancellations are not subtracted.
+fn expected_bills(week: usize, signups: &dyn Fn(usize) -> f64) -> f64 {
+    let weeks_per_period = f64::from(BILLING_DAYS) / 7.0;
+    let mut bills = 0.0;
+    let mut back = weeks_per_period;
+    while back <= week as f64 {
+        // A week that begins back weeks earlier overlaps two recorded weeks.
+        let (whole, part) = (back.floor() as usize, back.fract());
+        bills += (1.0 - part) * signups(week - whole);
+        if let Some(earlier) = week.checked_sub(whole + 1) {
+            bills += part * signups(earlier);
+        }
+        back += weeks_per_period;
+    }
+    bills
 }
 
-/// Returns the form of the first changed setting that has a value for each plan, filled with the earlier values.
-fn restore_target(
-    situation: &DiagnosisContext<'_>,
-    changes: &[&SettingChange],
-    group: Group,
-) -> ActionTarget {
-    let Some(first) = changes.first() else { return ActionTarget::Group(group) };
-    let tool = first.setting.tool();
-    let mut arguments = match tool {
-        ToolId::SetPrices | ToolId::SetModelTiers => Map::new(),
-        ToolId::SetUsageQuotas => situation.session.company().current_arguments(ToolId::SetUsageQuotas),
-        _ => return ActionTarget::Group(group),
-    };
-    for change in changes.iter().filter(|change| change.setting.tool() == tool) {
-        if let Some(plan) = change.setting.plan() {
-            arguments.insert(plan.id().to_owned(), json_number(change.old));
-        }
+/// Returns the number by which a count exceeds its expectation by chance, if the expectation was estimated from a rate:
+/// [`MAX_CHANCE`] standard errors of a Poisson count with the given exposures.
+fn chance_of_count(expected: f64, exposure: f64, exposure_before: f64) -> f64 {
+    MAX_CHANCE * (expected * (1.0 + exposure / exposure_before.max(1.0))).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn expected_bills_counts_signups_one_and_more_periods_earlier() {
+        // 30 days are 4 weeks and 2 days, so two sevenths of the customers signed up a week earlier.
+        let signups = |at: usize| [70.0, 140.0, 0.0, 0.0, 0.0, 7.0][at.min(5)];
+        assert_eq!(expected_bills(4, &signups), 0.0);
+        assert!((expected_bills(5, &signups) - (140.0 * 5.0 / 7.0 + 70.0 * 2.0 / 7.0)).abs() < 1e-9);
+        assert!(
+            (expected_bills(9, &signups) - (7.0 * 5.0 / 7.0 + 140.0 * 3.0 / 7.0 + 70.0 * 4.0 / 7.0)).abs()
+                < 1e-9
+        );
     }
-    ActionTarget::Call(tool, Value::Object(arguments))
 }

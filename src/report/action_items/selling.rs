@@ -7,13 +7,14 @@ use super::{
 };
 use crate::fit::TrueValueRange;
 use crate::formatting::{format_money, format_whole, pluralize};
-use novamind_base::formatting::{dollars_and_cents, json_number, percent};
+use novamind_base::formatting::{dollars_and_cents, json_number, percent, quality as format_quality};
 use novamind_session::identifiers::{Channel, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
 use novamind_tools::ToolId;
 
 const MIN_WEEKLY_LEADS: u32 = 20;
-const MIN_CONVERSION: f64 = 0.1;
+/// Conversion below which a group counts as a group without sales.
+pub(super) const MIN_CONVERSION: f64 = 0.1;
 /// Minimum share of the estimated usage that a sufficient quota covers.
 const MIN_QUOTA_COVERAGE: f64 = 0.8;
 /// Age at which an estimate counts as outdated, days.
@@ -273,10 +274,11 @@ impl<'a> GroupOffers<'a> {
         };
         let more = self.affordable_plans().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
         match more.filter(|more| quality(*more) > delivered) {
-            None => format!("The best quality{scope} is {delivered:.4} on {plan}."),
+            None => format!("The best quality{scope} is {} on {plan}.", format_quality(delivered)),
             Some(more) => format!(
-                "{plan} delivers quality {delivered:.4}. {more} delivers {:.4}{scope}, but its quota is too small.",
-                quality(more)
+                "{plan} delivers quality {}. {more} delivers {}{scope}, but its quota is too small.",
+                format_quality(delivered),
+                format_quality(quality(more))
             ),
         }
     }
@@ -411,7 +413,8 @@ impl<'a> GroupOffers<'a> {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
                 let problem = format!(
-                    "{plan} delivers quality {delivered:.4} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
+                    "{plan} delivers quality {} for {}. Customers require more at higher prices (mean at low prices: {floor}, {as_of}).",
+                    format_quality(delivered),
                     format_money(self.price(plan))
                 );
                 let remedy = "Only a lower price or higher quality can win these customers.";
@@ -444,9 +447,9 @@ fn propose_better_model(
     let enough = better.into_iter().find(|model| product * model.multiplier >= floor)?;
     Some((
         format!(
-            "Model tier {} delivers {:.4} on {plan} at {} per 1,000 units rather than {}.",
+            "Model tier {} delivers {} on {plan} at {} per 1,000 units rather than {}.",
             enough.tier,
-            product * enough.multiplier,
+            format_quality(product * enough.multiplier),
             dollars_and_cents(enough.unit_cost * 1_000.0),
             dollars_and_cents(now.unit_cost * 1_000.0)
         ),
@@ -478,11 +481,14 @@ fn propose_better_quality(
     let days = ((floor - delivered) / gain).ceil();
     // Settings stay in force for at least a week.
     let cost = PROPOSED_DEVELOPMENT_SPEND * days.max(7.0);
+    let duration = pluralize(days as u32, "day");
+    let price = match days < 7.0 {
+        true => format!("{duration}. A week costs {}.", format_money(cost)),
+        false => format!("{duration}, for {} in total.", format_money(cost)),
+    };
     let reached = format!(
-        "Development for {group} at {} a day reaches the required quality in {}, for {} in total.",
-        format_money(PROPOSED_DEVELOPMENT_SPEND),
-        pluralize(days as u32, "day"),
-        format_money(cost)
+        "Development for {group} at {} a day reaches the estimate of the required quality, {floor:.4}, in {price}",
+        format_money(PROPOSED_DEVELOPMENT_SPEND)
     );
     let text = match cost > at_risk {
         true => {

@@ -1,6 +1,6 @@
 //! Diagnoses of the service: capacity, outages and support.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{ActionItem, ActionTarget, DiagnosisContext, Problem, RISK_DAYS, round_up_to_two_digits};
 use crate::formatting::{format_money, format_whole, pluralize};
@@ -32,7 +32,8 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
     if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
         return None;
     }
-    let growth = PeakProjection::from_weeks(situation.weeks)?.growth;
+    // The time is computed from the growth that the sentence shows.
+    let growth = (PeakProjection::from_weeks(situation.weeks)?.growth * 1_000.0).round() / 1_000.0;
     if growth <= 1.0 {
         return None;
     }
@@ -50,7 +51,7 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
             percent(busiest / now.units, 0),
             format_whole(now.units),
             now.tier,
-            percent(growth - 1.0, 0)
+            percent(growth - 1.0, 1)
         ),
         proposal: Some(describe_tier_cost(next, now)),
         target: ActionTarget::Call(ToolId::SetCapacityTier, json!({ "tier": next.tier })),
@@ -62,7 +63,25 @@ pub(super) fn diagnose_capacity(situation: &DiagnosisContext<'_>) -> Option<Acti
 fn diagnose_overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &CapacityTier) -> ActionItem {
     let busiest = week.busiest_day as f64;
     let tiers = &situation.terms.capacities;
-    let enough = tiers.iter().find(|tier| tier.units >= busiest).or(tiers.last()).unwrap_or(now);
+    let set_tier =
+        |tier: &CapacityTier| ActionTarget::Call(ToolId::SetCapacityTier, json!({ "tier": tier.tier }));
+    let (proposal, target) = match (tiers.iter().find(|tier| tier.units >= busiest), tiers.last()) {
+        (Some(enough), _) => (describe_tier_cost(enough, now), set_tier(enough)),
+        (None, Some(largest)) if largest.tier > now.tier => {
+            let text = format!(
+                "{} It is the largest tier. Only lower quotas or fewer subscribers reduce the rest of the overload.",
+                describe_tier_cost(largest, now)
+            );
+            (text, set_tier(largest))
+        }
+        (None, _) => (
+            format!(
+                "Tier {} is the largest tier. Only lower quotas or fewer subscribers reduce usage.",
+                now.tier
+            ),
+            ActionTarget::Call(ToolId::SetUsageQuotas, Value::Null),
+        ),
+    };
     ActionItem {
         problem: Problem::Overload,
         text: format!(
@@ -72,8 +91,8 @@ fn diagnose_overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: 
             format_whole(now.units),
             now.tier
         ),
-        proposal: Some(describe_tier_cost(enough, now)),
-        target: ActionTarget::Call(ToolId::SetCapacityTier, json!({ "tier": enough.tier })),
+        proposal: Some(proposal),
+        target,
         at_risk: situation.upcoming_revenue(),
         is_urgent: true,
     }

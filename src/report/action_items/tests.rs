@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::*;
+use crate::test_kit::advance_weeks;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
@@ -40,13 +41,6 @@ fn play_company(seed: u64, cash: f64, calls: &[(&str, Value)], weeks: usize) -> 
     }
     advance_weeks(&mut session, weeks);
     session
-}
-
-fn advance_weeks(session: &mut Session, weeks: usize) {
-    for _ in 0..weeks {
-        let forecasts = session.company().naive_forecasts();
-        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    }
 }
 
 /// Returns the first action item, after checking that the tool accepts the proposed arguments.
@@ -342,16 +336,20 @@ fn backlog_item_names_the_operations_spend_that_clears_it_in_a_week() {
 }
 
 #[test]
-fn churn_wave_item_names_the_preceding_change() {
+fn churn_wave_and_falling_conversion_name_the_preceding_change() {
     let mut session = play_company(3, 3e6, &healthy_calls(), 14);
     let higher = json!({"A": 45, "B": 70, "C": 120});
     session.call("set_prices", &higher, Via::Script).expect("higher prices");
     advance_weeks(&mut session, 1);
-    let need = assert_first_problem(
+    let words = "you changed price A: 11 → 45";
+    assert_first_problem(
         &session,
-        Problem::Churn(group("S1")),
-        &["cancelled last week", "you changed price A: 11 → 45"],
+        Problem::ConversionFall(group("S1")),
+        &["leads signed up last week", words],
     );
+    let all = action_items(&session);
+    let need = all.iter().find(|need| need.problem == Problem::Churn(group("S1"))).expect("a churn wave");
+    assert!(need.text.contains("cancelled last week") && need.text.contains(words), "{}", need.text);
     let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
     assert_eq!(arguments, &json!({"A": 11, "B": 24, "C": 52}), "the form contains the earlier values");
 }
@@ -396,11 +394,14 @@ fn short_runway_is_the_first_action_item() {
     let need = assert_first_problem(
         &session,
         Problem::Runway,
-        &["Cash lasts", "The largest budget is targeted development"],
+        &["Cash is expected to last", "The largest budget is targeted development"],
     );
     let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
-    let text = format!("At {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
+    let text = format!(
+        "At {} a day and with the same income, cash lasts 8 weeks",
+        crate::formatting::format_money(proposed)
+    );
     assert!(need.describe().contains(&text), "{}: {text}", need.describe());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");

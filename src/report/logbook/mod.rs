@@ -20,7 +20,7 @@ use super::measures::{BehaviorMeasures, WordCounts};
 use novamind_record::consent::Consent;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
-use novamind_record::trajectory::record::{RunEndReason, SubmittedForecast};
+use novamind_record::trajectory::record::{RunEndReason, SubmittedForecast, has_naive_forecasts};
 use novamind_record::trajectory::{Line, Record, find_end, find_policy};
 use novamind_session::{
     Attendance, Generation, HorizonRule, RecordedModelSettings, ScoredForecast, Session, SessionCount,
@@ -273,7 +273,10 @@ fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
         decisions,
         forecasts: span.forecasts.iter().map(scored).collect(),
         naive_forecasts: span.forecasts.iter().map(|forecast| forecast.filled_naively).collect(),
-        filled_naively: span.filled_naively,
+        filled_naively: has_naive_forecasts(
+            &span.forecasts,
+            session.manifest().days.saturating_sub(span.decision_day),
+        ),
         filed_at_limit: span.filed_at_limit,
         figures: span.figures.clone(),
         state_hash: span.state_hash.clone(),

@@ -34,8 +34,6 @@ pub(super) struct WeekSpan {
     pub effort: PlayerEffort,
     pub rationale: Option<String>,
     pub forecasts: Vec<SubmittedForecast>,
-    /// Whether at least one forecast is naive; `None` if no forecast was filed.
-    pub filled_naively: Option<bool>,
     /// Whether the week was filed automatically because a time limit was reached. The rationale is then not the player's.
     pub filed_at_limit: bool,
     pub figures: Map<String, Value>,
@@ -155,7 +153,6 @@ impl Timeline {
                 self.open.decided_at.clone_from(&line.at);
                 self.open.rationale = Some(filed.rationale.clone());
                 self.open.forecasts.clone_from(&filed.forecasts);
-                self.open.filled_naively = filed.has_naive_forecasts();
             }
             Record::Week(closing) | Record::Step(closing) => self.close_week(line, closing),
             Record::Start(_)

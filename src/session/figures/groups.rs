@@ -143,6 +143,32 @@ pub(crate) fn finish_week(
     }
 }
 
+/// Subscriptions of a plan that could use the product on the last day, and what they pay.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlanRevenue {
+    /// Number of subscriptions.
+    pub subscriptions: u32,
+    /// Number of whole seats of the subscriptions.
+    pub seats: f64,
+    /// Revenue of the subscriptions, dollars a month.
+    pub monthly: f64,
+}
+
+/// Returns the revenue of the subscriptions of each plan that started before the last day. Subscriptions that started
+/// on the last day have no usage yet.
+pub(crate) fn plan_revenue(world: &World) -> ByPlan<PlanRevenue> {
+    let mut revenue = ByPlan::<PlanRevenue>::default();
+    for (_, block) in world.customers.blocks() {
+        for at in (0..block.len()).filter(|at| block.start_day[*at] < world.day) {
+            let (sum, seats) = (&mut revenue[block.plan[at]], block.seats[at].trunc());
+            sum.subscriptions += 1;
+            sum.seats += seats;
+            sum.monthly += block.effective_price[at] * seats;
+        }
+    }
+    revenue
+}
+
 /// Returns the mean satisfaction and the mean relationship of a group's active subscribers, or `None` if the group has no
 /// active subscribers.
 pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {

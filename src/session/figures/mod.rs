@@ -3,13 +3,12 @@
 
 pub(crate) mod attendance;
 pub(crate) mod capacity_by_usage;
-pub(crate) mod cash_rate;
 pub(crate) mod changes;
 pub(crate) mod dashboard;
 pub(crate) mod estimates;
 pub(crate) mod groups;
 pub(crate) mod journal;
-pub(crate) mod naive;
+pub(crate) mod outlook;
 pub(crate) mod scored_forecast;
 pub(crate) mod session_count;
 pub(crate) mod setting;

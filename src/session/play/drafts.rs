@@ -35,6 +35,9 @@ pub struct DraftTexts {
     /// Number of the post to which the new post replies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<u32>,
+    /// Offers to enterprises, by thread.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub offers: BTreeMap<u32, String>,
     /// Values in tool forms, by tool and field path.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub forms: BTreeMap<ToolId, BTreeMap<String, String>>,
@@ -58,6 +61,8 @@ impl DraftTexts {
         all.push(("notes".to_owned(), self.notes.clone().unwrap_or_default()));
         all.push(("sql".to_owned(), self.sql.clone()));
         all.push(("post".to_owned(), self.post.clone()));
+        let offers = self.offers.iter().map(|(thread, offer)| format!("thread {thread}: {offer}"));
+        all.push(("offers".to_owned(), offers.collect::<Vec<_>>().join(", ")));
         for (tool, cells) in &self.forms {
             let cells = cells.iter().map(|(path, text)| format!("{path} {text}"));
             all.push((format!("form {tool}"), cells.collect::<Vec<_>>().join(", ")));

@@ -1,5 +1,6 @@
 //! A read-only view of a company for its player, without access to files, records or hidden state.
 
+pub(crate) mod cash_outlook;
 pub(crate) mod debug_parameters;
 pub(crate) mod identical_plans;
 pub(crate) mod observation;
@@ -15,22 +16,19 @@ use crate::company::overrides::DerivedValues;
 use crate::company::run_context::RunContext;
 use crate::company::simulation::Simulation;
 use crate::figures::capacity_by_usage::UsageCapacityRule;
-use crate::figures::cash_rate::CashRate;
 use crate::figures::changes::{Decisions, SettingChange, daily_cost};
 use crate::figures::dashboard::{DeliveredQuality, delivered_quality};
 use crate::figures::estimates::Estimates;
-use crate::figures::groups::GroupWeek;
-use crate::figures::naive;
+use crate::figures::groups::{GroupWeek, PlanRevenue, plan_revenue};
 use crate::figures::scored_forecast::{ForecastScore, submitted_forecasts};
 use crate::figures::week::Forecasts;
 use novamind_database::query::QueryLimits;
-use novamind_record::figures::WeekFigures;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{CalculationOutput, RunEndReason};
 use novamind_tools::{GetGroupInsights, PublicPost, Tool, ToolContext, ToolKind, find};
 use novamind_voice::EnterpriseNames;
 use novamind_world::customers::customer_numbers::CustomerNumbers;
-use novamind_world::identifiers::{ByGroup, Channel, Group};
+use novamind_world::identifiers::{ByGroup, ByPlan, Channel, Group};
 use novamind_world::market::surges::week_end;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
@@ -103,6 +101,11 @@ impl<'a> CompanyView<'a> {
     /// Returns the figures of all groups for every simulated week.
     pub fn group_weeks(&self) -> &'a [ByGroup<GroupWeek>] {
         &self.history.group_weeks
+    }
+
+    /// Returns the revenue of the subscriptions of each plan that could use the product on the last day.
+    pub fn plan_revenue(&self) -> ByPlan<PlanRevenue> {
+        plan_revenue(&self.simulation.world)
     }
 
     /// Returns the distinct SQL statements of this run, newest last.
@@ -184,17 +187,16 @@ impl<'a> CompanyView<'a> {
         horizons.map(|horizon| ForecastScore::from_forecasts(*horizon, &filed)).collect()
     }
 
-    pub(crate) fn cash_rate(&self) -> CashRate {
-        let running = (self.history.current_week.days_run > 0).then_some(self.history.current_week);
-        let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();
-        CashRate::from_weeks(self.daily_cost(&self.simulation.world.settings), &weeks)
+    /// Returns the number of forecast horizons that end within the run. Only these forecasts can be scored.
+    pub fn horizons_in_run(&self) -> usize {
+        let days_left = self.manifest.days.saturating_sub(self.simulation.world.day);
+        let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
+        horizons.filter(|horizon| **horizon <= days_left).count()
     }
 
     /// Returns the naive forecasts of cash for all horizons.
     pub fn naive_forecasts(&self) -> Forecasts {
-        let horizons = &self.simulation.params.limits.prediction_horizons_days;
-        let cash = self.simulation.world.finance.cash;
-        naive::naive_forecasts(cash, &self.cash_rate(), &self.history.weeks, horizons)
+        self.outlook().naive_forecasts(&self.simulation.params.limits.prediction_horizons_days)
     }
 
     /// Returns the capacity tier that a rule would set now.

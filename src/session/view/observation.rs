@@ -6,9 +6,9 @@ use super::CompanyView;
 use super::identical_plans::IdenticalPlans;
 use super::research_outlook::LateProject;
 use crate::company::irrevocable::IrrevocableAction;
-use crate::figures::cash_rate::CashRate;
 use crate::figures::changes::SettingChange;
 use crate::figures::dashboard::{self, WaitingLeads};
+use crate::figures::outlook::{ErrorIntervals, ExpectedFlows, Outlook, Runway};
 use crate::figures::week::week_of_day;
 use novamind_record::figures::{CategoryTotals, WeekFigures};
 use novamind_record::mode::Mode;
@@ -58,11 +58,21 @@ pub struct Observation {
     pub cash_change_days: u32,
     /// Ledger totals since the end of the last week: purchases, and entries of simulated days of a started week.
     pub booked_since: CategoryTotals,
-    /// Rate at which cash currently changes.
-    pub pace: CashRate,
+    /// Costs to which the current settings commit the company: capacity, operations, development, advertising, dollars
+    /// per day.
+    pub committed: f64,
+    /// Number of forecast horizons that end within the run.
+    #[serde(skip)]
+    pub horizons_in_run: usize,
+    /// Expected cash by day, with ranges.
+    #[serde(skip)]
+    pub outlook: Outlook,
     /// Costs to which the settings at the end of the last week committed the company, dollars per day.
     pub committed_before: f64,
-    /// Weeks until cash is 0 at the current rate; `None` if cash lasts to the last day.
+    /// Weeks for which cash lasts.
+    #[serde(skip)]
+    pub runway: Runway,
+    /// Weeks until the expected cash is below zero; `None` if that is after 26 weeks or after the last day.
     pub runway_weeks: Option<f64>,
     /// Active subscriptions of individuals.
     pub subscribers: u32,
@@ -125,16 +135,28 @@ impl Observation {
         self.subscribers + self.companies
     }
 
-    /// Returns the number of whole weeks that cash lasts at the current rate, or `None` if cash lasts to the last day.
-    pub fn whole_runway_weeks(&self) -> Option<u32> {
-        self.runway_weeks.map(|weeks| weeks as u32)
+    /// Returns the income and the variable costs that are expected for the next four weeks.
+    pub fn expected_flows(&self) -> ExpectedFlows {
+        self.outlook.expected_flows()
+    }
+
+    /// Describes how often ranges of naive forecasts contained the actual cash of companies like this one. Returns `None`
+    /// if that was not measured well enough.
+    pub fn describe_coverage(&self) -> Option<String> {
+        ErrorIntervals::bundled().describe_coverage(self.outlook.stage, self.days_left())
+    }
+
+    /// Returns the number of days from the last simulated day to the last day of the run.
+    pub fn days_left(&self) -> u32 {
+        self.last_day.saturating_sub(self.day)
     }
 }
 
 impl CompanyView<'_> {
     /// Returns a summary of the company for the player.
     pub fn observe(&self) -> Observation {
-        let (closing, pace) = (closing_figures(&self.simulation.world), self.cash_rate());
+        let (closing, outlook) = (closing_figures(&self.simulation.world), self.outlook());
+        let runway = outlook.runway(self.manifest.days.saturating_sub(self.simulation.world.day));
         Observation {
             run: self.manifest.id.clone(),
             mode: self.manifest.mode,
@@ -154,9 +176,12 @@ impl CompanyView<'_> {
             cash_change: self.latest_figures().map_or(0.0, |week| week.cash_change),
             cash_change_days: self.latest_figures().map_or(0, |week| week.days_run),
             booked_since: self.booked_since(),
-            pace,
+            committed: self.daily_cost(&self.simulation.world.settings),
+            horizons_in_run: self.horizons_in_run(),
+            outlook,
+            runway,
             committed_before: self.daily_cost(&self.history.week_actions.settings),
-            runway_weeks: self.runway_weeks(&pace),
+            runway_weeks: runway.expected,
             subscribers: closing.individual_subscribers,
             companies: self.active_enterprise_count(),
             seats: closing.enterprise_seats,
@@ -268,11 +293,6 @@ impl CompanyView<'_> {
     fn latest_figures(&self) -> Option<&WeekFigures> {
         let running = &self.history.current_week;
         if running.days_run > 0 { Some(running) } else { self.history.weeks.last() }
-    }
-
-    fn runway_weeks(&self, pace: &CashRate) -> Option<f64> {
-        let left = f64::from(self.manifest.days.saturating_sub(self.simulation.world.day));
-        pace.runway_weeks(self.simulation.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
     }
 
     fn booked_since(&self) -> CategoryTotals {

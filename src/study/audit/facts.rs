@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::record::{Activity, Outcome};
+use novamind_record::trajectory::record::{Activity, Outcome, has_naive_forecasts};
 use novamind_record::trajectory::{Record, Trajectory};
 use novamind_session::{Attendance, SessionCount};
 
@@ -78,7 +78,9 @@ impl RunFacts {
             match &line.record {
                 Record::Call(call) if matches!(call.outcome, Outcome::Rejected(_)) => facts.refusals += 1,
                 Record::Advance(filed) => {
-                    facts.naive_weeks += u32::from(filed.has_naive_forecasts() == Some(true));
+                    let days_left = manifest.days.saturating_sub(line.day);
+                    let is_naive = has_naive_forecasts(&filed.forecasts, days_left) == Some(true);
+                    facts.naive_weeks += u32::from(is_naive);
                 }
                 Record::Week(_) => facts.weeks += 1,
                 Record::End(end) => facts.ended = Some(end.reason.id().to_owned()),

@@ -9,6 +9,13 @@ use crate::canvas::{Align, Canvas};
 use crate::text::format_change;
 use crate::theme::Role;
 
+/// Largest distance of a band from the curves, as a multiple of their range. Beyond this distance, the band is cut.
+const MAX_BAND_DISTANCE: f64 = 1.0;
+/// Smallest distance at which a band is cut, as a share of the largest value. Nearly constant curves are not flattened.
+const MIN_BAND_DISTANCE: f64 = 0.25;
+/// Distance between the arrows that mark a cut band, in columns.
+const CUT_MARK_DISTANCE: u16 = 4;
+
 /// Minimum width of a chart with names at the ends of its curves.
 const MIN_WIDTH_FOR_NAMES: u16 = 36;
 
@@ -43,7 +50,7 @@ impl Curve {
     }
 }
 
-/// A shaded area between two curves.
+/// A shaded area between two curves. A band that would flatten the curves is cut, and arrows mark where it continues.
 #[derive(Debug, Clone)]
 pub struct Band {
     /// Position, lower bound and upper bound of each point, in the order of positions.
@@ -157,7 +164,12 @@ impl Plot<'_> {
         let band = || self.band.iter().flat_map(|band| &band.bounds);
         let x =
             axis_bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.required_values);
-        let ends = band().flat_map(|end| [end.1, end.2]);
+        // A curve at zero has no shape that a band could flatten.
+        let limits = match points().all(|point| point.1 == 0.0) {
+            true => [f64::NEG_INFINITY, f64::INFINITY],
+            false => band_limits(axis_bounds(points().map(|point| point.1), self.y.required_values)),
+        };
+        let ends = band().flat_map(|end| [end.1.max(limits[0]), end.2.min(limits[1])]);
         let y = axis_bounds(points().map(|point| point.1).chain(ends), self.y.required_values);
         let rows = ((area.height - 2) / 4).clamp(2, 6) as usize;
         let y = widen_to_ticks(y, rows);
@@ -176,7 +188,7 @@ impl Plot<'_> {
         let frame = PlotFrame { area: inside, x, y };
         draw_y_axis(canvas, area, &frame, &marks, &labels);
         self.draw_x_axis(canvas, area, &frame);
-        self.draw_band(canvas, &frame);
+        self.draw_band(canvas, &frame, limits);
         if let Some(mark) = self.marked_x.filter(|mark| *mark >= x[0] && *mark <= x[1]) {
             for y in inside.top()..inside.bottom() {
                 canvas.draw_text(Rect { x: frame.column(mark), y, width: 1, height: 1 }, "┊", Role::Dim);
@@ -231,7 +243,8 @@ impl Plot<'_> {
         }
     }
 
-    fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame) {
+    /// Draws the band within its limits. Arrows mark the columns in which it continues beyond them.
+    fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame, limits: [f64; 2]) {
         let Some(band) = self.band else { return };
         for at in 0..frame.area.width {
             // A column covers the band between both of its edges, so that neighboring columns of a steep band touch.
@@ -240,12 +253,24 @@ impl Plot<'_> {
                 band.bounds_at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
             });
             let ends = edges.iter().flatten();
-            let upper = ends.clone().map(|end| frame.row(end.1)).min();
-            let lower = ends.map(|end| frame.row(end.0)).max();
+            let upper = ends.clone().map(|end| frame.row(end.1.min(limits[1]))).min();
+            let lower = ends.clone().map(|end| frame.row(end.0.max(limits[0]))).max();
             let (Some(upper), Some(lower)) = (upper, lower) else { continue };
+            let cuts = [ends.clone().any(|end| end.1 > limits[1]), ends.clone().any(|end| end.0 < limits[0])];
             for y in upper..=lower {
                 let cell = Rect { x: frame.area.x + at, y, width: 1, height: 1 };
                 canvas.draw_text(cell, "░", Role::Fan);
+            }
+            for (y, arrow, _) in
+                [(upper, "▲", cuts[0]), (lower, "▼", cuts[1])].into_iter().filter(|mark| mark.2)
+            {
+                if at % CUT_MARK_DISTANCE == 0 {
+                    canvas.draw_text(
+                        Rect { x: frame.area.x + at, y, width: 1, height: 1 },
+                        arrow,
+                        Role::Text,
+                    );
+                }
             }
         }
     }
@@ -306,6 +331,12 @@ fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
         most = *row;
     }
     rows
+}
+
+/// Returns the values between which a band is drawn around curves with these values.
+fn band_limits([least, most]: [f64; 2]) -> [f64; 2] {
+    let distance = (MAX_BAND_DISTANCE * (most - least)).max(MIN_BAND_DISTANCE * most.abs().max(least.abs()));
+    [least - distance, most + distance]
 }
 
 fn axis_bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {

@@ -24,7 +24,7 @@ pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
 ];
 
 /// Maximum length of the text, in bytes.
-const MAX_BYTES: usize = 256 << 10;
+pub const MAX_BYTES: usize = 256 << 10;
 
 impl Default for TextEditor {
     fn default() -> Self {

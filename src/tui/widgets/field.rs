@@ -40,6 +40,11 @@ impl TextField {
         &self.text
     }
 
+    /// Returns whether the next letter replaces the text.
+    pub fn is_selected(&self) -> bool {
+        self.selected
+    }
+
     /// Returns whether the text is empty.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()

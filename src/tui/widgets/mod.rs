@@ -2,6 +2,7 @@
 
 pub mod bars;
 pub mod chart;
+pub mod column_layout;
 pub mod editor;
 pub mod field;
 pub mod large_text;
@@ -13,6 +14,7 @@ pub mod sparkline;
 pub mod table;
 
 pub use chart::{Band, Curve, Plot, XAxis, YAxis, draw_chart};
+pub use column_layout::ColumnLayout;
 pub use editor::TextEditor;
 pub use field::TextField;
 pub use list::ListAction;

@@ -2,7 +2,10 @@
 
 use std::cell::Cell;
 
+use ratatui::layout::Rect;
+
 use super::ListAction;
+use crate::canvas::Canvas;
 
 /// The first visible row of a text, and the maximum for this row.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,6 +35,14 @@ impl ScrollState {
     /// Scrolls to the end, even if the text grows before the next frame.
     pub fn scroll_to_end(&mut self) {
         self.first_row = usize::MAX;
+    }
+
+    /// Returns the first visible row of a text with a number of rows, and draws arrows at the right border of the area
+    /// if rows above or below are not visible.
+    pub fn scroll_rows(&self, canvas: &mut Canvas<'_>, area: Rect, rows: usize) -> usize {
+        let from = self.clamped_first_row(rows.saturating_sub(area.height as usize));
+        canvas.draw_scroll_marks(area, from, rows);
+        from
     }
 
     /// Returns the first visible row, limited to `last`.

@@ -7,12 +7,16 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::ListAction;
+use super::column_layout::ColumnLayout;
 use super::field::TextField;
 use crate::canvas::{Align, Canvas, Click, truncate_to_width};
 use crate::theme::Role;
 
 /// Minimum width of a truncated text column.
 const MIN_TEXT_WIDTH: u16 = 8;
+
+/// Width at the right end of the headings that is reserved for the number of columns that do not fit: ` +12 →`.
+const COLUMN_MARK_WIDTH: u16 = 6;
 
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,17 +29,36 @@ pub struct TableColumn {
     pub max_width: u16,
     /// Width to which the column may shrink in favor of later columns.
     pub min_width: u16,
+    /// Whether the column is either shown completely or not at all, because its texts contain numbers.
+    pub is_indivisible: bool,
 }
 
 impl TableColumn {
     /// Returns a left-aligned column for text.
     pub fn text(title: impl Into<String>) -> TableColumn {
-        TableColumn { title: title.into(), align: Align::Left, max_width: 40, min_width: u16::MAX }
+        TableColumn {
+            title: title.into(),
+            align: Align::Left,
+            max_width: 40,
+            min_width: u16::MAX,
+            is_indivisible: false,
+        }
     }
 
     /// Returns a right-aligned column for numbers.
     pub fn numeric(title: impl Into<String>) -> TableColumn {
-        TableColumn { title: title.into(), align: Align::Right, max_width: 24, min_width: u16::MAX }
+        TableColumn {
+            title: title.into(),
+            align: Align::Right,
+            max_width: 24,
+            min_width: u16::MAX,
+            is_indivisible: true,
+        }
+    }
+
+    /// Shows the column either completely or not at all.
+    pub fn indivisible(self) -> TableColumn {
+        TableColumn { is_indivisible: true, ..self }
     }
 
     /// Sets the maximum width of the column.
@@ -85,8 +108,12 @@ pub struct Table {
     /// Indexes of the displayed rows, filtered and sorted.
     visible_rows: Vec<usize>,
     widths: Vec<u16>,
+    layout: ColumnLayout,
+    /// Indexes of the columns that the layout shows, in display order.
+    arranged: Vec<usize>,
     /// Position of the selected row among the displayed rows.
     selected: usize,
+    /// Index of the selected column in the original order.
     column: usize,
     sort_order: Option<(usize, Ordering)>,
     filter: String,
@@ -107,6 +134,28 @@ impl Table {
         Table { selects_cells: true, ..self }
     }
 
+    /// Returns the columns of the table in their original order.
+    pub fn columns(&self) -> &[TableColumn] {
+        &self.columns
+    }
+
+    /// Returns the widths of the columns in their original order.
+    pub fn widths(&self) -> &[u16] {
+        &self.widths
+    }
+
+    /// Returns the layout of the columns that the user chose.
+    pub fn layout(&self) -> &ColumnLayout {
+        &self.layout
+    }
+
+    /// Changes the order, visibility and widths of the columns. If the selected column becomes hidden, selects the first
+    /// column.
+    pub fn set_layout(&mut self, layout: ColumnLayout) {
+        self.layout = layout;
+        self.measure_columns();
+    }
+
     /// Replaces the columns and rows. Keeps the selection, the sort order and the filter if possible.
     pub fn set_columns_and_rows(&mut self, columns: Vec<TableColumn>, rows: Vec<Vec<TableCell>>) {
         if columns.len() != self.columns.len() {
@@ -114,7 +163,6 @@ impl Table {
         }
         self.columns = columns;
         self.set_rows(rows);
-        self.column = self.column.min(self.columns.len().saturating_sub(1));
     }
 
     /// Replaces the rows of the table.
@@ -227,8 +275,8 @@ impl Table {
             ListAction::PageDown => self.selected = (self.selected + page.max(1) as usize).min(last),
             ListAction::First => self.selected = 0,
             ListAction::Last => self.selected = last,
-            ListAction::Left => self.column = self.column.saturating_sub(1),
-            ListAction::Right => self.column = (self.column + 1).min(self.columns.len().saturating_sub(1)),
+            ListAction::Left => self.select_arranged_column(|place| place.saturating_sub(1)),
+            ListAction::Right => self.select_arranged_column(|place| place + 1),
             ListAction::Sort => self.sort(),
             ListAction::Filter => self.filter_field = Some(TextField::with_text(self.filter.clone())),
             ListAction::Commit if self.filter_field.is_some() => self.filter_field = None,
@@ -244,6 +292,17 @@ impl Table {
             _ => return false,
         }
         true
+    }
+
+    /// Selects the column at the position that `change` returns for the position of the selected column.
+    fn select_arranged_column(&mut self, change: impl Fn(usize) -> usize) {
+        let place = change(self.arranged_position()).min(self.arranged.len().saturating_sub(1));
+        self.column = self.arranged.get(place).copied().unwrap_or(0);
+    }
+
+    /// Returns the position of the selected column in display order.
+    fn arranged_position(&self) -> usize {
+        self.arranged.iter().position(|at| *at == self.column).unwrap_or(0)
     }
 
     fn sort(&mut self) {
@@ -284,9 +343,17 @@ impl Table {
     fn measure_columns(&mut self) {
         let width = |at: usize, column: &TableColumn| {
             let cells = self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.width());
-            cells.max().unwrap_or(0).max(column.title.width()).clamp(1, column.max_width as usize) as u16
+            let whole = cells.max().unwrap_or(0).max(column.title.width()).max(1);
+            match (self.layout.fixed_width(&column.title), column.is_indivisible) {
+                // A number is never truncated.
+                (Some(width), true) => whole.max(usize::from(width)) as u16,
+                (Some(width), false) => width,
+                (None, _) => whole.min(column.max_width as usize) as u16,
+            }
         };
         self.widths = self.columns.iter().enumerate().map(|(at, column)| width(at, column)).collect();
+        self.arranged = self.layout.visible_columns(&self.columns);
+        self.select_arranged_column(|place| place);
     }
 
     /// Draws the column headings and the rows. Clicks are registered with `pane` as the number of the pane.
@@ -300,26 +367,9 @@ impl Table {
             canvas.page_rows = height.max(1);
         }
         let columns = self.visible_columns(area.width);
-        let head = Rect { height: 1, ..area };
-        for (at, place) in &columns {
-            let column = &self.columns[*at];
-            let cell = Rect { x: head.x + place.0, width: place.1, ..head };
-            let role = if focused && *at == self.column { Role::Title } else { Role::Header };
-            canvas.draw_aligned(cell, &column.title, role, column.align);
-        }
-        // Signs show that further columns are to the left or to the right.
-        if let [_, (second, (x, _)), ..] = columns[..]
-            && second > 1
-        {
-            canvas.draw_text(Rect { x: head.x + x - 1, width: 1, ..head }, "‹", Role::Key);
-        }
-        if let Some((last, (x, width))) = columns.last()
-            && last + 1 < self.columns.len()
-            && x + width < area.width
-        {
-            canvas.draw_text(Rect { x: area.right() - 1, width: 1, ..head }, "›", Role::Key);
-        }
-        let from = first_visible_row(self.selected, height as usize, self.visible_rows.len());
+        self.draw_headings(canvas, Rect { height: 1, ..area }, &columns, focused);
+        let list = Rect { y: area.y + 1, height, ..area };
+        let from = canvas.scroll_to_row(list, self.selected, self.visible_rows.len());
         for (line, row) in self.visible_rows.iter().enumerate().skip(from).take(height as usize) {
             let y = area.y + 1 + (line - from) as u16;
             let whole = Rect { x: area.x, y, width: area.width, height: 1 };
@@ -330,6 +380,37 @@ impl Table {
             let row = Rect { y: area.bottom() - 1, height: 1, ..area };
             canvas.draw_text(row, "/", Role::Key);
             field.draw(canvas, Rect { x: row.x + 1, width: row.width - 1, ..row });
+        }
+    }
+
+    /// Draws the headings. Arrows show that further columns are to the left, and the number of columns to the right.
+    fn draw_headings(
+        &self,
+        canvas: &mut Canvas<'_>,
+        head: Rect,
+        columns: &[(usize, (u16, u16))],
+        focused: bool,
+    ) {
+        for (at, place) in columns {
+            let column = &self.columns[*at];
+            let cell = Rect { x: head.x + place.0, width: place.1, ..head };
+            let role = if focused && *at == self.column { Role::Title } else { Role::Header };
+            canvas.draw_aligned(cell, &column.title, role, column.align);
+        }
+        if let [_, (second, (x, _)), ..] = columns[..]
+            && self.arranged.get(1) != Some(&second)
+        {
+            canvas.draw_text(Rect { x: head.x + x - 1, width: 1, ..head }, "←", Role::Key);
+        }
+        let last = columns.last().and_then(|(last, _)| self.arranged.iter().position(|at| at == last));
+        let hidden = self.arranged.len() - last.map_or(0, |last| last + 1);
+        if hidden > 0 {
+            let mark = format!("+{hidden} →");
+            let used = columns.last().map_or(0, |(_, (x, width))| x + width);
+            let width = head.width.saturating_sub(used).min(COLUMN_MARK_WIDTH);
+            let mark = if usize::from(width) > mark.width() { mark } else { "→".to_owned() };
+            let place = Rect { x: head.right() - width, width, ..head };
+            canvas.draw_aligned(place, &mark, Role::Key, Align::Right);
         }
     }
 
@@ -358,55 +439,68 @@ impl Table {
         }
     }
 
-    /// Returns the widths of the columns after they are shrunk to fit into a width.
+    /// Returns the widths of the arranged columns after they are shrunk to fit into a width. Columns with a fixed width
+    /// keep it.
     fn fit_widths(&self, width: u16) -> Vec<u16> {
-        let all: usize = self.widths.iter().map(|number| usize::from(*number) + 2).sum();
+        let all: usize = self.arranged.iter().map(|at| usize::from(self.widths[*at]) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
-        let fitted = |(natural_width, column): (&u16, &TableColumn)| {
+        let fitted = |at: &usize| {
+            let (natural_width, column) = (self.widths[*at], &self.columns[*at]);
+            if self.layout.fixed_width(&column.title).is_some() {
+                return natural_width;
+            }
             let given = natural_width.saturating_sub(column.min_width).min(missing);
             missing -= given;
             natural_width - given
         };
-        self.widths.iter().zip(&self.columns).map(fitted).collect()
+        self.arranged.iter().map(fitted).collect()
     }
 
+    /// Returns the columns that fit into a width, with their positions and widths. The first column is always visible.
+    /// The other columns are scrolled until the selected column is visible.
     fn visible_columns(&self, width: u16) -> Vec<(usize, (u16, u16))> {
         let widths = self.fit_widths(width);
+        let selected = self.arranged_position();
         let mut from = 1;
         loop {
-            let mut x = 0;
-            let mut columns = Vec::new();
-            let order = std::iter::once(0).chain(from..self.columns.len());
-            for at in order.filter(|at| *at < self.columns.len()) {
-                let number = widths[at];
-                // A truncated column must be wide enough for readable text.
-                let room = width.saturating_sub(x);
-                let readable = match self.columns[at].align {
-                    Align::Right => number,
-                    _ => number.min(MIN_TEXT_WIDTH),
-                };
-                if room == 0 || (x > 0 && room < readable) {
-                    break;
-                }
-                columns.push((at, (x, number.min(width - x))));
-                x += number + 2;
-            }
-            let whole = |(at, (_, shown)): &(usize, (u16, u16))| *at == self.column && *shown == widths[*at];
-            if self.column < from
-                || columns.iter().any(whole)
-                || from >= self.columns.len()
-                || from >= self.column
-            {
-                return columns;
+            let columns = self.columns_from(from, &widths, width);
+            let whole =
+                |(place, (_, shown)): &(usize, (u16, u16))| *place == selected && *shown == widths[*place];
+            if columns.iter().any(whole) || from >= self.arranged.len() || from >= selected {
+                return columns.into_iter().map(|(place, cell)| (self.arranged[place], cell)).collect();
             }
             from += 1;
         }
     }
-}
 
-/// Returns the first visible row for which the selected row is near the middle.
-pub fn first_visible_row(selected: usize, height: usize, rows: usize) -> usize {
-    selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
+    /// Returns the first column, and the columns from a position on that fit into a width, as positions in display
+    /// order. Columns that do not fit leave space for their number.
+    fn columns_from(&self, from: usize, widths: &[u16], width: u16) -> Vec<(usize, (u16, u16))> {
+        let last = self.arranged.len().saturating_sub(1);
+        let mut columns = Vec::new();
+        let mut x = 0;
+        for place in std::iter::once(0).chain(from..self.arranged.len()).filter(|place| *place <= last) {
+            let number = widths[place];
+            // A truncated column must be wide enough for readable text.
+            let readable = match self.columns[self.arranged[place]].is_indivisible {
+                true => number,
+                false => number.min(MIN_TEXT_WIDTH),
+            };
+            let mark = if place < last { COLUMN_MARK_WIDTH } else { 0 };
+            let rest: usize = widths[place..].iter().map(|width| usize::from(*width) + 2).sum();
+            let room = match rest <= usize::from(width.saturating_sub(x)) + 2 {
+                true => width.saturating_sub(x),
+                false => width.saturating_sub(x + mark),
+            };
+            if x > 0 && room < readable.max(1) {
+                break;
+            }
+            let room = if x == 0 { width } else { room };
+            columns.push((place, (x, number.min(room))));
+            x += number + 2;
+        }
+        columns
+    }
 }
 
 fn compare_cells(left: Option<&TableCell>, right: Option<&TableCell>) -> Ordering {
@@ -477,8 +571,60 @@ mod tests {
             table.handle_action(action, 3);
         }
         assert_eq!(table.selected(), None);
-        assert_eq!(first_visible_row(5, 4, 20), 3);
-        assert_eq!(first_visible_row(19, 4, 20), 16);
-        assert_eq!(first_visible_row(0, 4, 2), 0);
+    }
+
+    /// Draws a table and returns the headings and the row.
+    fn drawn(table: &Table, width: u16) -> [String; 2] {
+        let theme = crate::theme::Theme::bundled("mono").expect("a theme");
+        let mut buffer = ratatui::buffer::Buffer::empty(Rect::new(0, 0, width, 2));
+        let area = buffer.area;
+        table.draw(&mut Canvas::new(&mut buffer, &theme), area, false, 0);
+        let row = |y| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>().trim_end().to_owned();
+        [row(0), row(1)]
+    }
+
+    fn wide_table() -> Table {
+        let titles = ["cash", "leads", "churn", "usage"].map(TableColumn::numeric);
+        let mut table = Table::new([TableColumn::text("group")].into_iter().chain(titles).collect());
+        let numbers =
+            [1.0, 2.0, 3.0, 4.0].map(|number| TableCell::from_number(number, format!("{number:.2}")));
+        table.set_rows(vec![[TableCell::from_text("S1")].into_iter().chain(numbers).collect()]);
+        table
+    }
+
+    #[test]
+    fn columns_that_do_not_fit_are_counted() {
+        let mut table = wide_table();
+        assert_eq!(
+            drawn(&table, 32),
+            ["group  cash  leads  churn  usage", "S1     1.00   2.00   3.00   4.00"]
+        );
+        assert_eq!(drawn(&table, 31), ["group  cash  leads  churn  +1 →", "S1     1.00   2.00   3.00"]);
+        assert_eq!(drawn(&table, 30), ["group  cash  leads        +2 →", "S1     1.00   2.00"]);
+        assert_eq!(drawn(&table, 12)[0], "group  +4 →");
+        table.select_column(3);
+        assert_eq!(drawn(&table, 26)[0], "group ←leads  churn   +1 →");
+        table.select_column(4);
+        assert_eq!(drawn(&table, 26)[0], "group ←leads  churn  usage");
+    }
+
+    #[test]
+    fn layout_hides_moves_and_resizes_columns() {
+        let mut table = wide_table();
+        let order = ["group", "usage", "cash", "leads", "churn"].map(str::to_owned).to_vec();
+        let hidden = ["leads".to_owned()].into();
+        let widths = [("churn".to_owned(), 2), ("group".to_owned(), 3)].into();
+        table.set_layout(ColumnLayout { order, hidden, widths });
+        assert_eq!(
+            drawn(&table, 60),
+            ["gr…  usage  cash  churn", "S1    4.00  1.00   3.00"],
+            "numbers keep their width"
+        );
+        table.handle_action(ListAction::Right, 5);
+        assert_eq!(table.selected_column(), 4, "the index in the original order");
+        table.set_layout(ColumnLayout { hidden: ["usage".to_owned()].into(), ..ColumnLayout::default() });
+        assert_eq!(table.selected_column(), 0, "a hidden column cannot be selected");
+        table.set_layout(ColumnLayout::default());
+        assert_eq!(drawn(&table, 60)[0], "group  cash  leads  churn  usage");
     }
 }

@@ -41,26 +41,31 @@ fn first_run_starts_the_tour() {
     let mut terminal = Terminal::start(runs.path(), &[], (80, 24));
     terminal.wait_for("New here?");
     terminal.type_keys("\r");
-    terminal.wait_for("Tour · 1 of 18");
-    terminal.type_keys("3");
-    terminal.wait_for("Tour · 2 of 18");
-    terminal.type_keys("j\r");
-    terminal.wait_for("Tour · 3 of 18");
-    terminal.type_keys("8\rj\r45\r\x13");
-    terminal.wait_for("Tour · 4 of 18");
-    // Types F3, which skips a step.
-    for step in 5..=8 {
+    terminal.wait_for("Tour · 1 of 15");
+    // F3 continues.
+    terminal.type_keys("\x1bOR");
+    terminal.wait_for("Tour · 2 of 15");
+    terminal.type_keys(";v");
+    terminal.wait_for("Participation curve");
+    terminal.wait_for("f3 continue");
+    for step in 3..=4 {
         terminal.type_keys("\x1bOR");
-        terminal.wait_for(&format!("Tour · {step} of 18"));
+        terminal.wait_for(&format!("Tour · {step} of 15"));
     }
-    terminal.type_keys("n");
-    terminal.wait_for("Tour · 9 of 18");
-    terminal.type_keys("\rcurious\r");
-    terminal.wait_for("Tour · 10 of 18");
-    terminal.type_keys("f\r");
-    terminal.wait_for("Tour · 11 of 18");
     terminal.type_keys("\x1b");
-    terminal.wait_for("Tour · 12 of 18");
+    terminal.wait_until_gone("Participation curve");
+    terminal.type_keys(":set_prices\r");
+    terminal.wait_for("set_prices · pricing");
+    terminal.type_keys("\r9\r\x13");
+    terminal.wait_for("Tour · 5 of 15");
+    for step in 6..=8 {
+        terminal.type_keys("\x1bOR");
+        terminal.wait_for(&format!("Tour · {step} of 15"));
+    }
+    terminal.type_keys("n\rcurious\r");
+    terminal.wait_for("[3 forecasts]");
+    terminal.type_keys("f\r");
+    terminal.wait_for("Tour · 9 of 15");
     // Types F4, which closes the tour.
     terminal.type_keys("\x1bOS");
     terminal.wait_until_gone("Tour ·");

@@ -103,6 +103,11 @@ impl DecisionList {
         self.selected
     }
 
+    /// Returns whether a decision is selected, or the decisions are not loaded yet.
+    pub(super) fn is_decision_selected(&self) -> bool {
+        self.history.is_none() || matches!(self.rows().get(self.selected), Some(Row::Decision(_)))
+    }
+
     pub(super) fn position_label(&self) -> String {
         format!("alternative {} of {} · ‹ › week", self.current + 1, self.alternatives.len())
     }

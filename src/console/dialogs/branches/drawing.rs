@@ -12,7 +12,6 @@ use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Width of the column with the treatment of a decision.
 const STATUS_WIDTH: usize = 11;
@@ -76,7 +75,7 @@ impl DecisionList {
         let lines = self.list_lines(list.width as usize, &context.company.company_names, context);
         // The last line of the selected row stays visible, which contains the reason of a refusal.
         let last = lines.iter().rposition(|line| line.row == Some(self.selected())).unwrap_or(0);
-        let first = first_visible_row(last, list.height as usize, lines.len());
+        let first = canvas.scroll_to_row(list, last, lines.len());
         for (rect, line) in row_rects(list).zip(lines.iter().skip(first)) {
             let here = line.row == Some(self.selected()) && self.input.is_none() && line.role != Role::Bad;
             if here {
@@ -204,7 +203,7 @@ impl DecisionList {
             }
         }
         let last = lines.iter().rposition(|line| line.row == Some(selected)).unwrap_or(0);
-        let first = first_visible_row(last, list.height as usize, lines.len());
+        let first = canvas.scroll_to_row(list, last, lines.len());
         for (rect, line) in row_rects(list).zip(lines.iter().skip(first)) {
             let here = line.row == Some(selected) && line.role != Role::Bad;
             if here {

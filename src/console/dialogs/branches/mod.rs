@@ -10,7 +10,7 @@ mod picker;
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Dialog, DialogResponse};
+use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -138,6 +138,20 @@ impl Dialog for BranchesPage {
             BranchesView::Simulating => "simulating",
             BranchesView::Comparison(_) => "figures",
         })
+    }
+
+    fn tour_view(&self) -> Option<DialogView> {
+        let is_shown = matches!(self.page, BranchesView::Comparison(_));
+        let actions = match self.page {
+            BranchesView::Decisions if self.decisions.input.is_some() => vec![Action::Discard],
+            BranchesView::Decisions if self.decisions.has_changes() => vec![Action::SimulateBranches],
+            BranchesView::Decisions if self.decisions.is_decision_selected() => {
+                vec![Action::OmitDecision, Action::SimulateBranches]
+            }
+            BranchesView::Decisions => vec![Action::Left],
+            BranchesView::Simulating | BranchesView::Comparison(_) => Vec::new(),
+        };
+        Some(DialogView { content: DialogContent::WhatIf, is_shown, actions })
     }
 
     fn scopes(&self) -> Vec<Scope> {

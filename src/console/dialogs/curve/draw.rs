@@ -5,23 +5,23 @@ use ratatui::layout::Rect;
 use super::{CurveDialog, CurveExploration};
 use crate::action::Action;
 use crate::context::ScreenContext;
+use crate::curve_chart::{MIN_CHART_ROWS, draw_curve_chart};
 use crate::dialogs::Dialog;
-use novamind_base::formatting::{dollars, price_to_cents};
-use novamind_insight::{CurvePoint, LEAD_SAMPLE_SIZE, PlanPoint};
+use novamind_base::formatting::price_to_cents;
+use novamind_insight::{LEAD_SAMPLE_SIZE, PlanPoint};
 use novamind_report::curve::{
-    describe_basis, describe_outcome, describe_outcome_briefly, describe_plan, format_quality,
+    describe_basis, describe_conversion_briefly, describe_omissions, describe_omissions_briefly,
+    describe_outcome, describe_plan, format_quality,
 };
 use novamind_session::identifiers::Plan;
 use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::chart::{Band, Curve, Plot, PointLabel, XAxis, YAxis};
-use novamind_tui::widgets::scale::AxisUnit;
 
 const MAX_PAGE_WIDTH: u16 = 140;
-const MIN_CHART_ROWS: u16 = 5;
 const MIN_ROWS_FOR_PLAN_LINES: u16 = 12;
 const MIN_ROWS_FOR_LEGEND: u16 = 14;
+const MIN_ROWS_FOR_OMISSIONS: u16 = 9;
 
 impl CurveDialog {
     pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
@@ -47,7 +47,7 @@ impl CurveDialog {
                     canvas.draw_text(row, &line, Role::Bad);
                 }
             }
-            Some(Ok(opened)) => self.draw_explorer(canvas, inside, opened),
+            Some(Ok(opened)) => self.draw_explorer(canvas, inside, opened, context),
         }
         canvas.draw_pane_keys(dialog_area, &self.key_hints(context));
     }
@@ -68,11 +68,23 @@ impl CurveDialog {
         drags + &context.hints(&self.hints())
     }
 
-    fn draw_explorer(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &CurveExploration) {
+    fn draw_explorer(
+        &self,
+        canvas: &mut Canvas<'_>,
+        area: Rect,
+        opened: &CurveExploration,
+        context: &ScreenContext<'_>,
+    ) {
         let is_low = area.height < MIN_ROWS_FOR_PLAN_LINES;
-        let outcome = match is_low {
-            true => vec![describe_outcome_briefly(&opened.outcome)],
-            false => wrap(&describe_outcome(&opened.outcome), area.width as usize),
+        let (width, measured) =
+            (area.width as usize, context.company.fit(self.group).map(|fit| fit.measured));
+        let outcome: Vec<String> = match (is_low, measured) {
+            (true, measured) => wrap(&describe_conversion_briefly(&opened.outcome, measured.as_ref()), width),
+            (false, None) => wrap(&describe_outcome(&opened.outcome), width),
+            (false, Some(measured)) => [describe_outcome(&opened.outcome), measured.describe()]
+                .iter()
+                .flat_map(|text| wrap(text, width))
+                .collect(),
         };
         let legend = legend_lines(opened, area);
         let plans = if is_low { 1 } else { Plan::ALL.len() as u16 }.min(area.height);
@@ -91,7 +103,9 @@ impl CurveDialog {
             ..area
         };
         if chart.height >= MIN_CHART_ROWS {
-            self.draw_chart(canvas, chart, opened);
+            // If all plans are dragged together, all are highlighted.
+            let is_selected = |plan| self.selected_plan.is_none_or(|selected| selected == plan);
+            draw_curve_chart(canvas, chart, &opened.explorer, &opened.plans, is_selected);
         }
         let below = Rect { y: chart.bottom(), height: area.bottom().saturating_sub(chart.bottom()), ..area };
         for (row, line) in row_rects(below).zip(&legend) {
@@ -124,42 +138,6 @@ impl CurveDialog {
         };
         opened.plans.pairs().map(words).collect::<Vec<_>>().join("  ")
     }
-
-    fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &CurveExploration) {
-        let points = &opened.explorer.points;
-        let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
-        let top = plans().map(|plan_point| plan_point.quality).fold(1.0, f64::max);
-        let most = opened.max_price();
-        // Points above the chart are omitted, so that lines end at its upper edge. The band is clipped at the upper edge.
-        let line = |of: fn(&CurvePoint) -> f64, role| {
-            let inside = points.iter().filter(|point| of(point) <= top);
-            Curve::from_points(inside.map(|point| (point.price, of(point))).collect(), role)
-        };
-        let mut lines = Vec::new();
-        if !opened.explorer.shows_true_values() {
-            lines.push(line(|point| point.median_range.0, Role::Dim));
-            lines.push(line(|point| point.median_range.1, Role::Dim));
-        }
-        lines.push(line(|point| point.median, Role::Series(0)).with_name("half"));
-        let covered = points.iter().filter(|point| point.p10 <= top);
-        let ends = covered.map(|point| (point.price, point.p10, point.p90.min(top))).collect();
-        let band = Band { bounds: ends, name: "" };
-        let x = XAxis { format: &|value| dollars(value), required_values: &[0.0, most] };
-        let y = YAxis { unit: AxisUnit::Number, required_values: &[0.0, top] };
-        let promotion = opened.explorer.discount;
-        let sign = |plan: Plan| {
-            let point: &PlanPoint = &opened.plans[plan];
-            let here = self.selected_plan.is_none_or(|chosen| chosen == plan);
-            let role = if here { Role::Selection } else { Role::Series(1) };
-            PointLabel { x: (point.list_price - promotion).max(0.0), y: point.quality, text: plan.id(), role }
-        };
-        // The selected plan is drawn on top.
-        let mut order = Plan::ALL;
-        order.sort_by_key(|plan| self.selected_plan == Some(*plan));
-        let signs: Vec<PointLabel> = order.into_iter().map(sign).collect();
-        Plot { curves: &lines, band: Some(&band), marked_x: None, x: &x, y: &y }
-            .draw_with_labels(canvas, area, &signs);
-    }
 }
 
 /// Describes a plan and its changes: `A $12 → $15, quality 0.20, taken by 12.3%`.
@@ -176,16 +154,19 @@ fn plan_line(opened: &CurveExploration, plan: Plan) -> String {
     if changes.is_empty() { words } else { format!("{words} ({})", changes.join(", ")) }
 }
 
-/// Returns the lines of the legend that fit into the area.
+/// Returns the lines of the legend that fit into the area, and what the estimates leave out.
 fn legend_lines(opened: &CurveExploration, area: Rect) -> Vec<String> {
+    let width = area.width as usize;
     if area.height < MIN_ROWS_FOR_LEGEND {
-        return Vec::new();
+        let fits = area.height >= MIN_ROWS_FOR_OMISSIONS;
+        return if fits { vec![describe_omissions_briefly(&opened.explorer)] } else { Vec::new() };
     }
+    let omissions = wrap(&describe_omissions(&opened.explorer), width);
     let unit = if opened.explorer.group.is_enterprise() { "price per seat" } else { "price" };
     let mut words =
         format!("x: {unit}, y: quality · line: half of the leads accept · shaded: 10 to 90 % accept");
     if !opened.explorer.shows_true_values() {
-        words += " · dim lines: bounds of the line's error range · spread and slope are assumed; studies measure means";
+        words += " · dim lines: bounds of the line's error range";
     }
-    wrap(&words, area.width as usize)
+    [omissions, wrap(&words, width)].concat()
 }

@@ -8,7 +8,7 @@ mod tests;
 use ratatui::layout::Rect;
 use serde_json::{Map, Value, json};
 
-use super::{Dialog, DialogResponse};
+use super::{Dialog, DialogContent, DialogResponse, DialogView};
 use crate::action::{Action, Scope};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -155,6 +155,10 @@ fn step_to_multiple(value: f64, steps: f64, step: f64) -> f64 {
 impl Dialog for CurveDialog {
     fn record_name(&self) -> String {
         format!("curve of {}", self.group)
+    }
+
+    fn tour_view(&self) -> Option<DialogView> {
+        Some(DialogView::new(DialogContent::Curve, self.successful_exploration().is_some()))
     }
 
     fn term(&self) -> Option<String> {

@@ -7,7 +7,6 @@ use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::forecast_fan::draw_fan;
 use novamind_base::formatting::{dollars, percent};
-use novamind_session::ErrorIntervals;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
@@ -17,8 +16,12 @@ impl NextWeekDialog {
     pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let (company, roomy) = (context.company, area.height >= 12);
         let question = format!(
-            "Cash now: {}. Forecast cash with ranges that contain the actual value 95 times in 100.",
-            dollars(company.observation.cash)
+            "Cash now: {}. {}",
+            dollars(company.observation.cash),
+            match company.observation.horizons_in_run {
+                0 => "The run ends within a week, so no forecast is needed.",
+                _ => "Forecast cash with ranges that contain the actual value 95 times in 100.",
+            }
         );
         let asked = wrap(&question, area.width as usize);
         let below = self.naive_forecast_text(context, area.width as usize, roomy);
@@ -46,7 +49,8 @@ impl NextWeekDialog {
         let used = used + u16::from(roomy);
         let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
         if let Ok(forecasts) = self.parse_forecasts(company) {
-            draw_fan(canvas, left, company, company.observation.day, &forecasts.all);
+            let shown = &forecasts.all[..company.observation.horizons_in_run];
+            draw_fan(canvas, left, company, company.observation.day, shown);
         }
     }
 
@@ -62,18 +66,28 @@ impl NextWeekDialog {
             (false, Some(key)) => format!("{key} fills empty cells"),
             _ => "marked as naive forecasts".to_owned(),
         };
-        let text = format!("{fills}: the cash flow of the last four weeks continues at current costs");
+        let text =
+            format!("{fills}: billing dates, recent renewals and the trend of sign-ups, at current costs");
         let mut lines: Vec<(String, Role)> =
             wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !context.company.is_baseline() {
-            let coverage = wrap(&ErrorIntervals::bundled().describe_coverage(), width);
-            lines.extend(coverage.into_iter().map(|line| (line, Role::Dim)));
+            let coverage = context.company.observation.describe_coverage().unwrap_or_default();
+            lines.extend(wrap(&coverage, width).into_iter().map(|line| (line, Role::Dim)));
         }
         lines
     }
 
     fn draw_horizon(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize, company: &DisplayedCompany) {
         canvas.draw_text(Rect { width: 9.min(row.width), ..row }, HORIZON_LABELS[at], Role::Text);
+        if at >= company.observation.horizons_in_run {
+            let place = Rect { x: row.x + 10, width: row.width.saturating_sub(10), ..row };
+            canvas.draw_text(
+                place,
+                &format!("after the last day ({})", company.observation.last_day),
+                Role::Dim,
+            );
+            return;
+        }
         for (column, field) in self.cells[at].iter().enumerate() {
             let place = cell_area(row, column).intersection(row);
             let here = self.focus == (at, column);

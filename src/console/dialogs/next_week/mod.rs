@@ -83,6 +83,7 @@ impl NextWeekDialog {
     pub fn reopen(&mut self, unsent: Vec<ToolId>, baseline: bool) {
         (self.tools_with_drafts, self.is_baseline) = (unsent, baseline);
         self.step = NextWeekStep::Review;
+        self.focus = (0, 0);
         self.review = ChangeReview::default();
         self.problem = None;
         self.is_typing = false;
@@ -169,7 +170,8 @@ impl NextWeekDialog {
     /// Fills empty cells with naive forecasts. If the point was typed, the interval of the naive forecast is moved to
     /// that point.
     fn fill_naive_forecasts(&mut self, company: &DisplayedCompany) {
-        for (row, naive) in company.naive_forecasts.all.iter().enumerate() {
+        let asked = company.observation.horizons_in_run;
+        for (row, naive) in company.naive_forecasts.all.iter().enumerate().take(asked) {
             let typed = |column: usize| parse_number(self.cells[row][column].text());
             let (low, high) = (typed(0).unwrap_or(f64::NEG_INFINITY), typed(2).unwrap_or(f64::INFINITY));
             let point = typed(1).unwrap_or(naive.point.max(low).min(high));
@@ -187,8 +189,9 @@ impl NextWeekDialog {
     /// Parses the forecasts. The error contains the position of the first invalid cell and the reason.
     fn parse_forecasts(&self, company: &DisplayedCompany) -> Result<Forecasts, ((usize, usize), String)> {
         let mut all = company.naive_forecasts;
-        all.filled_naively = self.filled_naively.map(|row| row.contains(&true));
-        for (row, cells) in self.cells.iter().enumerate() {
+        // Forecasts for days after the run cannot be scored, so they are not asked for.
+        for (row, cells) in self.cells.iter().enumerate().take(company.observation.horizons_in_run) {
+            all.filled_naively[row] = self.filled_naively[row].contains(&true);
             if self.filled_naively[row] == [true; 3] {
                 continue;
             }
@@ -233,15 +236,16 @@ impl NextWeekDialog {
         }
     }
 
-    fn move_focus(&mut self, action: Action) {
+    fn move_focus(&mut self, action: Action, company: &DisplayedCompany) {
         let (row, column) = self.focus;
+        let last = company.observation.horizons_in_run.saturating_sub(1);
         self.focus = match action {
             Action::Up | Action::CommitPrevious => (row.saturating_sub(1), column),
-            Action::Down | Action::CommitDown => ((row + 1).min(3), column),
+            Action::Down | Action::CommitDown => ((row + 1).min(last), column),
             Action::Left => (row, column.saturating_sub(1)),
             Action::Right => (row, (column + 1).min(2)),
             Action::FocusNext | Action::CommitNext | Action::Commit => match column {
-                2 => ((row + 1).min(3), if row == 3 { 2 } else { 0 }),
+                2 => ((row + 1).min(last), if row == last { 2 } else { 0 }),
                 _ => (row, column + 1),
             },
             _ => self.focus,
@@ -342,9 +346,9 @@ impl Dialog for NextWeekDialog {
             }
             Action::Commit | Action::CommitNext | Action::CommitDown | Action::CommitPrevious => {
                 self.is_typing = false;
-                self.move_focus(action);
+                self.move_focus(action, context.company);
             }
-            other if self.step == NextWeekStep::Forecasts => self.move_focus(other),
+            other if self.step == NextWeekStep::Forecasts => self.move_focus(other, context.company),
             other if self.step == NextWeekStep::Review => {
                 self.review.handle_scroll(other, context.page_rows as usize)
             }
@@ -365,6 +369,7 @@ impl Dialog for NextWeekDialog {
             NextWeekStep::Forecasts if self.is_typing => {
                 self.problem = (!self.cell().handle_number_key(key)).then(|| NUMBER_HINT.to_owned());
             }
+            NextWeekStep::Forecasts if context.company.observation.horizons_in_run == 0 => {}
             NextWeekStep::Forecasts => {
                 let starts = novamind_tui::chord::Chord::from_event(key).starts_number();
                 if starts {

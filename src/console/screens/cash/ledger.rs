@@ -8,7 +8,7 @@ use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{compact_number, dollars, percent, short_dollars};
+use novamind_base::formatting::{dollars, percent, short_dollars};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
@@ -20,6 +20,10 @@ pub struct LedgerPane;
 impl Pane<Cash> for LedgerPane {
     fn table<'a>(&self, cash: &'a Cash) -> Option<&'a Table> {
         Some(&cash.table)
+    }
+
+    fn table_name(&self) -> Option<&'static str> {
+        Some("cash.ledger")
     }
 
     fn table_mut<'a>(&self, cash: &'a mut Cash) -> Option<&'a mut Table> {
@@ -126,7 +130,7 @@ fn ledger_row(subject: &LedgerSubject, all: &[CategoryAmounts; 4], week: u32) ->
     let whole = income_or_cost_total(&all[0], income).abs();
     let share = if *subject == LedgerSubject::Net || whole <= 0.0 { None } else { Some(now.abs() / whole) };
     let amount = |value: f64| TableCell::from_number(value, if value == 0.0 { "–".to_owned() } else { format_money(value) });
-    let moved = if week < 2 { "–".to_owned() } else { format_change(change, &compact_number(change.abs())) };
+    let moved = if week < 2 { "–".to_owned() } else { format_change(change, &short_dollars(change.abs())) };
     vec![
         TableCell::from_text(match subject {
             LedgerSubject::Category(_) => format!("  {name}"),

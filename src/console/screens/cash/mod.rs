@@ -16,7 +16,7 @@ use self::ledger::ledger_table;
 use self::forecasts::ForecastsState;
 use self::model::{WeeklyLedger, CashStep, LedgerSubject, ledger_query, cash_steps};
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
@@ -178,17 +178,12 @@ impl PaneScreen for Cash {
         if area.width >= 104 && area.height >= 30 {
             return self.draw_large_layout(canvas, area, context);
         }
-        // In small windows, the focused pane is larger.
         let rows = self.table.rows().len() as u16 + 3;
-        let (upper, below) = match self.focus {
-            CashPane::Ledger => {
-                (rows.min(area.height.saturating_sub(7)).max(area.height / 3), CashPane::Waterfall)
-            }
-            other => (area.height / 3, other),
-        };
+        let upper = rows.min(area.height * 11 / 20);
         let [table, rest] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(area);
         draw_pane(self, CashPane::Ledger, canvas, table, context);
-        draw_pane(self, below, canvas, rest, context);
+        let stack = [CashPane::Waterfall, CashPane::Curve, CashPane::Weeks, CashPane::Forecasts];
+        draw_stack(self, &stack, canvas, rest, context);
     }
 }
 
@@ -212,9 +207,7 @@ impl Cash {
             draw_pane(self, CashPane::Waterfall, canvas, steps, context);
             draw_pane(self, CashPane::Curve, canvas, curve, context);
         } else {
-            // The curve replaces the waterfall while the curve has the focus.
-            let front = if self.focus == CashPane::Curve { CashPane::Curve } else { CashPane::Waterfall };
-            draw_pane(self, front, canvas, right_area, context);
+            draw_stack(self, &[CashPane::Waterfall, CashPane::Curve], canvas, right_area, context);
         }
         draw_pane(self, CashPane::Weeks, canvas, weeks, context);
         draw_pane(self, CashPane::Forecasts, canvas, forecasts, context);

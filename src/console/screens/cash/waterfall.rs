@@ -12,7 +12,6 @@ use novamind_base::formatting::{dollars, short_dollars};
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 pub struct WaterfallPane;
@@ -96,7 +95,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
     // If bars do not start at zero, an additional row shows the value at which the bars start.
     let is_labelled = floor != 0.0 && bars >= 24 && area.height > 1;
     let area = Rect { height: area.height - u16::from(is_labelled), ..area };
-    let from = first_visible_row(selected.unwrap_or(0), area.height as usize, steps.len());
+    let from = canvas.scroll_to_row(area, selected.unwrap_or(0), steps.len());
     let span = (most - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
     // The bar of the lowest level keeps a width of at least one cell.

@@ -12,10 +12,9 @@ use novamind_base::formatting::{dollars, grouped_number};
 use novamind_report::measures::MIN_CHANNEL_LEADS;
 use novamind_session::identifiers::Channel;
 use novamind_tools::ToolId;
-use novamind_tui::canvas::{Align, Canvas, Click};
+use novamind_tui::canvas::{Align, Canvas, Click, first_visible_row};
 use novamind_tui::text::format_count;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 pub struct ChannelMapPane;
@@ -105,6 +104,7 @@ fn draw(
     let from = first_visible_row(place.group, room, groups.len());
     let head = Rect { height: 1, ..area };
     canvas.draw_text(Rect { width: NAME_WIDTH, ..head }, "channel", Role::Header);
+    canvas.draw_column_marks(head, NAME_WIDTH, from > 0, groups.len() > from + room);
     for (at, group) in groups.iter().enumerate().skip(from).take(room) {
         let cell = cell_area(head, at - from);
         canvas.draw_aligned(Rect { width: CELL_WIDTH - 2, ..cell }, group.id(), Role::Header, Align::Right);

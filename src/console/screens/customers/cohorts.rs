@@ -13,10 +13,9 @@ use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_base::formatting::{compact_number, percent};
 use novamind_database::{QueryResult, number_at, text_at};
 use novamind_session::identifiers::Group;
-use novamind_tui::canvas::{Align, Canvas, Click};
+use novamind_tui::canvas::{Align, Canvas, Click, first_visible_row};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::note_width;
-use novamind_tui::widgets::table::first_visible_row;
 
 const NAME_WIDTH: u16 = 14;
 const CELL_WIDTH: u16 = 5;
@@ -218,7 +217,9 @@ fn draw(
     }
     // The last row shows the mean of all cohorts.
     let room = (area.height - 2) as usize;
-    let from = first_visible_row(place.map_or(0, |place| place.cohort), room, weeks.len());
+    canvas.draw_column_marks(head, NAME_WIDTH, left > 0, all > left + columns);
+    let list = Rect { y: area.y + 1, height: room as u16, ..area };
+    let from = canvas.scroll_to_row(list, place.map_or(0, |place| place.cohort), weeks.len());
     let shown = weeks.iter().enumerate().skip(from).take(room);
     let mut y = area.y + 1;
     for (at, (week, cohort)) in shown {

@@ -40,6 +40,7 @@ enum GroupColumn {
 /// Columns with headings and glossary terms, in display order.
 static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::Group, "group", "customer-group"),
+    (GroupColumn::Name, "name", "customer-group"),
     (GroupColumn::GroupKind, "kind", "customer-group"),
     (GroupColumn::TrueValue(TrueValue::Satisfaction), "true sat.", "satisfaction"),
     (GroupColumn::TrueValue(TrueValue::Reputation), "true rep.", "reputation"),
@@ -61,7 +62,6 @@ static COLUMNS: [(GroupColumn, &str, &str); 23] = [
     (GroupColumn::StudyLevel, "level", "info-level"),
     (GroupColumn::MarketShare, "mkt share", "market-cap"),
     (GroupColumn::Trend, "new by week", "conversion"),
-    (GroupColumn::Name, "name", "customer-group"),
 ];
 
 /// Returns the visible columns. Columns with true values are visible only while true values are shown.
@@ -70,10 +70,16 @@ fn visible_columns(company: &DisplayedCompany) -> impl Iterator<Item = &'static 
     COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, GroupColumn::TrueValue(_)))
 }
 
+/// Returns the index of the column with cancellations.
+pub fn cancellations_column(company: &DisplayedCompany) -> usize {
+    let is_wanted = |(what, ..): &(GroupColumn, &str, &str)| *what == GroupColumn::Cancellations;
+    visible_columns(company).position(is_wanted).unwrap_or_default()
+}
+
 pub fn columns(company: &DisplayedCompany) -> Vec<TableColumn> {
     let column = |(what, head, _): &(GroupColumn, &str, &str)| match what {
         GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Trend => TableColumn::text(*head),
-        GroupColumn::Name => TableColumn::text(*head).with_max_width(28),
+        GroupColumn::Name => TableColumn::text(*head).with_max_width(28).with_min_width(15),
         _ => TableColumn::numeric(*head),
     };
     visible_columns(company).map(column).collect()

@@ -25,6 +25,10 @@ impl Pane<Customers> for CostsPane {
         Some(&customers.costs)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("customers.lead-costs")
+    }
+
     fn table_mut<'a>(&self, customers: &'a mut Customers) -> Option<&'a mut Table> {
         Some(&mut customers.costs)
     }

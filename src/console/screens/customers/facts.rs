@@ -10,13 +10,12 @@ use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::market::model::group_name;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{dollars_and_cents, compact_number, dollars, grouped_number, percent};
+use novamind_base::formatting::{dollars_and_cents, compact_number, dollars, grouped_number, percent, quality as format_quality};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_session::Source;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::sparkline::bar;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 pub struct FactsPane;
@@ -75,7 +74,7 @@ impl Pane<Customers> for FactsPane {
         let selected = placement.focused.then_some(customers.group_state.fact_line);
         let bars = (placement.area.width as usize).saturating_sub(32).min(16);
         let lines = self.lines(customers, context, bars);
-        let from = first_visible_row(selected.unwrap_or(0), placement.area.height as usize, lines.len());
+        let from = canvas.scroll_to_row(placement.area, selected.unwrap_or(0), lines.len());
         for (row, (at, fact)) in row_rects(placement.area).zip(lines.iter().enumerate().skip(from)) {
             let here = selected == Some(at) && fact.figure.is_some();
             let role = if here { Role::Selection } else { fact.role };
@@ -156,7 +155,7 @@ fn plan_lines(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
     let customers = facts.sum(|plan_subscribers| plan_subscribers.customers).max(1.0);
     let line = |(plan, subscribers): (&Plan, &super::model::PlanSubscribers)| {
         let share = subscribers.customers / customers;
-        let figures = format!("{:>9} {:>6}", grouped_number(subscribers.customers, 0), percent(share, 0));
+        let figures = format!("{:>9} {:>6}", grouped_number(subscribers.customers, 0), percent(share, 1));
         let sql = format!(
             "SELECT s.customer_id, s.plan, s.seat_count, s.effective_price, s.start_day\nFROM subscriptions s\n\
              JOIN customers c ON c.customer_id = s.customer_id\nWHERE c.group_id = '{group}'\n    \
@@ -171,15 +170,15 @@ fn plan_lines(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
 }
 
 fn source_lines(company: &DisplayedCompany, facts: &GroupFacts, group: Group) -> Vec<FactLine> {
-    let heads = format!("{:>6}{:>6}{:>6}", "leads", "share", "conv.");
+    let heads = format!("{:>6}{:>7}{:>7}", "leads", "share", "conv.");
     let mut lines = vec![heading_line("sources, 12 weeks", heads)];
     let mut sources: Vec<_> = facts.sources.iter().collect();
     sources.sort_by(|left, right| right.1.0.total_cmp(&left.1.0));
     let leads = sources.iter().map(|(_, (leads, _))| leads).sum::<f64>().max(1.0);
     for (source, (value, signed)) in sources {
-        let conversion = if *value > 0.0 { percent(signed / value, 0) } else { "–".to_owned() };
-        let share = percent(value / leads, 0);
-        let figures = format!("{:>6}{share:>6}{conversion:>6}", compact_number(*value));
+        let conversion = if *value > 0.0 { percent(signed / value, 1) } else { "–".to_owned() };
+        let share = percent(value / leads, 1);
+        let figures = format!("{:>6}{share:>7}{conversion:>7}", compact_number(*value));
         let sql = format!(
             "SELECT c.customer_id, c.created_day, s.plan, s.status, s.start_day, s.end_day\nFROM customers c\n\
              JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\n    \
@@ -201,9 +200,9 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
     let or_none = |value: Option<f64>, write: fn(f64) -> String| value.map_or("–".to_owned(), write);
     let mut lines = vec![heading_line("money", String::new())];
     if let Some(quality) = company.quality.iter().find(|quality| quality.group == group) {
-        let [a, b, c] = quality.by_plan.0;
+        let [a, b, c] = quality.by_plan.0.map(format_quality);
         let title = format!("delivered quality of {group}");
-        let figures = format!("{a:.2} {b:.2} {c:.2}");
+        let figures = format!("{a} {b} {c}");
         lines.push(figure_line("  quality A B C".to_owned(), figures, title, "delivered-quality", None));
     }
     let spend = format!(

@@ -1,4 +1,5 @@
-//! Fit of the open group: each plan compared with the estimated requirements, the leads, and the gaps of each plan.
+//! Fit of the open group: its participation curve with the plans, estimated and measured conversion, and each plan
+//! compared with the estimated needs.
 
 use ratatui::layout::Rect;
 
@@ -6,19 +7,24 @@ use super::Customers;
 use super::selection::{move_index, show_rows_effect};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
+use crate::curve_chart::{MIN_CHART_ROWS, draw_curve_chart};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
-use novamind_base::formatting::{compact_number, percent, price_to_cents};
-use novamind_insight::WeekQuantity;
+use novamind_base::formatting::{compact_number, percent, price_to_cents, quality as format_quality};
+use novamind_insight::{CurveExplorer, LEAD_SAMPLE_SIZE, WeekQuantity};
 use novamind_record::figures::WeekFigure;
-use novamind_report::fit::{RangePosition, FitCriterion, Fit, TrueValueRange};
+use novamind_report::curve::{describe_omissions, describe_outcome};
+use novamind_report::fit::{RangePosition, FitCriterion, Fit};
 use novamind_session::identifiers::Plan;
-use novamind_tools::ToolId;
+use novamind_tools::{Rejection, ToolId};
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_number, wrap};
 use novamind_tui::theme::Role;
 
 const NAME_WIDTH: usize = 8;
+/// Minimum height and width of the pane for a chart above the text.
+const MIN_ROWS_WITH_CHART: u16 = 10;
+const MIN_CHART_WIDTH: u16 = 30;
 
 pub struct FitPane;
 
@@ -63,13 +69,34 @@ impl Pane<Customers> for FitPane {
         let company = context.company;
         let Some(fit) = customers.group(company).and_then(|group| company.fit(group)) else { return };
         let tier = |plan: Plan| format_number(company.current_setting(ToolId::SetModelTiers, plan.id()));
-        let lines = fit_lines(fit, placement.area.width as usize, &tier);
-        let last = lines.len().saturating_sub(placement.area.height as usize);
+        let (area, curve) = (placement.area, customers.curve.of_group(fit.group));
+        let is_requested = customers.open_group.is_some();
+        let lines = fit_lines(fit, curve, is_requested, area.width as usize, &tier);
+        let chart = match curve {
+            Some(Ok(explorer)) => {
+                let rows = chart_rows(area, lines.len());
+                let chart = Rect { height: rows, ..area };
+                draw_curve_chart(canvas, chart, explorer, &explorer.plans, |_| true);
+                rows
+            }
+            _ => 0,
+        };
+        let text = Rect { y: area.y + chart, height: area.height - chart, ..area };
+        let last = lines.len().saturating_sub(text.height as usize);
         let from = if placement.focused { customers.group_state.fit_line.min(last) } else { 0 };
-        for (row, line) in row_rects(placement.area).zip(&lines[from..]) {
+        for (row, line) in row_rects(text).zip(&lines[from..]) {
             canvas.draw_text(row, &line.text, line.role);
         }
     }
+}
+
+/// Returns the height of the chart above `lines` lines of text, or 0 if the area is too small for a chart.
+fn chart_rows(area: Rect, lines: usize) -> u16 {
+    if area.height < MIN_ROWS_WITH_CHART || area.width < MIN_CHART_WIDTH {
+        return 0;
+    }
+    let rest = area.height.saturating_sub(lines as u16);
+    rest.max(area.height / 2).max(MIN_CHART_ROWS)
 }
 
 struct FitLine {
@@ -77,44 +104,52 @@ struct FitLine {
     role: Role,
 }
 
-fn styled_line(text: String, role: Role) -> FitLine {
-    FitLine { text, role }
-}
-
-/// Returns all lines of the pane, at most `width` columns wide.
-fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine> {
+/// Returns all lines of the pane, at most `width` columns wide: the estimated and the measured conversion, the needs of
+/// the group, the plans, and the leads. `is_requested` returns whether a missing curve will arrive.
+fn fit_lines(
+    fit: &Fit,
+    curve: Option<&Result<CurveExplorer, Rejection>>,
+    is_requested: bool,
+    width: usize,
+    tier: &dyn Fn(Plan) -> String,
+) -> Vec<FitLine> {
     let company = fit.group.is_enterprise();
-    let mut lines = vec![styled_line(format!("quality  required {}", fit.floor.format_quality()), Role::Header)];
-    let qualities = Plan::ALL.map(|plan| fit.plans[plan].quality);
-    lines.extend(Plan::ALL.map(|plan| {
-        let name = format!("T{}", tier(plan));
-        let shown = format!("{:.4}", fit.plans[plan].quality);
-        bar_line(fit, (plan, FitCriterion::Quality), (&name, &shown), (fit.floor, &qualities), width)
-    }));
-    let per = if company { " a seat" } else { "" };
-    lines.push(styled_line(format!("price    budget {}{per}", fit.budget.format_money()), Role::Header));
-    let prices = Plan::ALL.map(|plan| fit.plans[plan].lead_price);
-    lines.extend(Plan::ALL.map(|plan| {
-        let plan_fit = &fit.plans[plan];
-        let name = if plan_fit.lead_price < plan_fit.list_price { "lead" } else { "list" };
-        bar_line(
-            fit,
-            (plan, FitCriterion::Price),
-            (name, &price_to_cents(plan_fit.lead_price)),
-            (fit.budget, &prices),
-            width,
-        )
-    }));
-    let smallest = if company { " (smallest)" } else { "" };
-    lines.push(styled_line(format!("quota    typically {} units a day{smallest}", fit.usage.format_units()), Role::Header));
-    let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact_number(fit.plans[plan].quota)));
-    lines.push(styled_line(format!(" {} a day", quotas.join(" · ")), shared_role(fit, FitCriterion::Quota)));
+    let mut lines = Vec::new();
     let mut add_rows = |name: &str, text: &str, role: Role| {
         for (at, text) in wrap(text, width.saturating_sub(NAME_WIDTH + 1)).into_iter().enumerate() {
             let name = if at == 0 { name } else { "" };
-            lines.push(styled_line(format!("{name:<NAME_WIDTH$} {text}"), role));
+            lines.push(FitLine { text: format!("{name:<NAME_WIDTH$} {text}"), role });
         }
     };
+    match curve {
+        Some(Ok(explorer)) => {
+            let outcome = explorer.outcome_for_plans(&explorer.plans);
+            add_rows("signups", &describe_outcome(&outcome), Role::Strong);
+        }
+        Some(Err(refusal)) => add_rows("signups", &refusal.message, Role::Dim),
+        None if is_requested => add_rows("signups", &format!("asking {LEAD_SAMPLE_SIZE} sampled leads …"), Role::Dim),
+        None => {}
+    }
+    let name = if curve.is_none() && !is_requested { "signups" } else { "" };
+    add_rows(name, &fit.measured.describe(), Role::Strong);
+    if let Some(Ok(explorer)) = curve {
+        add_rows("", &describe_omissions(explorer), Role::Dim);
+    }
+    let (seat, smallest) = if company { (" a seat", " (smallest)") } else { ("", "") };
+    let needs = format!(
+        "quality required {} · budget {}{seat} · quota {} units a day{smallest}",
+        fit.floor.format_quality(),
+        fit.budget.format_money(),
+        fit.usage.format_units()
+    );
+    add_rows("needs", &needs, Role::Header);
+    for plan in Plan::ALL {
+        let role = match FitCriterion::ALL.iter().any(|concern| fit.certain_gap(plan, *concern).is_some()) {
+            true => Role::Bad,
+            false => Role::Text,
+        };
+        add_rows(&format!("{plan} T{}", tier(plan)), &describe_plan_fit(fit, plan), role);
+    }
     match fit.last_week {
         Some(week) => {
             add_rows("leads", &format!("last week: {}", week.describe()), Role::Text);
@@ -122,19 +157,11 @@ fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitL
         }
         None => add_rows("leads", "no week has been simulated", Role::Dim),
     }
-    for plan in Plan::ALL {
-        let name = if plan == Plan::A { "missing" } else { "" };
-        let role = match FitCriterion::ALL.iter().any(|concern| fit.certain_gap(plan, *concern).is_some()) {
-            true => Role::Bad,
-            false => Role::Text,
-        };
-        add_rows(name, &format!("{plan} {}", fit.describe_gaps(plan)), role);
-    }
-    add_rows("", "█ reached · ▓ reached, in the range · ▒ rest of the range", Role::Dim);
     add_rows(
         "",
         &format!(
-            "Ranges are for the group's means (±{}). Customers require more quality at a higher price.",
+            "Needs are the group's means (±{}). Customers differ, and require more quality at a higher price: the curve is \
+             the quality that half of the leads accept at a price, the shaded area is 10 to 90 %.",
             percent(fit.max_relative_error, 0)
         ),
         Role::Dim,
@@ -142,66 +169,40 @@ fn fit_lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitL
     lines
 }
 
-/// Returns the display role of a line that describes all plans.
-fn shared_role(fit: &Fit, concern: FitCriterion) -> Role {
-    match Plan::ALL.iter().any(|plan| fit.certain_gap(*plan, concern).is_some()) {
-        true => Role::Bad,
-        false => Role::Text,
+/// Compares a plan with the needs of the group: `quality 0.1200 short 0.0610 · $12 below budget · quota 2.00k enough`.
+fn describe_plan_fit(fit: &Fit, plan: Plan) -> String {
+    let plan_fit = &fit.plans[plan];
+    if plan_fit.list_price <= 0.0 {
+        return format!("quality {} · no price", format_quality(plan_fit.quality));
     }
+    let discounted = if plan_fit.lead_price < plan_fit.list_price { " for leads" } else { "" };
+    format!(
+        "quality {} {} · {}{discounted} {} · quota {} {}",
+        format_quality(plan_fit.quality),
+        fit_verdict(fit, plan, FitCriterion::Quality),
+        price_to_cents(plan_fit.lead_price),
+        fit_verdict(fit, plan, FitCriterion::Price),
+        compact_number(plan_fit.quota),
+        fit_verdict(fit, plan, FitCriterion::Quota)
+    )
 }
 
-/// Returns a line that compares a plan with a range: `A T1 ███▒▒▒▒  0.1200 short 0.0610`.
-fn bar_line(
-    fit: &Fit,
-    (plan, concern): (Plan, FitCriterion),
-    (name, shown): (&str, &str),
-    (range, figures): (TrueValueRange, &[f64; 3]),
-    width: usize,
-) -> FitLine {
-    let figure = figures[plan.index()];
-    let most = figures.iter().copied().fold(range.most, f64::max);
-    let (verdict, role) = fit_verdict(fit, plan, concern);
-    let cells = width.saturating_sub(33).clamp(4, 60);
-    let bar = if fit.plans[plan].list_price > 0.0 || concern == FitCriterion::Quality {
-        range_bar(figure, range, most, cells)
-    } else {
-        " ".repeat(cells)
-    };
-    styled_line(format!(" {plan} {name:<4} {bar} {shown:>9} {verdict}"), role)
-}
-
-/// Returns a bar up to a figure, followed by the part of the range above the figure.
-fn range_bar(figure: f64, range: TrueValueRange, most: f64, cells: usize) -> String {
-    let per_cell = if most > 0.0 { most / cells as f64 } else { 1.0 };
-    let cell = |at: usize| {
-        let value = (at as f64 + 0.5) * per_cell;
-        match (value <= figure, range.position_of(value)) {
-            (true, RangePosition::InRange) => '▓',
-            (true, _) => '█',
-            (false, RangePosition::InRange) => '▒',
-            (false, _) => ' ',
-        }
-    };
-    (0..cells).map(cell).collect()
-}
-
-/// Compares a plan with a requirement. Returns a text and its display role.
-fn fit_verdict(fit: &Fit, plan: Plan, concern: FitCriterion) -> (String, Role) {
-    if fit.plans[plan].list_price <= 0.0 {
-        return ("no price".to_owned(), Role::Dim);
-    }
+/// Compares a plan with a requirement.
+fn fit_verdict(fit: &Fit, plan: Plan, concern: FitCriterion) -> String {
     if let Some(missing) = fit.certain_gap(plan, concern) {
         return match concern {
-            FitCriterion::Price => (format!("over {}", price_to_cents(missing)), Role::Bad),
-            _ => (format!("short {missing:.4}"), Role::Bad),
+            FitCriterion::Price => format!("over {}", price_to_cents(missing)),
+            FitCriterion::Quality => format!("short {}", format_quality(missing)),
+            FitCriterion::Quota => format!("short {}", compact_number(missing.ceil())),
         };
     }
-    match fit.position(plan, concern) {
-        None => ("negotiated".to_owned(), Role::Dim),
-        Some(RangePosition::InRange) => ("in range".to_owned(), Role::Text),
-        Some(_) if concern == FitCriterion::Price => ("below budget".to_owned(), Role::Good),
-        Some(_) => ("enough".to_owned(), Role::Good),
-    }
+    let verdict = match fit.position(plan, concern) {
+        None => "negotiated",
+        Some(RangePosition::InRange) => "in range",
+        Some(_) if concern == FitCriterion::Price => "below budget",
+        Some(_) => "enough",
+    };
+    verdict.to_owned()
 }
 
 #[cfg(test)]
@@ -209,11 +210,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn range_bar_marks_the_reached_part() {
-        let range = TrueValueRange { least: 0.2, most: 0.8 };
-        assert_eq!(range_bar(0.1, range, 1.0, 10), "█ ▒▒▒▒▒▒  ");
-        assert_eq!(range_bar(0.5, range, 1.0, 10), "██▓▓▓▒▒▒  ");
-        assert_eq!(range_bar(1.0, range, 1.0, 10), "██▓▓▓▓▓▓██");
-        assert_eq!(range_bar(0.0, TrueValueRange { least: 0.0, most: 0.0 }, 0.0, 3), "   ");
+    fn chart_takes_the_rows_that_the_text_leaves_and_at_least_half() {
+        let area = |height| Rect::new(0, 0, 60, height);
+        assert_eq!((chart_rows(area(9), 5), chart_rows(area(12), 20)), (0, 6));
+        assert_eq!((chart_rows(area(40), 10), chart_rows(Rect::new(0, 0, 20, 40), 10)), (30, 0));
     }
 }

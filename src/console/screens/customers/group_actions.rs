@@ -12,7 +12,6 @@ use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Tools that have a setting for the group, and labels of these settings.
 const GROUP_TOOLS: [(ToolId, &str); 6] = [
@@ -53,8 +52,11 @@ impl Pane<Customers> for GroupActionsPane {
         let Some(group) = customers.group(context.company) else { return Vec::new() };
         match action {
             Action::Open => return vec![action_effect(customers.group_state.action, group)],
-            Action::Left => customers.change_group(|open| open.saturating_sub(1), context.company),
-            Action::Right => customers.change_group(|open| open + 1, context.company),
+            Action::Left | Action::Right => {
+                let step = |open: usize| if action == Action::Left { open.saturating_sub(1) } else { open + 1 };
+                customers.change_group(step, context.company);
+                return customers.request_curve(context.company);
+            }
             action => customers.group_state.action = move_index(customers.group_state.action, ACTION_COUNT - 1, action),
         }
         Vec::new()
@@ -72,7 +74,7 @@ impl Pane<Customers> for GroupActionsPane {
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         let choice = customers.group_state.action;
-        let from = first_visible_row(choice, placement.area.height as usize, ACTION_COUNT);
+        let from = canvas.scroll_to_row(placement.area, choice, ACTION_COUNT);
         for (at, row) in (from..ACTION_COUNT).zip(row_rects(placement.area)) {
             let role = match (at == choice, placement.focused) {
                 (true, true) => Role::Selection,

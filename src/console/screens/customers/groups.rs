@@ -19,6 +19,10 @@ impl Pane<Customers> for CustomerGroupsPane {
         Some(&customers.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("customers.groups")
+    }
+
     fn table_mut<'a>(&self, customers: &'a mut Customers) -> Option<&'a mut Table> {
         Some(&mut customers.table)
     }
@@ -36,6 +40,7 @@ impl Pane<Customers> for CustomerGroupsPane {
         if action == Action::Open {
             customers.open_group = customers.table.selected();
             customers.group_state = OpenGroupState::default();
+            return customers.request_curve(context.company);
         } else {
             customers.table.handle_action(action, context.page_rows);
         }

@@ -3,6 +3,7 @@
 mod cohorts;
 mod columns;
 pub mod costs;
+mod group_curve;
 mod facts;
 mod fit;
 mod groups;
@@ -22,13 +23,15 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::cohorts::Cohorts;
 use self::columns::{columns, group_row};
+use self::group_curve::GroupCurve;
 use self::model::CustomerData;
 use self::open_group::OpenGroupState;
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::effect::Effect;
+use crate::tour::CustomersFacts;
 use novamind_database::QueryResult;
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
@@ -87,6 +90,7 @@ pub struct Customers {
     /// Index of the open group in the list of known groups.
     open_group: Option<usize>,
     group_state: OpenGroupState,
+    curve: GroupCurve,
 }
 
 impl Customers {
@@ -98,9 +102,41 @@ impl Customers {
         self.select_open();
     }
 
+    /// Returns the position of the user for the tour, whose example is the first known group.
+    pub fn tour_facts(&self, company: &DisplayedCompany) -> CustomersFacts {
+        let index = |panes: &[CustomersPane], pane| panes.iter().position(|other| *other == pane).unwrap_or(0);
+        let steps = |panes: &[CustomersPane], from, to| {
+            (index(panes, to) + panes.len() - index(panes, from)) % panes.len()
+        };
+        let to_list = steps(&LIST_PANES, self.focus, CustomersPane::Groups);
+        let opened = OpenGroupState::default().focus;
+        let row = |wanted: Option<usize>| {
+            let rows = self.table.visible_rows().iter();
+            rows.enumerate().find(|(_, row)| Some(**row) == wanted).map_or(0, |(at, _)| at as isize)
+        };
+        CustomersFacts {
+            is_group_open: self.open_group.is_some(),
+            panes_to_goal: match self.open_group {
+                Some(_) => steps(&GROUP_PANES, self.group_state.focus, CustomersPane::Fit),
+                None => to_list,
+            },
+            panes_to_fit: steps(&GROUP_PANES, opened, CustomersPane::Fit),
+            panes_to_list: to_list,
+            rows_to_example: row(Some(0)) - row(self.table.selected()),
+            columns_to_cancellations: columns::cancellations_column(company) as isize
+                - self.table.selected_column() as isize,
+        }
+    }
+
     /// Returns the open group, or the group selected in the list.
     fn group(&self, company: &DisplayedCompany) -> Option<Group> {
         company.observation.known_groups.get(self.open_group.or(self.table.selected())?).copied()
+    }
+
+    /// Requests the curve of the open group if it is missing or outdated.
+    fn request_curve(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let group = self.open_group.and_then(|open| company.observation.known_groups.get(open).copied());
+        group.map_or_else(Vec::new, |group| self.curve.request(group))
     }
 
     fn change_group(&mut self, other: impl Fn(usize) -> usize, company: &DisplayedCompany) {
@@ -155,7 +191,17 @@ impl ScreenState for Customers {
     }
 
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.curve.set_outdated();
         self.rebuild_tables(context.company);
+    }
+
+    fn request_data(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
+        self.request_curve(context.company)
+    }
+
+    fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.curve.take_answer();
+        Vec::new()
     }
 
     fn open_item_title(&self, context: &ScreenContext<'_>) -> Option<String> {
@@ -226,16 +272,13 @@ impl PaneScreen for Customers {
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
         draw_pane(self, CustomersPane::Groups, canvas, table, context);
-        // Both panes are shown if they fit, otherwise only the focused pane.
         if channels.width >= 150 {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [left, right] = Layout::horizontal(halves).areas(channels);
             draw_pane(self, CustomersPane::Channels, canvas, left, context);
             draw_pane(self, CustomersPane::Costs, canvas, right, context);
-        } else if self.focus == CustomersPane::Costs {
-            draw_pane(self, CustomersPane::Costs, canvas, channels, context);
         } else {
-            draw_pane(self, CustomersPane::Channels, canvas, channels, context);
+            draw_stack(self, &[CustomersPane::Channels, CustomersPane::Costs], canvas, channels, context);
         }
         if rest > 0 && self.table.selected().is_some() {
             open_group::draw_preview(self, canvas, preview, context);

@@ -9,7 +9,7 @@ use super::quality::QualityByWeekPane;
 use super::group_actions::ACTION_COUNT;
 use super::{Customers, CustomersPane};
 use crate::context::ScreenContext;
-use crate::screens::panes::{Pane, PanePlacement, draw_pane};
+use crate::screens::panes::{Pane, PanePlacement, draw_pane, draw_stack};
 use novamind_tui::canvas::Canvas;
 
 #[derive(Debug)]
@@ -40,12 +40,11 @@ const FIT_ROWS: u16 = 24;
 
 pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     use CustomersPane::{Cohorts, Facts, Fit, Quality, Study, Actions, Weeks};
-    let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, context);
     let split = |area: Rect, first: u16| {
         Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
     };
     let columns = |constraints: [Constraint; 3]| Layout::horizontal(constraints).areas::<3>(area);
-    let (ways, focus) = (ACTION_COUNT as u16 + 2, customers.group_state.focus);
+    let ways = ACTION_COUNT as u16 + 2;
     if area.width >= 150 && area.height >= 30 {
         let [left, middle, right] =
             columns([Constraint::Percentage(40), Constraint::Min(0), Constraint::Length(44)]);
@@ -53,35 +52,30 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
         let [quality, rest] = split(middle, area.height / 3);
         let [cohorts, study] = split(rest, rest.height / 2);
         let [facts, go] = split(right, area.height - ways);
-        for (area, pane) in [(fit, Fit), (weeks, Weeks), (quality, Quality), (cohorts, Cohorts)] {
-            draw(area, pane);
-        }
-        for (area, pane) in [(study, Study), (facts, Facts), (go, Actions)] {
-            draw(area, pane);
+        let upper = [(fit, Fit), (weeks, Weeks), (quality, Quality), (cohorts, Cohorts)];
+        for (area, pane) in upper.into_iter().chain([(study, Study), (facts, Facts), (go, Actions)]) {
+            draw_pane(customers, pane, canvas, area, context);
         }
     } else if area.width >= 104 && area.height >= 30 {
         let [left, _, right] = columns([Constraint::Min(0), Constraint::Length(0), Constraint::Length(44)]);
         let [above, below] = split(left, FIT_ROWS.min(area.height * 3 / 5));
         let [facts, go] = split(right, area.height - ways);
-        draw(above, if focus == Weeks { Weeks } else { Fit });
-        draw(below, if matches!(focus, Study | Cohorts) { focus } else { Quality });
-        draw(facts, Facts);
-        draw(go, Actions);
-    } else if matches!(focus, Cohorts | Fit | Quality) {
-        // The cohort table, bars and curves need the full width.
-        draw(area, focus);
+        draw_stack(customers, &[Fit, Weeks], canvas, above, context);
+        draw_stack(customers, &[Quality, Cohorts, Study], canvas, below, context);
+        draw_pane(customers, Facts, canvas, facts, context);
+        draw_pane(customers, Actions, canvas, go, context);
     } else if area.width < 70 {
         // The window is too narrow for two texts next to each other.
         let [above, below] = split(area, area.height.saturating_sub(6));
-        draw(above, if matches!(focus, Study | Weeks) { focus } else { Fit });
-        draw(below, if focus == Facts { Facts } else { Actions });
+        draw_stack(customers, &[Fit, Quality, Weeks, Cohorts, Study], canvas, above, context);
+        draw_stack(customers, &[Actions, Facts], canvas, below, context);
     } else {
         let [left, _, right] =
             columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
         let [facts, go] = split(right, area.height.saturating_sub(ways));
-        draw(left, if matches!(focus, Study | Weeks) { focus } else { Fit });
-        draw(facts, Facts);
-        draw(go, Actions);
+        draw_stack(customers, &[Fit, Quality, Weeks, Cohorts, Study], canvas, left, context);
+        draw_pane(customers, Facts, canvas, facts, context);
+        draw_pane(customers, Actions, canvas, go, context);
     }
 }
 

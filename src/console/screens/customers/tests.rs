@@ -206,12 +206,12 @@ fn all_columns_are_reachable_and_marked() {
         assert!(wide.contains(head), "{head} in\n{wide}");
     }
     let narrow = screen_text(&screen, &company, 80, 21);
-    assert!(narrow.contains('›') && !narrow.contains("dev/day"), "{narrow}");
-    for _ in 0..14 {
+    assert!(narrow.contains(" →") && !narrow.contains("dev/day"), "{narrow}");
+    for _ in 0..15 {
         handle_action(&mut screen, Action::Right, &company);
     }
     let moved = screen_text(&screen, &company, 80, 21);
-    assert!(moved.contains("dev/day") && moved.contains("group") && moved.contains('‹'), "{moved}");
+    assert!(moved.contains("dev/day") && moved.contains("group") && moved.contains('←'), "{moved}");
 }
 
 #[test]
@@ -221,4 +221,38 @@ fn small_window_shows_groups_and_channels() {
     for words in ["group", "E3", "referral_program", "Leads per $1,000", "content_marketing"] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
+}
+
+#[test]
+fn fit_shows_the_curve_and_both_conversions_of_the_open_group() {
+    use novamind_insight::CurveExplorer;
+    use novamind_worker::page_questions::EstimatedCurveQuestion;
+
+    let (session, company, mut screen) = played_screen::<Customers>(4);
+    let asked = handle_action(&mut screen, Action::Open, &company);
+    let question = crate::test_kit::only_question::<EstimatedCurveQuestion>(&asked);
+    assert_eq!(question.0.id(), "S1");
+    assert!(screen_text(&screen, &company, 120, 37).contains("asking 2000 sampled leads"));
+    screen.curve.set_answer(CurveExplorer::from_estimates(&session, group("S1")));
+    screen.set_focused_pane(CustomersPane::Fit);
+    for (width, height) in [(60, 12), (80, 20), (120, 37), (200, 57)] {
+        let text = screen_text(&screen, &company, width, height);
+        for words in ["estimated conversion ", "half"] {
+            assert!(text.contains(words), "{words} at {width}×{height} in\n{text}");
+        }
+    }
+    let measured = company.fit(group("S1")).expect("a fit").measured;
+    let text = screen_text(&screen, &company, 200, 57);
+    for words in [measured.describe().split(" in weeks").next().expect("words"), "The estimate leaves out", "quality required"] {
+        assert!(text.contains(words), "{words} in\n{text}");
+    }
+    // The curve is requested again only if the company has changed or another group is opened.
+    let keys = crate::keys::KeyBindings::bundled();
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    assert!(screen.request_data(&context).is_empty());
+    screen.on_company_change(&context);
+    assert_eq!(screen.request_data(&context).len(), 1);
+    screen.set_focused_pane(CustomersPane::Actions);
+    let next = handle_action(&mut screen, Action::Right, &company);
+    assert_eq!(crate::test_kit::only_question::<EstimatedCurveQuestion>(&next).0.id(), "S2");
 }

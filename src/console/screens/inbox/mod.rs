@@ -1,28 +1,28 @@
 //! Negotiations with enterprises: waiting threads, messages, and offers to one enterprise or to several at once.
 
 mod estimate;
-mod thread_list;
 mod model;
 mod offer;
 mod offer_pane;
 mod outcomes;
-mod sending;
 mod preview;
 mod rules_form;
+mod sending;
 #[cfg(test)]
 mod tests;
 mod thread;
+mod thread_list;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use self::estimate::rules_market;
-use self::thread_list::{columns, thread_row};
-use self::model::{ThreadStore, ThreadState, Thread};
-use self::offer::{OfferDraft, MAX_TERMS, PlanChoice};
+use self::estimate::plan_economics;
+use self::model::{Thread, ThreadState, ThreadStore};
+use self::offer::{MAX_TERMS, OfferDraft, PlanChoice};
 use self::outcomes::FirstOfferOutcomes;
 use self::rules_form::RulesForm;
+use self::thread_list::{columns, thread_row};
 use super::ScreenState;
 use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
@@ -30,12 +30,12 @@ use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
 use novamind_base::formatting::parse_number;
 use novamind_database::QueryResult;
-use novamind_rules::{ThreadContext, SeatUsage};
+use novamind_rules::{MIN_TURNS_PARAMETER, SeatUsage, ThreadContext};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::Table;
-use novamind_tui::widgets::field::{TextField, NUMBER_HINT};
+use novamind_tui::widgets::field::{NUMBER_HINT, TextField};
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
@@ -143,7 +143,11 @@ pub struct Inbox {
 impl Inbox {
     fn update_threads(&mut self, company: &DisplayedCompany) {
         let place = self.list_position();
-        self.threads.merge_waiting(self.waiting_threads(company), &company.company_names);
+        // The texts of the tools, which agents read, do not state the number of turns.
+        let is_shown = !company.is_baseline() || !company.is_running();
+        let min_turns = company.numbers.value(MIN_TURNS_PARAMETER).filter(|_| is_shown);
+        let waiting = self.waiting_threads(company);
+        self.threads.merge_waiting(waiting, &company.company_names, min_turns.map(|turns| turns as u32));
         let threads = self.threads.threads.iter();
         let open: BTreeSet<u32> =
             threads.filter(|thread| thread.state.is_open()).map(|thread| thread.number).collect();
@@ -175,7 +179,7 @@ impl Inbox {
 
     /// Returns the waiting threads with all fields that rules use.
     fn waiting_threads(&self, company: &DisplayedCompany) -> Vec<ThreadContext> {
-        let market = rules_market(company, &self.usage);
+        let market = plan_economics(company, &self.usage);
         let waiting = company.observation.waiting.iter();
         waiting.map(|waiting_thread| ThreadContext::new(waiting_thread, &self.asked_plans, &market)).collect()
     }
@@ -232,6 +236,21 @@ impl Inbox {
         }
     }
 
+    /// Returns the unsent offers to waiting threads as text, by thread. The offer to marked threads is one for each.
+    pub fn draft_offers(&self, company: &DisplayedCompany) -> BTreeMap<u32, String> {
+        let marked = self.bulk_offer.iter().flat_map(|offer| self.marked.iter().map(move |number| (number, offer)));
+        let all: BTreeMap<u32, &OfferDraft> =
+            self.drafts.iter().chain(marked).map(|(number, offer)| (*number, offer)).collect();
+        let is_waiting = |number: &u32| company.observation.waiting.iter().any(|waiting| waiting.thread == *number);
+        all.into_iter().filter(|(number, _)| is_waiting(number)).map(|(number, offer)| (number, offer.to_text())).collect()
+    }
+
+    /// Restores unsent offers. Ignores texts that are not offers.
+    pub fn restore_offers(&mut self, offers: &BTreeMap<u32, String>) {
+        let parsed = offers.iter().filter_map(|(number, text)| Some((*number, OfferDraft::parse(text)?)));
+        self.drafts.extend(parsed);
+    }
+
     fn edit_term(&mut self, change: impl FnOnce(&mut offer::OfferTerm)) {
         let mut offer = self.current_offer();
         change(&mut offer.0[self.selected_term.min(MAX_TERMS - 1)]);
@@ -268,8 +287,11 @@ impl Inbox {
             let thread = self.threads.threads.get(*self.rows.get(*row)?)?;
             thread.state.is_open().then_some(thread.number)
         };
-        let rows: Vec<usize> =
-            if all { self.table.visible_rows().to_vec() } else { self.table.selected().into_iter().collect() };
+        let rows: Vec<usize> = if all {
+            self.table.visible_rows().to_vec()
+        } else {
+            self.table.selected().into_iter().collect()
+        };
         let numbers: Vec<u32> = rows.iter().filter_map(open).collect();
         let unmark = numbers.iter().all(|number| self.marked.contains(number));
         for number in numbers {
@@ -288,7 +310,8 @@ impl Inbox {
 
     fn cycle_basis(&mut self, lists: [f64; 3]) {
         let term = self.current_offer().0[self.selected_term.min(MAX_TERMS - 1)];
-        let price = self.selected_thread().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
+        let price =
+            self.selected_thread().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
         self.edit_term(|term| term.cycle_basis(price));
     }
 }
@@ -445,7 +468,9 @@ impl PaneScreen for Inbox {
                 let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
                 return Some(effect.into_iter().collect());
             }
-            Action::InboxSql => return Some(self.selected_thread().map(sending::open_thread_query).into_iter().collect()),
+            Action::InboxSql => {
+                return Some(self.selected_thread().map(sending::open_thread_query).into_iter().collect());
+            }
             _ => return None,
         }
         Some(Vec::new())

@@ -2,28 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use novamind_database::{QueryResult, number_at, text_at};
-use novamind_rules::{ThreadContext, parse_offer, first_plan_in};
+use novamind_database::{Cell, QueryResult, number_at, text_at};
+use novamind_rules::{LossCause, LostThread, Subscription, ThreadContext, Turn, first_plan_in};
 use novamind_session::EnterpriseNames;
 use novamind_session::identifiers::Plan;
 use novamind_worker::screen_queries::Reading;
 
-#[derive(Debug, Clone, PartialEq)]
-pub struct ThreadMessage {
-    pub number: u32,
-    /// Sender of the message: `customer`, `agent` or `system`.
-    pub sender: String,
-    /// Text of the message, which is empty for offers.
-    pub text: String,
-    /// Plans and prices that the player offered.
-    pub offers: Vec<(Plan, f64)>,
-    pub price: Option<f64>,
-    pub day: u32,
-    /// Reason for closing the thread, which is empty if the message did not close the thread.
-    pub closing_reason: String,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ThreadState {
     /// The enterprise waits for the player, with this number of days left.
     WaitingForPlayer(u32),
@@ -32,9 +17,15 @@ pub enum ThreadState {
     Accepted,
     /// The player ended the thread.
     Rejected,
-    /// The thread ended without a closing message. The subscription shows that the enterprise left.
-    #[default]
-    Lost,
+    /// The thread ended without a closing message. The subscription shows that the enterprise left, and the turns show
+    /// who let the thread end.
+    Lost(Option<LossCause>),
+}
+
+impl Default for ThreadState {
+    fn default() -> ThreadState {
+        ThreadState::Lost(None)
+    }
 }
 
 impl ThreadState {
@@ -49,7 +40,9 @@ impl ThreadState {
             ThreadState::WaitingForCustomer => "awaiting reply",
             ThreadState::Accepted => "agreed",
             ThreadState::Rejected => "ended by you",
-            ThreadState::Lost => "lost",
+            ThreadState::Lost(Some(LossCause::Declined)) => "declined",
+            ThreadState::Lost(Some(LossCause::Unanswered)) => "not answered",
+            ThreadState::Lost(None) => "lost",
         }
     }
 }
@@ -66,9 +59,11 @@ pub struct Thread {
     pub seats: f64,
     pub state: ThreadState,
     /// Messages of the thread, the oldest first.
-    pub messages: Vec<ThreadMessage>,
+    pub messages: Vec<Turn>,
     /// Fields that rules can use, while the thread waits for the player.
     pub waiting_thread: Option<ThreadContext>,
+    /// How the thread was lost, if it was lost.
+    pub loss: Option<LostThread>,
 }
 
 impl Thread {
@@ -111,21 +106,6 @@ impl Thread {
         }
     }
 
-    /// Describes how a lost thread ended. Returns `None` if the thread is not lost.
-    pub fn lost_reason(&self) -> Option<String> {
-        if self.state != ThreadState::Lost {
-            return None;
-        }
-        let last = self.messages.last()?;
-        Some(match last.sender.as_str() {
-            "agent" => {
-                let offers = super::offer::format_offers(&last.offers);
-                format!("{} declined {offers} of day {} without giving a reason.", self.customer_label(), last.day)
-            }
-            _ => format!("{} received no answer to the message of day {}.", self.customer_label(), last.day),
-        })
-    }
-
     /// Returns the player's last offer.
     pub fn last_offer(&self) -> &[(Plan, f64)] {
         if let Some(thread_context) = &self.waiting_thread {
@@ -149,6 +129,19 @@ pub struct Enterprise {
     pub price: f64,
     /// Day on which the enterprise subscribed or asked for an offer.
     pub since_day: u32,
+    /// Day on which the subscription ended.
+    pub end_day: Option<u32>,
+}
+
+impl Enterprise {
+    fn subscription(&self) -> Subscription {
+        Subscription {
+            status: self.status.clone(),
+            plan: Plan::parse(&self.plan),
+            price: self.price,
+            end_day: self.end_day,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Default)]
@@ -172,18 +165,31 @@ impl ThreadStore {
         self.enterprises.get(&customer)
     }
 
-    /// Merges the threads that wait for the player into the list, and sorts the list.
-    pub fn merge_waiting(&mut self, waiting: Vec<ThreadContext>, names: &EnterpriseNames) {
+    /// Merges the threads that wait for the player into the list, and sorts the list. For `min_turns`, see
+    /// [`LostThread::from_turns`].
+    pub fn merge_waiting(
+        &mut self,
+        waiting: Vec<ThreadContext>,
+        names: &EnterpriseNames,
+        min_turns: Option<u32>,
+    ) {
         let mut left = self.recorded.clone();
-        let mut threads: Vec<Thread> = waiting.into_iter().map(|thread_context| thread_from_waiting(thread_context, &mut left)).collect();
+        let mut threads: Vec<Thread> = waiting
+            .into_iter()
+            .map(|thread_context| thread_from_waiting(thread_context, &mut left))
+            .collect();
         // Only the newest thread of an enterprise can be open.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
             let firm = self.enterprises.get(&thread.customer);
             thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
-            thread.state = closed_or_waiting_state(&thread, firm);
+            let subscription = firm.map(Enterprise::subscription);
+            thread.loss = subscription.and_then(|subscription| {
+                LostThread::from_turns(&thread.messages, &thread.kind, &subscription, min_turns)
+            });
+            thread.state = closed_or_waiting_state(&thread);
             if !newest.insert(thread.customer) && thread.state == ThreadState::WaitingForCustomer {
-                thread.state = ThreadState::Lost;
+                thread.state = ThreadState::Lost(None);
             }
             threads.push(thread);
         }
@@ -191,6 +197,9 @@ impl ThreadStore {
             thread.name = names.name(thread.customer);
             for turn in &mut thread.messages {
                 turn.text = names.insert_names(&turn.text);
+            }
+            for fact in thread.loss.iter_mut().flat_map(|loss| &mut loss.facts) {
+                *fact = names.insert_names(fact);
             }
         }
         self.threads = threads;
@@ -210,18 +219,19 @@ fn thread_from_waiting(asking: ThreadContext, read: &mut BTreeMap<u32, Thread>) 
         state: ThreadState::WaitingForPlayer(waiting.days_left),
         messages: known.messages,
         waiting_thread: Some(asking),
+        loss: None,
     }
 }
 
 /// Returns the state of a thread that does not wait for the player.
-fn closed_or_waiting_state(thread: &Thread, firm: Option<&Enterprise>) -> ThreadState {
-    let Some(last) = thread.messages.last() else { return ThreadState::Lost };
-    let there = firm.is_none_or(|firm| matches!(firm.status.as_str(), "lead" | "subscribed"));
-    match (last.closing_reason.as_str(), last.sender.as_str()) {
+fn closed_or_waiting_state(thread: &Thread) -> ThreadState {
+    let Some(last) = thread.messages.last() else { return ThreadState::Lost(None) };
+    match (last.closing_reason.as_str(), &thread.loss) {
         ("accepted", _) => ThreadState::Accepted,
         ("agent_rejected", _) => ThreadState::Rejected,
-        (_, "agent") if there => ThreadState::WaitingForCustomer,
-        _ => ThreadState::Lost,
+        (_, Some(loss)) => ThreadState::Lost(Some(loss.cause)),
+        (_, None) if last.sender == "agent" => ThreadState::WaitingForCustomer,
+        (_, None) => ThreadState::Lost(None),
     }
 }
 
@@ -231,27 +241,18 @@ fn parse_threads(rows: &QueryResult) -> BTreeMap<u32, Thread> {
     for row in rows.rows.iter().rev() {
         let number = number_at(row, 0) as u32;
         let thread = threads.entry(number).or_default();
-        let (offers, price) = parse_offer(text_at(row, 6));
         thread.number = number;
         thread.customer = number_at(row, 1) as u32;
         thread.kind = text_at(row, 2).to_owned();
         // Rows of the player contain a seat count of 1 instead of the enterprise's seat count.
         thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
-        thread.messages.push(ThreadMessage {
-            number: number_at(row, 3) as u32,
-            sender: text_at(row, 4).to_owned(),
-            text: text_at(row, 5).to_owned(),
-            offers,
-            price,
-            day: number_at(row, 7) as u32,
-            closing_reason: text_at(row, 9).to_owned(),
-        });
+        thread.messages.push(Turn::from_row(row));
     }
     threads
 }
 
 fn parse_enterprises(rows: &QueryResult) -> BTreeMap<u32, Enterprise> {
-    let firm = |row: &Vec<novamind_database::Cell>| {
+    let firm = |row: &Vec<Cell>| {
         let text = |at: usize| text_at(row, at).to_owned();
         let trade = format!("{} {}", text_at(row, 3), text_at(row, 2)).trim().to_owned();
         let firm = Enterprise {
@@ -262,6 +263,10 @@ fn parse_enterprises(rows: &QueryResult) -> BTreeMap<u32, Enterprise> {
             plan: text(8),
             price: number_at(row, 9),
             since_day: number_at(row, 10) as u32,
+            end_day: row
+                .get(11)
+                .filter(|cell| !matches!(cell, Cell::Null))
+                .map(|_| number_at(row, 11) as u32),
         };
         (number_at(row, 0) as u32, firm)
     };

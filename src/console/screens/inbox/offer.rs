@@ -7,6 +7,8 @@ use novamind_session::identifiers::Plan;
 /// Maximum number of terms in one offer.
 pub const MAX_TERMS: usize = 3;
 
+const TERM_SEPARATOR: &str = " + ";
+
 /// The plan of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlanChoice {
@@ -45,7 +47,8 @@ pub struct OfferTerm {
     pub value: f64,
 }
 
-const UNUSED_TERM: OfferTerm = OfferTerm { plan: PlanChoice::Unused, basis: PriceBasis::ListPrice, value: 100.0 };
+const UNUSED_TERM: OfferTerm =
+    OfferTerm { plan: PlanChoice::Unused, basis: PriceBasis::ListPrice, value: 100.0 };
 
 impl OfferTerm {
     pub fn plan_label(&self) -> &'static str {
@@ -54,6 +57,21 @@ impl OfferTerm {
             PlanChoice::Fixed(plan) => plan.id(),
             PlanChoice::NamedByCustomer => "theirs",
         }
+    }
+
+    /// Returns the term as text: plan, value and unit, for example `B 90 % list`.
+    fn to_text(self) -> String {
+        format!("{} {} {}", self.plan_label(), self.value, self.basis.label())
+    }
+
+    fn parse(text: &str) -> Option<OfferTerm> {
+        let mut words = text.splitn(3, ' ');
+        let (plan, value, unit) = (words.next()?, words.next()?.parse().ok()?, words.next()?);
+        let plans = Plan::ALL.map(PlanChoice::Fixed).into_iter().chain([PlanChoice::Unused, PlanChoice::NamedByCustomer]);
+        let plan = plans.into_iter().find(|choice| OfferTerm { plan: *choice, ..UNUSED_TERM }.plan_label() == plan)?;
+        let bases = [PriceBasis::Dollars, PriceBasis::ListPrice, PriceBasis::AskedPrice];
+        let basis = bases.into_iter().find(|basis| basis.label() == unit)?;
+        Some(OfferTerm { plan, basis, value })
     }
 
     /// Returns the value of the term as text for the input field.
@@ -107,9 +125,28 @@ impl OfferDraft {
         OfferDraft([OfferTerm { plan: PlanChoice::Fixed(Plan::B), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
     }
 
+    /// Returns the used terms as text. [`OfferDraft::parse`] reads the text.
+    pub fn to_text(&self) -> String {
+        let used = self.0.iter().filter(|term| term.plan != PlanChoice::Unused);
+        used.map(|term| term.to_text()).collect::<Vec<_>>().join(TERM_SEPARATOR)
+    }
+
+    /// Parses the text of an offer. Returns `None` if the text is not an offer.
+    pub fn parse(text: &str) -> Option<OfferDraft> {
+        let mut offer = OfferDraft([UNUSED_TERM; MAX_TERMS]);
+        for (at, term) in text.split(TERM_SEPARATOR).enumerate() {
+            *offer.0.get_mut(at)? = OfferTerm::parse(term)?;
+        }
+        Some(offer)
+    }
+
     /// Returns an offer of the plan that the enterprise named, at its asked price.
     pub fn at_asked_price() -> OfferDraft {
-        OfferDraft([OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 }, UNUSED_TERM, UNUSED_TERM])
+        OfferDraft([
+            OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 },
+            UNUSED_TERM,
+            UNUSED_TERM,
+        ])
     }
 
     /// Returns the initial offer to an enterprise: the asked price, otherwise the list price of the plan that the
@@ -117,7 +154,11 @@ impl OfferDraft {
     pub fn initial_for(thread: &Thread) -> OfferDraft {
         match (thread.asked_plan(), thread.asked_price()) {
             (Some(_), Some(_)) => OfferDraft::at_asked_price(),
-            (Some(plan), None) => OfferDraft([OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM]),
+            (Some(plan), None) => OfferDraft([
+                OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM },
+                UNUSED_TERM,
+                UNUSED_TERM,
+            ]),
             (None, _) => OfferDraft::at_list_price(),
         }
     }
@@ -144,21 +185,32 @@ impl OfferDraft {
     }
 }
 
-/// Formats an offer in short form: `B $38.00 · C $61.00`.
-pub fn format_offers(offers: &[(Plan, f64)]) -> String {
-    let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped_number(*price, 2));
-    offers.iter().map(one).collect::<Vec<_>>().join(" · ")
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::model::ThreadMessage;
     use super::*;
+    use novamind_rules::Turn;
 
     const LIST_PRICES: [f64; 3] = [14.0, 32.0, 0.0];
 
+    #[test]
+    fn offer_is_restored_from_its_text() {
+        let term = |plan, basis, value| OfferTerm { plan, basis, value };
+        let offer = OfferDraft([
+            term(PlanChoice::Fixed(Plan::C), PriceBasis::Dollars, 38.25),
+            term(PlanChoice::NamedByCustomer, PriceBasis::AskedPrice, 90.0),
+            UNUSED_TERM,
+        ]);
+        assert_eq!(offer.to_text(), "C 38.25 $ + theirs 90 % ask");
+        for offer in [offer, OfferDraft::at_list_price(), OfferDraft::at_asked_price()] {
+            assert_eq!(OfferDraft::parse(&offer.to_text()), Some(offer));
+        }
+        for text in ["", "B", "B x % list", "D 1 $", "A 1 $ + A 1 $ + A 1 $ + A 1 $"] {
+            assert_eq!(OfferDraft::parse(text), None, "{text}");
+        }
+    }
+
     fn waiting_thread() -> Thread {
-        let turn = ThreadMessage {
+        let turn = Turn {
             number: 2,
             sender: "customer".to_owned(),
             text: "At $20.01 for plan A".to_owned(),
@@ -178,7 +230,8 @@ mod tests {
         assert_eq!(OfferDraft::at_list_price().resolve(&silent, LIST_PRICES), Ok(vec![(Plan::B, 32.0)]));
         let mut offer = OfferDraft::at_list_price();
         offer.0[0].value = 90.0;
-        offer.0[1] = OfferTerm { plan: PlanChoice::Fixed(Plan::C), basis: PriceBasis::AskedPrice, value: 150.0 };
+        offer.0[1] =
+            OfferTerm { plan: PlanChoice::Fixed(Plan::C), basis: PriceBasis::AskedPrice, value: 150.0 };
         assert_eq!(offer.resolve(&asking, LIST_PRICES), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
         assert_eq!(
             offer.resolve(&silent, LIST_PRICES),
@@ -187,7 +240,11 @@ mod tests {
         );
         offer.0[2] = OfferTerm { plan: PlanChoice::Fixed(Plan::C), ..UNUSED_TERM };
         assert!(offer.resolve(&asking, LIST_PRICES).is_err_and(|why| why.contains("plan C would be free")));
-        assert!(OfferDraft([UNUSED_TERM; 3]).resolve(&asking, LIST_PRICES).is_err_and(|why| why.contains("no plan")));
+        assert!(
+            OfferDraft([UNUSED_TERM; 3])
+                .resolve(&asking, LIST_PRICES)
+                .is_err_and(|why| why.contains("no plan"))
+        );
     }
 
     #[test]

@@ -154,6 +154,10 @@ impl Pane<Inbox> for OutcomesPane {
         inbox.outcomes.as_ref().map(|offer_outcomes| &offer_outcomes.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("inbox.outcomes")
+    }
+
     fn table_mut<'a>(&self, inbox: &'a mut Inbox) -> Option<&'a mut Table> {
         inbox.outcomes.as_mut().map(|offer_outcomes| &mut offer_outcomes.table)
     }

@@ -3,11 +3,11 @@
 use ratatui::layout::Rect;
 
 use super::Inbox;
-use super::offer::format_offers;
 use super::sending::{PlannedOffer, max_monthly_revenue};
 use crate::context::ScreenContext;
 use crate::screens::panes::{PaneBorder, PanePlacement};
-use novamind_base::formatting::{dollars_and_cents, dollars};
+use novamind_base::formatting::{dollars, dollars_and_cents};
+use novamind_rules::format_offer_lines;
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::theme::Role;
 
@@ -51,7 +51,7 @@ fn draw_planned_offer(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Pla
     };
     let value = format!("{}/mo", dollars(max_monthly_revenue(thread, offers)));
     let room = rest.width.saturating_sub(value.len() as u16 + 1);
-    let text = format!("{before} → {}", format_offers(offers));
+    let text = format!("{before} → {}", format_offer_lines(offers));
     // The monthly amount is omitted if the offer would otherwise be cut off.
     if text.chars().count() as u16 <= room {
         canvas.draw_aligned(rest, &value, Role::Strong, Align::Right);

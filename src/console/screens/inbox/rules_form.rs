@@ -4,13 +4,13 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::Value;
 
-use super::estimate::rules_market;
+use super::estimate::plan_economics;
 use super::{Inbox, InboxPane};
 use crate::context::ScreenContext;
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, PanePlacement, draw_pane};
 use novamind_base::formatting::{dollars_and_cents, json_number};
-use novamind_rules::{ThreadContext, RuleBatch, RuleError, RuleOutcome};
+use novamind_rules::{RuleBatch, RuleError, RuleOutcome, ThreadContext};
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, row_rects};
@@ -39,10 +39,15 @@ pub struct RulesForm {
 }
 
 impl RulesForm {
-    /// Opens the editor with the last rules, otherwise with rules from the list prices.
-    pub fn new(before: Option<&str>, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) -> RulesForm {
+    /// Opens the editor with rules.
+    pub fn new(
+        rules: &str,
+        threads: &[ThreadContext],
+        company: &DisplayedCompany,
+        inbox: &Inbox,
+    ) -> RulesForm {
         let mut ruling = RulesForm {
-            field: TextField::with_text(before.map_or_else(|| default_rules(company), str::to_owned)),
+            field: TextField::with_text(rules),
             is_typing: true,
             batch: Err(RuleError { text: String::new(), column: 1 }),
         };
@@ -53,7 +58,7 @@ impl RulesForm {
     /// Applies the rules to the waiting threads again.
     pub fn evaluate(&mut self, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) {
         self.batch = novamind_rules::parse(self.field.text())
-            .map(|rules| RuleBatch::new(rules, threads.to_vec(), &rules_market(company, &inbox.usage)));
+            .map(|rules| RuleBatch::new(rules, threads.to_vec(), &plan_economics(company, &inbox.usage)));
     }
 
     /// Returns the outcomes of threads that match a rule.
@@ -72,11 +77,17 @@ pub fn draw_small_layout(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, con
 
 impl Inbox {
     pub(super) fn open_rules(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let rules = self.last_rules.clone().unwrap_or_else(|| default_rules(company));
+        self.show_rules(&rules, company)
+    }
+
+    /// Opens rules with their preview.
+    pub fn show_rules(&mut self, rules: &str, company: &DisplayedCompany) -> Vec<Effect> {
         let threads = self.waiting_threads(company);
         if threads.is_empty() {
             return vec![Effect::ShowError("No thread is waiting for an answer".to_owned())];
         }
-        self.rules_form = Some(RulesForm::new(self.last_rules.as_deref(), &threads, company, self));
+        self.rules_form = Some(RulesForm::new(rules, &threads, company, self));
         self.focus = InboxPane::Offer;
         self.scroll = 0;
         Vec::new()
@@ -129,7 +140,8 @@ impl Inbox {
     /// Returns the tool calls of the last rules for the waiting threads, and a summary. Returns `None` if there are no calls.
     pub fn last_rule_answers(&self, company: &DisplayedCompany) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
-        let batch = RuleBatch::new(rules, self.waiting_threads(company), &rules_market(company, &self.usage));
+        let batch =
+            RuleBatch::new(rules, self.waiting_threads(company), &plan_economics(company, &self.usage));
         let calls = batch.tool_calls();
         (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
     }

@@ -4,17 +4,17 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::model::{ThreadState, Thread};
-use super::offer::format_offers;
+use super::estimate::plan_economics;
+use super::model::{Thread, ThreadState};
 use super::{Inbox, list_prices};
 use crate::context::Figure;
 use crate::effect::Effect;
-use novamind_base::formatting::dollars;
+use novamind_base::formatting::dollars_and_cents;
+use novamind_rules::{OfferLineEconomics, OfferTotals, PlanEconomics};
 use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, ToolId};
 use novamind_tui::text::format_count;
 use novamind_worker::company::DisplayedCompany;
-use novamind_worker::request::Request;
 
 const SEND_TOOL: ToolId = ToolId::SendEnterpriseDeal;
 const REJECT_TOOL: ToolId = ToolId::RejectEnterpriseDeal;
@@ -61,6 +61,15 @@ pub(super) fn max_monthly_revenue(thread: &Thread, offers: &[(Plan, f64)]) -> f6
     offers.iter().map(|(_, price)| price * thread.seats).fold(0.0, f64::max)
 }
 
+/// Returns revenue and costs of each line of an offer.
+pub(super) fn offer_economics(
+    thread: &Thread,
+    offers: &[(Plan, f64)],
+    economics: &PlanEconomics,
+) -> Vec<OfferLineEconomics> {
+    offers.iter().map(|line| economics.offer_line(&thread.group, thread.seats as u32, *line)).collect()
+}
+
 impl Inbox {
     /// Returns the planned offer of every recipient.
     pub(super) fn planned_offers(&self, company: &DisplayedCompany) -> Vec<PlannedOffer<'_>> {
@@ -89,21 +98,10 @@ impl Inbox {
             json!([thread.customer, offers])
         };
         let arguments = json!({ "deals": sent.iter().map(deal).collect::<Vec<_>>() });
-        let text = if sent.len() == 1 {
-            let to = format!("{} ({})", first.customer_label(), format_count(first.seats, "seat"));
-            match first.state {
-                ThreadState::WaitingForPlayer(_) => return vec![Effect::Request(Request::Call { tool: SEND_TOOL, arguments })],
-                ThreadState::WaitingForCustomer => format!(
-                    "{to} has not answered your last offer yet. The new offer, {}, replaces your last offer and uses up another turn.",
-                    format_offers(offers)
-                ),
-                _ => format!(
-                    "The thread with {to} is closed. For a subscriber, {} opens a new thread; if the new thread fails, the subscription ends.",
-                    format_offers(offers)
-                ),
-            }
-        } else {
-            summary(&planned) + " Each offer uses up a turn."
+        let economics = plan_economics(company, &self.usage);
+        let text = match sent.len() {
+            1 => single_offer_text(first, offers, &economics),
+            _ => format!("{}. Each offer uses up a turn.", summary(&planned, &economics)),
         };
         vec![Effect::ConfirmCall { tool: SEND_TOOL, arguments, text }]
     }
@@ -146,8 +144,11 @@ impl Inbox {
         };
         let done: BTreeSet<u32> = results.iter().filter_map(DealResult::sent_customer).collect();
         if offered && self.marked.is_empty() && self.current_offer().is_reusable() {
-            self.last_offer =
-                self.selected_thread().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last_offer.take());
+            self.last_offer = self
+                .selected_thread()
+                .and_then(|thread| self.drafts.get(&thread.number))
+                .cloned()
+                .or(self.last_offer.take());
         }
         let of_done = self.threads.threads.iter().filter(|thread| done.contains(&thread.customer));
         for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {
@@ -164,22 +165,40 @@ impl Inbox {
     }
 }
 
-pub(super) fn summary(planned: &[PlannedOffer<'_>]) -> String {
-    let sent = planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)));
-    let (mut companies, mut seats, mut worth) = (0, 0.0, 0.0);
-    for (thread, offers) in sent {
-        companies += 1;
-        seats += thread.seats;
-        worth += max_monthly_revenue(thread, offers);
+/// Describes an offer before it is sent: each line compared with the list price and the compute cost, the asked price,
+/// and the effect on the thread.
+fn single_offer_text(thread: &Thread, offers: &[(Plan, f64)], economics: &PlanEconomics) -> String {
+    let mut lines = vec![format!(
+        "Offer to {}, {}, {}:",
+        thread.customer_label(),
+        thread.group,
+        format_count(thread.seats, "seat")
+    )];
+    lines.extend(offer_economics(thread, offers, economics).iter().map(OfferLineEconomics::describe));
+    if let Some((plan, price)) = thread.asked_price() {
+        let plan = plan.map_or(String::new(), |plan| format!(" for plan {plan}"));
+        lines.push(format!("It asked {}{plan}.", dollars_and_cents(price)));
     }
-    let skipped = match planned.len() - companies {
-        0 => String::new(),
-        skipped => format!(" {skipped} skipped."),
-    };
-    let noun = if companies == 1 { "enterprise" } else { "enterprises" };
-    format!(
-        "{companies} {noun}, {}, at most {} a month if all agree.{skipped}",
-        format_count(seats, "seat"),
-        dollars(worth)
-    )
+    lines.push(match thread.state {
+        ThreadState::WaitingForPlayer(_) => "The offer uses up a turn and cannot be taken back.".to_owned(),
+        ThreadState::WaitingForCustomer => "It has not answered your last offer yet. The new offer replaces your last \
+                                            offer and uses up another turn."
+            .to_owned(),
+        _ => "Its thread is closed. For a subscriber, the offer opens a new thread; if the new thread fails, the \
+              subscription ends."
+            .to_owned(),
+    });
+    lines.join("\n")
+}
+
+/// Describes the totals of the planned offers in one line.
+pub(super) fn summary(planned: &[PlannedOffer<'_>], economics: &PlanEconomics) -> String {
+    let mut totals = OfferTotals::default();
+    for (thread, offers) in planned {
+        match offers {
+            Ok(offers) => totals.add_offer(&offer_economics(thread, offers, economics), thread.seats as u32),
+            Err(_) => totals.skipped += 1,
+        }
+    }
+    totals.describe(false)
 }

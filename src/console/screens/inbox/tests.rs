@@ -1,18 +1,19 @@
 use serde_json::{Value, json};
 
-use super::model::ThreadMessage;
 use super::outcomes::OutcomesPane;
+use super::sending::offer_economics;
 use super::*;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, new_company, session_with_negotiations, screen_text, loaded_screen, draw_at_all_sizes};
+use crate::test_kit::{
+    draw_at_all_sizes, handle_action, loaded_screen, new_company, screen_text, session_with_negotiations,
+};
 use novamind_database::{Cell as Datum, number_at};
 use novamind_record::trajectory::record::Via;
 use novamind_session::WaitingThread;
 use novamind_session::identifiers::Plan;
 use novamind_tools::{Answer, DealResult, DealResults, ToolId};
 use novamind_tui::chord::Chord;
-use novamind_worker::request::Request;
 
 /// Returns a company with waiting threads. Every third enterprise is a subscriber with an individual price.
 fn crowded_company(threads: u32) -> (DisplayedCompany, QueryResult, QueryResult) {
@@ -65,7 +66,11 @@ fn crowded_company(threads: u32) -> (DisplayedCompany, QueryResult, QueryResult)
         firms.push(firm);
     }
     turns.reverse();
-    (company, QueryResult { rows: turns, ..QueryResult::default() }, QueryResult { rows: firms, ..QueryResult::default() })
+    (
+        company,
+        QueryResult { rows: turns, ..QueryResult::default() },
+        QueryResult { rows: firms, ..QueryResult::default() },
+    )
 }
 
 fn crowded_screen() -> (Inbox, DisplayedCompany) {
@@ -110,9 +115,7 @@ fn press(screen: &mut Inbox, company: &DisplayedCompany, keys: &str) -> (Vec<Eff
 
 fn sent_deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
-        [Effect::ConfirmCall { arguments, .. } | Effect::Request(Request::Call { arguments, .. })] => {
-            arguments["deals"].as_array().expect("deals").clone()
-        }
+        [Effect::ConfirmCall { arguments, .. }] => arguments["deals"].as_array().expect("deals").clone(),
         other => panic!("no tool call: {other:?}"),
     }
 }
@@ -293,7 +296,10 @@ fn empty_inbox_explains_how_leads_arrive() {
     for action in
         [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(THREAD_ACTIONS)
     {
-        assert!(matches!(&handle_action(&mut screen, action, &company)[..], [Effect::ShowError(_)]), "{action:?}");
+        assert!(
+            matches!(&handle_action(&mut screen, action, &company)[..], [Effect::ShowError(_)]),
+            "{action:?}"
+        );
     }
     draw_at_all_sizes(&mut screen, &company);
 }
@@ -305,15 +311,19 @@ fn answered_enterprise_stays_in_the_list() {
     let mut screen: Inbox = loaded_screen(&mut session, &before);
     assert_eq!(screen.rows.len(), before.observation.waiting.len());
     let first = screen.selected_thread().expect("a thread").clone();
-    assert_eq!(first.messages.first().map(|turn: &ThreadMessage| turn.sender.as_str()), Some("system"));
+    assert_eq!(first.messages.first().map(|turn| turn.sender.as_str()), Some("system"));
     assert!(screen.threads.enterprise(first.customer).is_some_and(|firm| firm.group == first.group));
-    let [Effect::EditSql(sql)] = &handle_action(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
+    let [Effect::EditSql(sql)] = &handle_action(&mut screen, Action::InboxSql, &before)[..] else {
+        panic!("no query")
+    };
     assert_eq!(session.query(sql).expect("rows").rows.len(), first.messages.len());
-    let [Effect::Request(Request::Call { tool, arguments })] =
+    let [Effect::ConfirmCall { tool, arguments, text }] =
         &handle_action(&mut screen, Action::SendOffer, &before)[..]
     else {
         panic!("no call")
     };
+    assert!(text.starts_with(&format!("Offer to {}, ", first.customer_label())), "{text}");
+    assert!(text.contains("plan B at $32.00 per seat: ") && text.contains("cannot be taken back"), "{text}");
     session.call(tool, arguments, Via::Form).expect("sent");
     let after = DisplayedCompany::from_session(&session);
     let mut screen: Inbox = loaded_screen(&mut session, &after);
@@ -324,7 +334,9 @@ fn answered_enterprise_stays_in_the_list() {
     assert_eq!(thread.last_offer(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
     let effects = handle_action(&mut screen, Action::SendOffer, &after);
-    assert!(matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses up another turn")));
+    assert!(
+        matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses up another turn"))
+    );
 }
 
 #[test]
@@ -333,7 +345,7 @@ fn offer_shows_margin_and_source_of_usage() {
     let company = DisplayedCompany::from_session(&session);
     let mut screen: Inbox = loaded_screen(&mut session, &company);
     let thread = screen.selected_thread().expect("a thread").clone();
-    let money = estimate::OfferEconomics::for_offer(&screen.usage, &company, &thread, (Plan::B, 32.0));
+    let money = offer_economics(&thread, &[(Plan::B, 32.0)], &plan_economics(&company, &screen.usage))[0];
     let margin = novamind_base::formatting::percent(money.margin().expect("a margin"), 0);
     let compute = novamind_base::formatting::dollars(money.compute_cost.expect("compute"));
     let text = screen_text(&screen, &company, 120, 37);

@@ -2,18 +2,19 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{ThreadState, Thread};
-use super::offer::format_offers;
+use super::model::{Thread, ThreadState};
 use super::{Inbox, InboxPane, InboxView, sending};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use crate::own_commands::ListRows;
+use crate::screens::panes::{Pane, PaneBorder, PanePlacement};
 use novamind_base::formatting::grouped_number;
+use novamind_rules::format_offer_lines;
 use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::text::{format_count, wrap};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_tui::widgets::{Table, TableCell, TableColumn};
 
 /// Width of names in a narrow list. The number next to the name identifies the enterprise.
 const NAME_WIDTH: u16 = 14;
@@ -23,6 +24,10 @@ pub struct ThreadListPane;
 impl Pane<Inbox> for ThreadListPane {
     fn table<'a>(&self, inbox: &'a Inbox) -> Option<&'a Table> {
         Some(&inbox.table)
+    }
+
+    fn table_name(&self) -> Option<&'static str> {
+        Some("inbox.threads")
     }
 
     fn table_mut<'a>(&self, inbox: &'a mut Inbox) -> Option<&'a mut Table> {
@@ -76,6 +81,15 @@ impl Pane<Inbox> for ThreadListPane {
         Vec::new()
     }
 
+    fn list_rows(&self, inbox: &Inbox, all: bool) -> Option<ListRows> {
+        let selected = inbox.table.selected();
+        let is_wanted = |row: usize| match inbox.marked.is_empty() {
+            true => selected == Some(row),
+            false => inbox.thread_in_row(row).is_some_and(|number| inbox.marked.contains(&number)),
+        };
+        Some(ListRows::from_table(&inbox.table, |row| all || is_wanted(row)))
+    }
+
     fn handle_click(&self, inbox: &mut Inbox, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
         inbox.table.select_visible_row(row);
         inbox.scroll = 0;
@@ -102,7 +116,13 @@ impl Pane<Inbox> for ThreadListPane {
         PaneBorder { title, note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    fn draw(
+        &self,
+        inbox: &Inbox,
+        canvas: &mut Canvas<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
+    ) {
         if inbox.rows.is_empty() {
             draw_empty_state(inbox, canvas, placement.area, context);
         } else {
@@ -173,7 +193,9 @@ pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
             };
             TableCell::from_number(f64::from(left), format!("{mark}{left} d")).with_role(role)
         }
-        (_, Some(turn)) => TableCell::from_number(f64::from(turn.day), format!("day {}", turn.day)).with_role(Role::Dim),
+        (_, Some(turn)) => {
+            TableCell::from_number(f64::from(turn.day), format!("day {}", turn.day)).with_role(Role::Dim)
+        }
         (_, None) => TableCell::from_text("–").with_role(Role::Dim),
     };
     let table_cell = match (thread.asked_price(), thread.asked_plan()) {
@@ -190,7 +212,7 @@ pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
             TableCell::from_text(state.label()).with_role(role)
         }
         _ if thread.last_offer().is_empty() => TableCell::from_text("–").with_role(Role::Dim),
-        _ => TableCell::from_text(format_offers(thread.last_offer())),
+        _ => TableCell::from_text(format_offer_lines(thread.last_offer())),
     };
     vec![
         TableCell::from_text(if marked { "●" } else { "" }).with_role(Role::Changed),
@@ -202,7 +224,12 @@ pub(super) fn thread_row(thread: &Thread, marked: bool) -> Vec<TableCell> {
         table_cell,
         TableCell::from_text(thread.kind_label()),
         end,
-        number_cell(thread.waiting_thread.as_ref().map(|thread_context| f64::from(thread_context.waiting.offers_so_far))),
+        number_cell(
+            thread
+                .waiting_thread
+                .as_ref()
+                .map(|thread_context| f64::from(thread_context.waiting.offers_so_far)),
+        ),
         number_cell(thread.waiting_thread.as_ref().and_then(|context| context.required_quota)),
     ]
 }

@@ -111,6 +111,10 @@ impl Pane<Journal> for BranchesPane {
         Some(&journal.branches)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("journal.branches")
+    }
+
     fn table_mut<'a>(&self, journal: &'a mut Journal) -> Option<&'a mut Table> {
         Some(&mut journal.branches)
     }

@@ -17,6 +17,10 @@ impl Pane<Journal> for EntriesPane {
         Some(&journal.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("journal.entries")
+    }
+
     fn table_mut<'a>(&self, journal: &'a mut Journal) -> Option<&'a mut Table> {
         Some(&mut journal.table)
     }

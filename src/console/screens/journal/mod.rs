@@ -12,7 +12,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
@@ -225,8 +225,8 @@ impl PaneScreen for Journal {
 const MIN_HEIGHT_FOR_TREE: u16 = 26;
 
 impl Journal {
-    /// Draws the tree of related runs below the list, if there is a tree. In small windows, the tree replaces the
-    /// lower panes while the tree has the focus. Returns the areas for the list and the other panes.
+    /// Draws the tree of related runs below the list, if there is a tree. In small windows, the
+    /// tree shares the area of the list. Returns the areas for the list and the other panes.
     fn draw_tree(
         &self,
         canvas: &mut Canvas<'_>,
@@ -234,21 +234,12 @@ impl Journal {
         area: Rect,
         context: &ScreenContext<'_>,
     ) -> (Rect, Rect) {
-        let has_focus = self.focus == JournalPane::Branches;
         if !self.has_tree() {
             return (list, below);
         }
         if area.height < MIN_HEIGHT_FOR_TREE {
-            return match has_focus {
-                true => {
-                    let [list, tree] =
-                        Layout::vertical([Constraint::Length(area.height / 3), Constraint::Min(0)])
-                            .areas(Rect { width: list.width, ..area });
-                    draw_pane(self, JournalPane::Branches, canvas, tree, context);
-                    (list, if below.x > list.x { below } else { Rect::default() })
-                }
-                false => (list, below),
-            };
+            draw_stack(self, &[JournalPane::List, JournalPane::Branches], canvas, list, context);
+            return (Rect::default(), below);
         }
         let wanted = self.tree.len() as u16 + branches::CHROME_ROWS + 3;
         let tall = wanted.min(list.height / 2);

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::{Journal, JournalPane};
 use crate::action::{Action, Scope};
-use crate::context::ScreenContext;
+use crate::context::{EditorDocument, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tui::canvas::Canvas;
@@ -45,6 +45,15 @@ impl Pane<Journal> for NotesPane {
         if journal.editing {
             journal.notes.insert(text);
         }
+        Vec::new()
+    }
+
+    fn editor_document(&self, journal: &Journal) -> Option<EditorDocument> {
+        Some(EditorDocument { text: journal.notes.text(), extension: "md" })
+    }
+
+    fn replace_document(&self, journal: &mut Journal, text: &str) -> Vec<Effect> {
+        journal.notes.set_text(text);
         Vec::new()
     }
 

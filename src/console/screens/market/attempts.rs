@@ -22,6 +22,10 @@ impl Pane<Market> for AttemptsPane {
         Some(&market.attempts)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("market.studies")
+    }
+
     fn table_mut<'a>(&self, market: &'a mut Market) -> Option<&'a mut Table> {
         Some(&mut market.attempts)
     }

@@ -22,6 +22,10 @@ impl Pane<Market> for KnownGroupsPane {
         Some(&market.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("market.groups")
+    }
+
     fn table_mut<'a>(&self, market: &'a mut Market) -> Option<&'a mut Table> {
         Some(&mut market.table)
     }
@@ -90,9 +94,9 @@ impl Pane<Market> for KnownGroupsPane {
 }
 
 pub fn columns() -> Vec<TableColumn> {
-    let mut columns = vec![TableColumn::text("group"), TableColumn::text("name").with_max_width(28).with_min_width(20)];
+    let mut columns = vec![TableColumn::text("group"), TableColumn::text("name").with_max_width(28).with_min_width(10)];
     columns.extend(["level", "error"].map(TableColumn::numeric));
-    columns.push(TableColumn::text("next study"));
+    columns.push(TableColumn::text("next study").indivisible());
     columns.extend(["found", "as of"].map(TableColumn::numeric));
     columns
 }

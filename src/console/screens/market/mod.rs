@@ -17,7 +17,7 @@ use strum::VariantArray;
 use self::model::{MarketFacts, study_level, group_name, target_level, undiscovered_count};
 use self::news::CompetitorNews;
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::{Action, Scope};
 use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
@@ -296,20 +296,17 @@ impl PaneScreen for Market {
     }
 
     fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
-        use MarketPane::{Attempts, Economy, Groups, Report};
+        use MarketPane::{Attempts, Economy, Groups, News, Report};
         if area.width >= 104 && area.height >= 24 {
             return self.draw_wide_layout(canvas, area, context);
         }
-        // The focused pane is shown. The groups pane is shown together with the report, and the attempts pane with the economy.
+        if area.height < 14 {
+            return draw_stack(self, &[Groups, Report, Attempts, Economy, News], canvas, area, context);
+        }
         let halves = [Constraint::Percentage(50), Constraint::Min(0)];
         let [upper, lower] = Layout::vertical(halves).areas(area);
-        let (above, below) = match self.focus {
-            Groups if area.height >= 14 => (Groups, Report),
-            Attempts => (Attempts, Economy),
-            alone => return draw_pane(self, alone, canvas, area, context),
-        };
-        draw_pane(self, above, canvas, upper, context);
-        draw_pane(self, below, canvas, lower, context);
+        draw_pane(self, Groups, canvas, upper, context);
+        draw_stack(self, &[Report, Attempts, Economy, News], canvas, lower, context);
     }
 }
 

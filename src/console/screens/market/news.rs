@@ -38,6 +38,10 @@ impl Pane<Market> for CompetitorNewsPane {
         Some(&market.headlines)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("market.news")
+    }
+
     fn table_mut<'a>(&self, market: &'a mut Market) -> Option<&'a mut Table> {
         Some(&mut market.headlines)
     }

@@ -87,8 +87,11 @@ fn format_figure(value: f64) -> String {
     }
 }
 
+/// Decimals of quality and of weights. Weights below one thousandth are shown as zero.
+const WEIGHT_DECIMALS: usize = novamind_base::formatting::QUALITY_DECIMALS;
+
 fn format_exact(value: f64) -> String {
-    if value != 0.0 && value.abs() < 0.01 { grouped_number(value, 5) } else { grouped_number(value, 3) }
+    grouped_number(value, WEIGHT_DECIMALS)
 }
 
 fn format_share(value: f64) -> String {
@@ -128,7 +131,7 @@ pub fn report_lines(company: &DisplayedCompany, group: Group) -> Vec<ReportLine>
         }
     }
     lines.push(ReportLine::heading("word of mouth", "leads/day per 1,000 subscribers"));
-    push_influence(&mut lines, &insights.network_influence, noise, &|rate| format_figure(rate * 1000.0));
+    push_influence(&mut lines, &insights.network_influence, noise, &|rate| grouped_number(rate * 1000.0, 2));
     lines.push(ReportLine::heading("reputation", "weight of reputation"));
     push_influence(&mut lines, &insights.reputation_influence, noise, &format_exact);
     lines
@@ -283,7 +286,7 @@ mod tests {
         }
         assert_eq!(
             (format_exact(0.51), format_exact(0.0031), format_exact(0.0)),
-            ("0.510".into(), "0.00310".into(), "0.000".into())
+            ("0.510".into(), "0.003".into(), "0.000".into())
         );
     }
 }

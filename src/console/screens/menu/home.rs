@@ -39,9 +39,9 @@ impl StartMenu {
         if let Some(run) = self.latest() {
             choices.push((HomeEntry::Continue, "Continue", run_summary(run)));
         }
-        let words = match self.practice_run() {
-            Some(_) => "Continues the practice run",
-            None => "New here? A practice company",
+        let words = match self.tour_run() {
+            Some(_) => "Continues its run",
+            None => "New here? Five minutes in a company",
         };
         let tour = (HomeEntry::Tour, "Tour", words.to_owned());
         let known = matches!(self.runs, Some(Ok(_)));

@@ -13,7 +13,6 @@ use novamind_session::{LessonOptions, NewRun};
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::request::Request;
 
 const MIN_WIDTH_FOR_DETAILS: u16 = 76;
@@ -67,7 +66,7 @@ impl LessonList {
         };
         let inside =
             canvas.draw_pane_frame(above, "Lessons", &pluralize(self.lessons.len() as u32, "lesson"), true);
-        let from = first_visible_row(selected, inside.height as usize, self.lessons.len());
+        let from = canvas.scroll_to_row(inside, selected, self.lessons.len());
         for (row, (at, listed_lesson)) in row_rects(inside).zip(self.lessons.iter().enumerate().skip(from)) {
             let here = at == selected;
             if here {

@@ -184,10 +184,10 @@ impl StartMenu {
         self.runs().iter().find(|run| run.ended.is_none() && run.problem.is_none())
     }
 
-    /// Returns the id of the unfinished practice run, if there is one.
-    pub fn practice_run(&self) -> Option<&str> {
+    /// Returns the id of the unfinished run of the tour, if there is one.
+    pub fn tour_run(&self) -> Option<&str> {
         let begun = |run: &&RunSummary| {
-            run.scenario == tour::scenario()
+            tour::is_tour_run(&run.scenario, run.seed, run.days)
                 && run.ended.is_none()
                 && run.problem.is_none()
                 && run.mode != Some(Mode::Baseline)

@@ -14,7 +14,6 @@ use novamind_report::ranking_eligibility::{RankingCriteria, RankingObstacle, exp
 use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RankedResult {
@@ -83,7 +82,7 @@ impl StartMenu {
             wrap(&format!("{}\n{}", self.own_results_text(number), source_text()), inside.width as usize);
         let list = Rect { height: inside.height.saturating_sub(lines.len() as u16 + 1), ..inside };
         let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
-        let from = first_visible_row(self.selected, list.height as usize, results.len());
+        let from = canvas.scroll_to_row(list, self.selected, results.len());
         for (row, result) in row_rects(list).zip(results.iter().skip(from)) {
             draw_result(canvas, row, result, most);
         }

@@ -135,7 +135,9 @@ pub fn item_figure(need: &ActionItem, day: u32) -> Figure {
         Problem::NoPrice => ("set_prices", None),
         Problem::NoQuota => ("set_usage_quotas", None),
         Problem::NoLeads => ("lead", None),
-        Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
+        Problem::NoSales(group) | Problem::ConversionFall(group) => {
+            ("conversion", Some(leads_of(group.id())))
+        }
         Problem::NoRequests(group) => ("delivered-quality", Some(leads_of(group.id()))),
         Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::cost_query(channel, group))),
         Problem::Margin => ("gross-margin", None),
@@ -161,7 +163,9 @@ fn item_quantity(need: &ActionItem) -> Option<WeekQuantity> {
     match need.problem {
         Problem::Runway => WeekQuantity::for_company(WeekFigure::CashChange),
         Problem::NoLeads => WeekQuantity::for_company(WeekFigure::Leads),
-        Problem::NoSales(group) => WeekQuantity::for_group(WeekFigure::Conversion, group),
+        Problem::NoSales(group) | Problem::ConversionFall(group) => {
+            WeekQuantity::for_group(WeekFigure::Conversion, group)
+        }
         Problem::Overload | Problem::Capacity => WeekQuantity::for_company(WeekFigure::OverloadPeak),
         Problem::Outages => WeekQuantity::for_company(WeekFigure::Outage),
         Problem::Backlog => WeekQuantity::for_company(WeekFigure::OpenIssues),

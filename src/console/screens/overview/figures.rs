@@ -4,6 +4,7 @@ use crate::context::Figure;
 use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::{WeekFigure, WeekFigures};
+use novamind_report::figure_label;
 use novamind_session::{LEDGER_WEEK_SQL, ledger_weeks_condition_sql};
 use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
@@ -264,7 +265,7 @@ pub fn metric_row(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell>
         None => TableCell::from_text("–").with_role(Role::Dim),
     };
     vec![
-        TableCell::from_text(metric.name),
+        TableCell::from_text(figure_label(metric.name)),
         cell(now).with_role(Role::Strong),
         moved,
         TableCell::from_text(sparkline(&trend, 12)).with_role(Role::Series(0)),

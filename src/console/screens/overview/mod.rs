@@ -17,7 +17,7 @@ use strum::VariantArray;
 use self::figures::METRICS;
 use self::news::NewsItem;
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use super::product::model::{ServiceDay, parse_projects, parse_service_days};
 use crate::action::Action;
 use crate::context::ScreenContext;
@@ -177,10 +177,7 @@ impl Overview {
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
         draw_pane(self, OverviewPane::Week, canvas, week, context);
-        let overview_pane = match self.focus {
-            OverviewPane::Quality | OverviewPane::News => self.focus,
-            _ => OverviewPane::Cash,
-        };
-        draw_pane(self, overview_pane, canvas, side, context);
+        let stack = [OverviewPane::Cash, OverviewPane::Quality, OverviewPane::News];
+        draw_stack(self, &stack, canvas, side, context);
     }
 }

@@ -9,7 +9,7 @@ use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use crate::screens::product::model::Project;
-use novamind_base::formatting::grouped_number;
+use novamind_base::formatting::{grouped_number, quality_change};
 use novamind_database::{QueryResult, text_at};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
@@ -130,7 +130,7 @@ pub fn research_items(projects: &[Project], day: u32) -> Vec<NewsItem> {
     let ended = |project: &&Project| project.done && project.expected_day + 7 > day && project.expected_day <= day;
     let words = |project: &Project| NewsItem {
         kind: NewsKind::Research,
-        text: format!("R&D {} completed: {:+.4} quality for every group", project.id, project.boost),
+        text: format!("R&D {} completed: {} quality for every group", project.id, quality_change(project.boost)),
     };
     projects.iter().filter(ended).map(words).collect()
 }

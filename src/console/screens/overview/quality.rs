@@ -12,6 +12,7 @@ use novamind_report::fit::RangePosition;
 use novamind_session::DeliveredQuality;
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
+use novamind_base::formatting::{quality as format_quality, quality_change};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::text::format_number;
 use novamind_tui::theme::Role;
@@ -28,6 +29,10 @@ pub struct QualityPane;
 impl Pane<Overview> for QualityPane {
     fn table<'a>(&self, overview: &'a Overview) -> Option<&'a Table> {
         Some(&overview.quality)
+    }
+
+    fn table_name(&self) -> Option<&'static str> {
+        Some("overview.quality")
     }
 
     fn table_mut<'a>(&self, overview: &'a mut Overview) -> Option<&'a mut Table> {
@@ -66,7 +71,7 @@ impl Pane<Overview> for QualityPane {
     fn border(&self, _: &Overview, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let (base, shared) = context.company.quality_base;
         let title = "Delivered quality";
-        let full = format!("base {base:.2} · general {shared:+.4}");
+        let full = format!("base {} · general {}", format_quality(base), quality_change(shared));
         let note = if full.width() <= note_width(area, title) { full } else { String::new() };
         PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
@@ -84,7 +89,7 @@ pub fn quality_table(company: &DisplayedCompany) -> (Vec<TableColumn>, Vec<Vec<T
     let columns = columns.chain([TableColumn::numeric("targeted")]);
     let row = |quality: &DeliveredQuality| {
         let bonus = match quality.group_bonus {
-            bonus if bonus > 0.0 => TableCell::from_number(bonus, format!("+{bonus:.4}")),
+            bonus if bonus > 0.0 => TableCell::from_number(bonus, quality_change(bonus)),
             _ => TableCell::from_number(0.0, "–").with_role(Role::Dim),
         };
         let fit = company.fit(quality.group);
@@ -94,7 +99,7 @@ pub fn quality_table(company: &DisplayedCompany) -> (Vec<TableColumn>, Vec<Vec<T
                 Some(RangePosition::Above) => Role::Good,
                 _ => Role::Text,
             };
-            TableCell::from_number(value, format!("{value:.4}")).with_role(role)
+            TableCell::from_number(value, format_quality(value)).with_role(role)
         });
         let none = || TableCell::from_text("–").with_role(Role::Dim);
         let floor = fit.map_or_else(none, |fit| TableCell::from_number(fit.floor.least, fit.floor.format_quality()));

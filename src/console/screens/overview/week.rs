@@ -19,6 +19,10 @@ impl Pane<Overview> for WeekPane {
         Some(&overview.week)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("overview.figures")
+    }
+
     fn table_mut<'a>(&self, overview: &'a mut Overview) -> Option<&'a mut Table> {
         Some(&mut overview.week)
     }

@@ -16,7 +16,6 @@ use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::first_fitting;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_tui::widgets::{XAxis, Curve, YAxis, AxisUnit, draw_chart};
 use novamind_worker::company::DisplayedCompany;
 
@@ -114,7 +113,7 @@ fn draw_tiers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlaceme
     if placement.focused {
         canvas.page_rows = below.height.max(1);
     }
-    let from = first_visible_row(selected, below.height as usize, rungs.len());
+    let from = canvas.scroll_to_row(below, selected, rungs.len());
     for (row, (at, rung)) in row_rects(below).zip(rungs.iter().enumerate().skip(from)) {
         let (mean, peak) = used.map_or(("–".to_owned(), "–".to_owned()), |(mean, peak)| {
             (capacity_share(mean, rung.units), capacity_share(peak, rung.units))

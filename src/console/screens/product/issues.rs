@@ -17,7 +17,6 @@ use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 /// Bar glyphs by age of the issues, the newest issues first. Older issues have denser glyphs.
@@ -110,7 +109,7 @@ fn draw(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement) {
     if placement.focused {
         canvas.page_rows = below.height.max(1);
     }
-    let from = first_visible_row(selected, below.height as usize, issues.len());
+    let from = canvas.scroll_to_row(below, selected, issues.len());
     for (row, (at, (group, ages))) in row_rects(below).zip(issues.iter().enumerate().skip(from)) {
         let role = match (placement.focused && at == selected, ages[3] > 0.0) {
             (true, _) => Role::Selection,

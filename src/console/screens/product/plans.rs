@@ -16,7 +16,6 @@ use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::first_fitting;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 /// Pane with a table that has plans as columns. Opening a row shows the tool that sets the values in this row.
@@ -88,7 +87,7 @@ impl ProductPanel for PlansPane {
         if placement.focused {
             canvas.page_rows = below.height.max(1);
         }
-        let from = first_visible_row(selected, below.height as usize, PLAN_FIGURES.len());
+        let from = canvas.scroll_to_row(below, selected, PLAN_FIGURES.len());
         for (row, (at, (name, write))) in row_rects(below).zip(PLAN_FIGURES.iter().enumerate().skip(from)) {
             let loses = *name == "gross margin"
                 && plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin < 0.0));
@@ -130,7 +129,7 @@ static PLAN_FIGURES: [PlanFigure; 11] = [
     ("gross margin", |plan| {
         // A warning sign marks a plan with a negative margin. The sign is in the cell, because narrow windows cut off notes.
         format_optional(plan.margin(), |margin| {
-            format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 1))
+            format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 0))
         })
     }),
     ("billed/month", |plan| format!("${}", compact_number(plan.usage.monthly_revenue))),

@@ -8,10 +8,10 @@ use crate::context::Figure;
 use crate::effect::Effect;
 use crate::screens::panes::PanePlacement;
 use novamind_tools::ToolId;
+use novamind_base::formatting::{quality as format_quality, quality_change};
 use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::text::format_number;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 pub struct QualityComponentsPane;
@@ -31,8 +31,8 @@ impl ProductPanel for QualityComponentsPane {
             company.quality.iter().max_by(|left, right| left.group_bonus.total_cmp(&right.group_bonus));
         let best = best.filter(|best| best.group_bonus > 0.0);
         let best =
-            best.map_or(String::new(), |best| format!(" · {} {:+.4}", best.group.id(), best.group_bonus));
-        format!("base {base:.2} · general {shared:+.4}{best}")
+            best.map_or(String::new(), |best| format!(" · {} {}", best.group.id(), quality_change(best.group_bonus)));
+        format!("base {} · general {}{best}", format_quality(base), quality_change(shared))
     }
 
     fn destination(&self, _: &Product) -> &'static str {
@@ -64,15 +64,15 @@ impl ProductPanel for QualityComponentsPane {
         if placement.focused {
             canvas.page_rows = below.height.max(1);
         }
-        let from = first_visible_row(selected, below.height as usize, company.quality.len());
+        let from = canvas.scroll_to_row(below, selected, company.quality.len());
         for (row, (at, quality)) in row_rects(below).zip(company.quality.iter().enumerate().skip(from)) {
-            let parts = if wide { format!(" {base:>7.4} {shared:>+8.4}") } else { String::new() };
+            let parts = if wide { format!(" {:>7} {:>8}", format_quality(base), quality_change(shared)) } else { String::new() };
             let bonus_text = match quality.group_bonus {
-                bonus if bonus > 0.0 => format!("{bonus:+.4}"),
+                bonus if bonus > 0.0 => quality_change(bonus),
                 _ => "–".to_owned(),
             };
-            let [a, b, c] = quality.by_plan.0;
-            let text = format!("{:<6}{parts} {bonus_text:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
+            let [a, b, c] = quality.by_plan.0.map(format_quality);
+            let text = format!("{:<6}{parts} {bonus_text:>8} {a:>9} {b:>8} {c:>8}", quality.group.id());
             let role = match (placement.focused && at == selected, quality.group_bonus > 0.0) {
                 (true, _) => Role::Selection,
                 (false, true) => Role::Text,

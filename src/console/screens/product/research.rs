@@ -8,13 +8,12 @@ use super::{Product, ProductPane};
 use crate::context::Figure;
 use crate::effect::Effect;
 use crate::screens::panes::PanePlacement;
-use novamind_base::formatting::{compact_number, dollars, short_dollars};
+use novamind_base::formatting::{QUALITY_DECIMALS, compact_number, dollars, quality_change, short_dollars};
 use novamind_report::research::{format_mean_days, format_mean_gain};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::sparkline;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::company::DisplayedCompany;
 
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -119,7 +118,8 @@ fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlac
         Some(product.selected_row(ProductPane::Research)).filter(|at| placement.focused && *at < projects.len());
     let today = company.observation.day;
     let rows = area.height.saturating_sub(1) as usize;
-    let skipped = first_visible_row(selected.unwrap_or(0), rows, projects.len());
+    let list = Rect { y: area.y + 1, height: rows as u16, ..area };
+    let skipped = canvas.scroll_to_row(list, selected.unwrap_or(0), projects.len());
     let shown = &projects[skipped..projects.len().min(skipped + rows)];
     if shown.is_empty() {
         canvas.draw_text(area, "No projects yet. Start one with start_research_project.", Role::Dim);
@@ -161,8 +161,8 @@ fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlac
             false => "…",
         };
         let text = format!(
-            "{:<7}{:>+8.4}{:>5} {:>4} {mark}",
-            project.id, project.boost, project.started_day, project.expected_day
+            "{:<7}{:>8}{:>5} {:>4} {mark}",
+            project.id, quality_change(project.boost), project.started_day, project.expected_day
         );
         canvas.draw_text(Rect { width: names, ..row }, &text, role);
         if width < 4 {
@@ -193,7 +193,7 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacem
     if selected.is_some() {
         canvas.page_rows = below.height.max(1);
     }
-    let from = first_visible_row(selected.unwrap_or(0), below.height as usize, offers.len());
+    let from = canvas.scroll_to_row(below, selected.unwrap_or(0), offers.len());
     for (row, (at, offer)) in row_rects(below).zip(offers.iter().enumerate().skip(from)) {
         let affordable = offer.cost <= company.observation.cash;
         let role = match (selected == Some(at), affordable) {
@@ -229,7 +229,7 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacem
             truncate_to_width(&offer.name, 17),
             short_dollars(offer.cost),
             format_mean_days(&offer.means),
-            format_mean_gain(&offer.means, 3),
+            format_mean_gain(&offer.means, QUALITY_DECIMALS),
             remarks
         );
         canvas.draw_text(row, text.trim_end(), role);

@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 
 use super::{POST_TOOL, Social, SocialPane};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, ScreenContext};
+use crate::context::{EditorDocument, Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
 use novamind_tui::canvas::Canvas;
@@ -53,6 +53,15 @@ impl Pane<Social> for DraftPane {
         if social.editing {
             social.draft.insert(text);
         }
+        Vec::new()
+    }
+
+    fn editor_document(&self, social: &Social) -> Option<EditorDocument> {
+        Some(EditorDocument { text: social.draft.text(), extension: "md" })
+    }
+
+    fn replace_document(&self, social: &mut Social, text: &str) -> Vec<Effect> {
+        social.draft.set_text(text);
         Vec::new()
     }
 

@@ -19,6 +19,10 @@ impl Pane<Social> for OwnPostsPane {
         Some(&social.table)
     }
 
+    fn table_name(&self) -> Option<&'static str> {
+        Some("social.posts")
+    }
+
     fn table_mut<'a>(&self, social: &'a mut Social) -> Option<&'a mut Table> {
         Some(&mut social.table)
     }

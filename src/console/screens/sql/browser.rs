@@ -11,7 +11,6 @@ use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Label of x-ray tables in the tree.
 const XRAY_LABEL: &str = "x-ray";
@@ -175,7 +174,7 @@ impl TableBrowser {
         if entries.is_empty() {
             canvas.draw_text(tree, "No match", Role::Dim);
         }
-        let from = first_visible_row(self.selected, height as usize, entries.len());
+        let from = canvas.scroll_to_row(Rect { height, ..tree }, self.selected, entries.len());
         for (row, (at, entry)) in row_rects(tree).zip(entries.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *entry, (at == self.selected).then_some(focused));
             canvas.register_click(row, Click::Row(placement.index, at));

@@ -11,7 +11,6 @@ use novamind_tui::canvas::{Align, Canvas, row_rects};
 use novamind_tui::sql::{is_identifier_char, statement_at, tokenize};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextEditor;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Minimum length of a word for suggestions while typing.
 const MIN_TYPED_CHARS: usize = 2;
@@ -253,7 +252,7 @@ impl QueryEditor {
         let list_area = Rect { x, y, width, height };
         canvas.clear(list_area, Role::Field);
         let inside = canvas.draw_pane_frame(list_area, "", "", true);
-        let from = first_visible_row(completion.selected, inside.height as usize, completion.candidates.len());
+        let from = canvas.scroll_to_row(inside, completion.selected, completion.candidates.len());
         for (row, (at, one)) in row_rects(inside).zip(completion.candidates.iter().enumerate().skip(from)) {
             let chosen = at == completion.selected;
             canvas.clear(row, if chosen { Role::Selection } else { Role::Field });

@@ -26,7 +26,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::ScreenState;
-use super::panes::{Pane, PaneScreen, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane, draw_stack};
 use crate::action::Action;
 use crate::context::ScreenContext;
 use crate::effect::Effect;
@@ -74,6 +74,8 @@ pub struct Sql {
     library: QueryLibrary,
     overlay: Option<SqlOverlay>,
     focus: SqlPane,
+    /// Whether keys type into the editor. Only the editor pane can be in this mode.
+    editing: bool,
     running: Option<RunningStatement>,
     /// Whether the last action inserted a column from the tables. The next inserted column is then separated by a comma.
     has_inserted_column: bool,
@@ -93,6 +95,7 @@ impl Default for Sql {
             library: QueryLibrary::bundled(),
             overlay: None,
             focus: SqlPane::Editor,
+            editing: false,
             running: None,
             has_inserted_column: false,
             derived_sql: String::new(),
@@ -107,14 +110,16 @@ impl Sql {
         self.library = library;
     }
 
-    /// Replaces the editor text and adds the old text to the history.
+    /// Replaces the editor text and adds the old text to the history. Does not start editing.
     pub fn set_statement(&mut self, sql: &str) {
         if self.editor.text().trim() != sql.trim() {
             self.history.add_draft(&self.editor.text());
         }
         self.editor.replace(sql);
         self.overlay = None;
-        self.focus = SqlPane::Editor;
+        if self.focus != SqlPane::Editor {
+            self.set_focused_pane(SqlPane::Editor);
+        }
     }
 
     /// Replaces the editor text with a statement and runs the statement.
@@ -122,7 +127,7 @@ impl Sql {
         self.set_statement(sql);
         self.editor.go_to_top();
         // The user did not type the statement, so the results get the focus.
-        self.focus = SqlPane::Results;
+        self.set_focused_pane(SqlPane::Results);
         self.run_statement()
     }
 
@@ -135,6 +140,13 @@ impl Sql {
     /// Returns the editor text.
     pub fn draft(&self) -> String {
         self.editor.text()
+    }
+
+    /// Returns whether the screen shows rows of a named query.
+    pub fn shows_rows_of(&self, query: &str) -> bool {
+        let named = self.library.queries().iter().find(|named| named.name == query);
+        let is_shown = named.is_some_and(|named| self.results.statement().map(str::trim) == Some(named.sql.trim()));
+        is_shown && self.overlay.is_none() && self.running.is_none() && self.results.current().has_rows()
     }
 
     /// Returns whether a statement is running.
@@ -172,6 +184,11 @@ impl Sql {
         })
     }
 
+    fn start_editing(&mut self) {
+        (self.focus, self.editing) = (SqlPane::Editor, true);
+    }
+
+    /// Ends editing. If there is a result, the results get the focus.
     fn leave_editor(&mut self) -> Vec<Effect> {
         if self.editor.hide_completion() {
             return Vec::new();
@@ -179,7 +196,8 @@ impl Sql {
         if self.running.is_some() {
             return vec![Effect::CancelQuery];
         }
-        self.focus = SqlPane::Results;
+        let has_result = self.results.statement().is_some();
+        self.set_focused_pane(if has_result { SqlPane::Results } else { SqlPane::Editor });
         Vec::new()
     }
 }
@@ -203,7 +221,7 @@ impl ScreenState for Sql {
     }
 
     fn edited_text(&self) -> Option<(String, String)> {
-        let typing = self.focus == SqlPane::Editor && self.overlay.is_none();
+        let typing = self.editing && self.overlay.is_none();
         typing.then(|| ("sql".to_owned(), self.editor.text()))
     }
 
@@ -217,7 +235,9 @@ impl ScreenState for Sql {
             && self.editor.text() == running.text
         {
             self.editor.mark_error(running.statement.offset + place);
-            self.focus = SqlPane::Editor;
+            if self.focus != SqlPane::Editor {
+                self.set_focused_pane(SqlPane::Editor);
+            }
         }
         let took = answer.as_ref().map_or(Duration::ZERO, |(_, took)| *took);
         self.results.add_answer(&running.statement.sql, answer.map(|(rows, _)| rows), took);
@@ -249,7 +269,7 @@ impl PaneScreen for Sql {
     }
 
     fn set_focused_pane(&mut self, name: SqlPane) {
-        self.focus = name;
+        (self.focus, self.editing) = (name, false);
         self.editor.hide_completion();
     }
 
@@ -258,11 +278,17 @@ impl PaneScreen for Sql {
             self.has_inserted_column = false;
         }
         match action {
-            Action::RunQuery => return Some(self.run_statement()),
-            Action::Complete if self.focus != SqlPane::Editor => {
+            Action::RunQuery => {
+                let effects = self.run_statement();
+                if self.is_running() && !self.editing {
+                    self.set_focused_pane(SqlPane::Results);
+                }
+                return Some(effects);
+            }
+            Action::Complete if !self.editing => {
                 return Some(vec![Effect::Execute(Action::FocusNext)]);
             }
-            Action::EditQuery => self.focus = SqlPane::Editor,
+            Action::EditQuery => self.start_editing(),
             Action::ClearQuery => self.set_statement(""),
             Action::LeaveEditor => return Some(self.leave_editor()),
             Action::History => return Some(self.open_history(context)),
@@ -278,20 +304,23 @@ impl PaneScreen for Sql {
         let width = match area.width {
             wide if wide >= 150 => 38,
             wide if wide >= MIN_WIDTH_FOR_TABLES => 29,
-            narrow if self.focus == SqlPane::Tables => narrow.min(34),
             _ => 0,
         };
         let [tables, rest] = Layout::horizontal([Constraint::Length(width), Constraint::Min(0)]).areas(area);
         let upper = match (area.height, self.focus) {
-            (0..10, SqlPane::Results) => 0,
+            (0..10, SqlPane::Results | SqlPane::Tables) => 0,
             (0..10, _) => area.height,
             (height, _) => (height / 3).clamp(5, 14),
         };
         let [above, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(rest);
-        draw_pane(self, SqlPane::Tables, canvas, tables, context);
         draw_pane(self, SqlPane::Editor, canvas, above, context);
-        draw_pane(self, SqlPane::Results, canvas, below, context);
-        if self.focus == SqlPane::Editor && self.overlay.is_none() {
+        if width > 0 {
+            draw_pane(self, SqlPane::Tables, canvas, tables, context);
+            draw_pane(self, SqlPane::Results, canvas, below, context);
+        } else {
+            draw_stack(self, &[SqlPane::Results, SqlPane::Tables], canvas, below, context);
+        }
+        if self.editing && self.overlay.is_none() {
             self.editor.draw_completion(canvas, rest);
         }
     }

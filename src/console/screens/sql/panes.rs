@@ -8,11 +8,11 @@ use super::pivot_form::PivotForm;
 use super::aggregation::{NOT_A_TABLE_ERROR, count_statement};
 use super::{Sql, SqlPane};
 use crate::action::{Action, Scope};
-use crate::context::ScreenContext;
+use crate::context::{EditorDocument, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_record::folder::query_library::QueryHeader;
-use novamind_tui::canvas::Canvas;
+use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::{TextField, Table};
 
 const NO_RESULT_ERROR: &str = "No result yet. Run a statement first.";
@@ -21,19 +21,30 @@ const REJECTED_ERROR: &str = "The last statement failed and has no rows.";
 pub struct EditorPane;
 
 impl Pane<Sql> for EditorPane {
-    fn scopes(&self, _: &Sql) -> Vec<Scope> {
-        vec![Scope::Editor, Scope::Query]
+    fn scopes(&self, sql: &Sql) -> Vec<Scope> {
+        if sql.editing { vec![Scope::Editor, Scope::Query] } else { vec![Scope::Query, Scope::List] }
     }
 
-    fn hints(&self, _: &Sql) -> Vec<Action> {
-        vec![Action::RunQuery, Action::Complete, Action::SaveQuery, Action::LeaveEditor]
+    fn hints(&self, sql: &Sql) -> Vec<Action> {
+        match sql.editing {
+            true => vec![Action::RunQuery, Action::Complete, Action::SaveQuery, Action::LeaveEditor],
+            false => vec![
+                Action::EditQuery,
+                Action::RunQuery,
+                Action::Library,
+                Action::History,
+                Action::SaveQuery,
+                Action::ClearQuery,
+            ],
+        }
     }
 
     fn handle_action(&self, sql: &mut Sql, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
-        // The mouse wheel scrolls the editor.
+        // The arrow keys and the mouse wheel scroll the editor.
         let turn = |code| KeyEvent::new(code, KeyModifiers::NONE);
         match action {
             Action::Complete => sql.editor.accept_or_offer_completion(),
+            Action::Close if sql.is_running() => return vec![Effect::CancelQuery],
             Action::Up | Action::Down => {
                 sql.editor.hide_completion();
                 let code = if action == Action::Up { KeyCode::Up } else { KeyCode::Down };
@@ -48,13 +59,31 @@ impl Pane<Sql> for EditorPane {
         if key.code == KeyCode::BackTab {
             return vec![Effect::Execute(Action::FocusPrevious)];
         }
+        if !sql.editing {
+            return Vec::new();
+        }
         sql.has_inserted_column = false;
         sql.editor.handle_key(key);
         Vec::new()
     }
 
     fn paste(&self, sql: &mut Sql, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
+        sql.start_editing();
         sql.editor.paste(text);
+        Vec::new()
+    }
+
+    fn editor_document(&self, sql: &Sql) -> Option<EditorDocument> {
+        Some(EditorDocument { text: sql.editor.text(), extension: "sql" })
+    }
+
+    fn replace_document(&self, sql: &mut Sql, text: &str) -> Vec<Effect> {
+        sql.editor.replace(text);
+        Vec::new()
+    }
+
+    fn handle_click(&self, sql: &mut Sql, _: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        sql.start_editing();
         Vec::new()
     }
 
@@ -72,9 +101,13 @@ impl Pane<Sql> for EditorPane {
         PaneBorder { title, note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
-        let hint = if placement.focused { "type a statement" } else { "i or click to edit" };
-        sql.editor.draw(canvas, placement.area, placement.focused && sql.overlay.is_none(), hint);
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let hint = match sql.editing {
+            true => "type a statement".to_owned(),
+            false => format!("{} or click to type a statement", context.keys.label(Action::EditQuery).unwrap_or_default()),
+        };
+        sql.editor.draw(canvas, placement.area, sql.editing && sql.overlay.is_none(), &hint);
+        canvas.register_click(placement.area, Click::Row(placement.index, 0));
     }
 }
 
@@ -213,7 +246,10 @@ impl Sql {
                 }]);
             }
             Action::RecallQuery => match self.results.statement().map(str::to_owned) {
-                Some(sql) => self.set_statement(&sql),
+                Some(sql) => {
+                    self.set_statement(&sql);
+                    self.start_editing();
+                }
                 None => return Some(vec![Effect::ShowError(NO_RESULT_ERROR.to_owned())]),
             },
             Action::CountColumn | Action::Pivot => return Some(self.handle_aggregate_action(action)),

@@ -12,7 +12,6 @@ use novamind_tui::sql::tokenize;
 use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Minimum width for a preview next to the list. In narrower windows, the preview is below the list.
 const MIN_WIDTH_FOR_SIDE_PREVIEW: u16 = 110;
@@ -150,7 +149,7 @@ impl Picker {
             canvas.draw_text(area, "No match", Role::Dim);
         }
         let tags = self.items.iter().map(|item| item.tag.width()).max().unwrap_or(0) as u16;
-        let from = first_visible_row(self.selected, area.height as usize, self.matches.len());
+        let from = canvas.scroll_to_row(area, self.selected, self.matches.len());
         for (row, (place, (at, letters))) in row_rects(area).zip(self.matches.iter().enumerate().skip(from)) {
             let (item, selected) = (&self.items[*at], place == self.selected);
             let role = |other| if selected { Role::Selection } else { other };

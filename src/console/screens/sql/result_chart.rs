@@ -7,12 +7,11 @@ use crate::screens::panes::PanePlacement;
 use novamind_base::formatting::{compact_number, grouped_number};
 use novamind_database::{Cell, QueryResult};
 use novamind_record::folder::query_library::{ChartKind, ChartSpec};
-use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::canvas::{Align, Canvas, Click, first_visible_row, row_rects};
 use novamind_tui::text::{format_change, format_number};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::bars::{Bar, SERIES_SYMBOLS, BarLayout};
 use novamind_tui::widgets::chart::zero_if_near;
-use novamind_tui::widgets::table::first_visible_row;
 use novamind_tui::widgets::{XAxis, Curve, YAxis, Table, AxisUnit, draw_chart};
 
 /// Maximum number of series. More series would be hard to distinguish.
@@ -278,6 +277,7 @@ impl ResultChart {
         }
         let place = selected.and_then(|row| shown.iter().position(|number| *number == row)).unwrap_or(0);
         let from = first_visible_row(place, fit, shown.len());
+        canvas.draw_scroll_marks(area, from * each, shown.len() * each);
         for (row, (place, series)) in row_rects(area).zip(all.skip(from * each)) {
             scale.draw(canvas, row, &bar(place, series));
             canvas.register_click(row, Click::Row(placement.index, place));

@@ -26,7 +26,11 @@ fn press_key(screen: &mut Sql, company: &DisplayedCompany, code: KeyCode) {
     with_context(company, |context| screen.handle_key(&KeyEvent::new(code, KeyModifiers::NONE), context));
 }
 
+/// Types into the open field or editor. If none is open, starts editing the statement.
 fn type_statement(screen: &mut Sql, company: &DisplayedCompany, text: &str) {
+    if !screen.scopes()[0].is_text() {
+        handle_action(screen, company, Action::EditQuery);
+    }
     for letter in text.chars() {
         press_key(screen, company, if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) });
     }
@@ -64,7 +68,7 @@ fn contains(lines: &[String], part: &str) -> bool {
 fn statement_runs_once_and_rows_are_shown() {
     let company = new_company();
     let mut screen = Sql::default();
-    assert_eq!(screen.scopes()[0], Scope::Editor);
+    assert_eq!(screen.scopes()[0], Scope::Query);
     let empty = handle_action(&mut screen, &company, Action::RunQuery);
     assert!(matches!(&empty[..], [Effect::ShowError(_)]));
     type_statement(&mut screen, &company, "SELECT 1; \nSELECT 2");
@@ -289,6 +293,36 @@ fn results_without_numbers_have_no_chart() {
 }
 
 #[test]
+fn keys_type_only_while_the_editor_is_in_edit_mode() {
+    let company = new_company();
+    let mut screen = Sql::default();
+    for letter in ['n', '3', 'e'] {
+        press_key(&mut screen, &company, KeyCode::Char(letter));
+    }
+    assert!(screen.editor.is_blank(), "a letter outside of an edit is a command");
+    assert!(contains(&screen_rows(&screen, &company, 80, 21), "i or click to type a statement"));
+    type_statement(&mut screen, &company, "SELECT 3");
+    assert_eq!((screen.scopes()[0], screen.editor.text().as_str()), (Scope::Editor, "SELECT 3"));
+    // Without a result, the editor keeps the focus; with a result, the rows get it.
+    handle_action(&mut screen, &company, Action::LeaveEditor);
+    assert_eq!((screen.focus, screen.scopes()[0]), (SqlPane::Editor, Scope::Query));
+    handle_action(&mut screen, &company, Action::RunQuery);
+    assert_eq!(screen.focus, SqlPane::Results);
+    receive_answer(&mut screen, &company, Ok(three_rows()));
+    handle_action(&mut screen, &company, Action::RecallQuery);
+    assert_eq!(screen.scopes()[0], Scope::Editor, "the key that edits the statement starts the edit");
+    handle_action(&mut screen, &company, Action::LeaveEditor);
+    assert_eq!(screen.focus, SqlPane::Results);
+    // A click and a paste start the edit, moving the focus ends it.
+    with_context(&company, |context| screen.handle_click(0, 0, context));
+    assert_eq!(screen.scopes()[0], Scope::Editor);
+    screen.set_focus(0);
+    assert_eq!(screen.scopes()[0], Scope::Query);
+    with_context(&company, |context| screen.paste(" + 4", context));
+    assert_eq!((screen.scopes()[0], screen.editor.text().as_str()), (Scope::Editor, "SELECT 3 + 4"));
+}
+
+#[test]
 fn browser_inserts_names() {
     let company = new_company();
     let mut screen = Sql::default();
@@ -368,7 +402,7 @@ fn running_query_shows_its_elapsed_time() {
     screen.running.as_mut().expect("a running statement").started_at = since;
     assert!(contains(&screen_rows(&screen, &company, 120, 37), " s … esc cancels"));
     receive_answer(&mut screen, &company, Err(Rejection::new("sql_error", "no such column: wrong (at character 8)")));
-    assert_eq!(screen.scopes()[0], Scope::Editor, "the editor has the focus after an error");
+    assert_eq!((screen.focus, screen.scopes()[0]), (SqlPane::Editor, Scope::Query), "the error is in the editor");
 }
 
 #[test]

@@ -71,7 +71,9 @@ impl DecisionForm {
 
     /// Focuses the cell with an index, or starts typing if the cell has the focus.
     pub fn handle_click(&mut self, cell: usize, company: &DisplayedCompany) {
-        let Some(place) = self.form.sheet.positions().nth(cell).filter(|_| !self.form.is_typing()) else { return };
+        let Some(place) = self.form.sheet.positions().nth(cell).filter(|_| !self.form.is_typing()) else {
+            return;
+        };
         if place == self.form.focus {
             self.form.handle_action(Action::EditCell, company);
         }

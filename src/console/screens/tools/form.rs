@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 use super::earlier_calls;
 use super::sheet::{CellPosition, ToolSheet};
 use crate::action::{Action, Scope};
+use crate::context::EditorDocument;
 use crate::attention::CELL_SEPARATOR;
 use crate::effect::Effect;
 use novamind_base::formatting::{dollars, parse_number};
@@ -15,7 +16,6 @@ use novamind_report::pluralize;
 use novamind_report::research::outlook_lines;
 use novamind_session::Preview;
 use novamind_tools::{ArgumentKind, MapKey, ToolKind, Rejection, ToolSpec};
-use novamind_tui::chord::Chord;
 use novamind_tui::widgets::field::NUMBER_HINT;
 use novamind_tui::widgets::{TextEditor, TextField};
 use novamind_worker::question::Pending;
@@ -110,9 +110,36 @@ impl ToolForm {
         self.draft_before_edit.is_some() || self.new_customer.is_some()
     }
 
+    /// Returns the text of the cell that the user types into, and whether the next character replaces the text.
+    pub fn typed_number(&self) -> Option<(String, bool)> {
+        self.draft_before_edit.as_ref()?;
+        let field = self.sheet.cell(self.focus)?.draft.as_ref()?;
+        Some((field.text().to_owned(), field.is_selected()))
+    }
+
     /// Returns the code editor, while it is open.
     pub fn code_editor(&self) -> Option<&TextEditor> {
         self.code_editor.as_deref()
+    }
+
+    /// Returns the code of the focused cell as a document, if the cell contains code. Code that starts with `#` is Python.
+    pub fn code_document(&self) -> Option<EditorDocument> {
+        self.sheet.blocks.get(self.focus.block).filter(|block| block.is_code())?;
+        let text = self.sheet.cell(self.focus)?.text();
+        let extension = if text.trim_start().starts_with('#') { "py" } else { "sql" };
+        Some(EditorDocument { text, extension })
+    }
+
+    /// Replaces the code of the focused cell.
+    pub fn replace_code(&mut self, text: &str) -> Vec<Effect> {
+        if let Some(editor) = &mut self.code_editor {
+            editor.set_text(text);
+            return self.store_code();
+        }
+        if let Some(slot) = self.sheet.cell_mut(self.focus) {
+            slot.draft = Some(TextField::with_text(text));
+        }
+        self.check()
     }
 
     /// Updates the current values and keeps the drafts.
@@ -298,12 +325,6 @@ impl ToolForm {
         }
     }
 
-    /// Returns whether a digit starts a number in the focused cell.
-    pub fn accepts_digits(&self) -> bool {
-        let is_cell = self.sheet.cell(self.focus).is_some() && !self.is_at_text();
-        !self.is_typing() && (is_cell || self.add_row_block().is_some())
-    }
-
     fn is_at_text(&self) -> bool {
         self.sheet.blocks.get(self.focus.block).is_some_and(super::sheet::ArgumentBlock::is_text)
     }
@@ -334,7 +355,7 @@ impl ToolForm {
             _ => self.move_focus(Action::Down),
         }
         // Enter ends typing. Movement keys continue typing in the next cell. In the last row, the down key keeps
-        // typing active so that further digits do not switch screens.
+        // typing active so that further digits are typed.
         match action {
             Action::CommitDown if self.focus == left => self.resume_typing(),
             Action::Commit => self.committed_cell = Some(left),
@@ -453,9 +474,6 @@ impl ToolForm {
 
     pub fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         self.committed_cell = None;
-        if self.accepts_digits() && Chord::from_event(key).starts_number() {
-            self.start_typing();
-        }
         if let Some((_, field)) = &mut self.new_customer {
             field.handle_key(key);
             return Vec::new();

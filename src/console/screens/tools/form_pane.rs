@@ -10,7 +10,7 @@ use super::outcome::{DetailLevel, OutcomeLines, outcome_lines};
 use super::sheet::ArgumentBlock;
 use super::{Tools, ToolsPane, figure};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, ScreenContext};
+use crate::context::{EditorDocument, Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tools::{ParameterNumbers, ToolSpec, ToolId, EffectTiming, describe};
@@ -24,10 +24,6 @@ pub struct FormPane;
 impl Pane<Tools> for FormPane {
     fn scopes(&self, tools: &Tools) -> Vec<Scope> {
         tools.visible_form().map_or(vec![Scope::Form, Scope::List], ToolForm::scopes)
-    }
-
-    fn accepts_digits(&self, tools: &Tools) -> bool {
-        tools.visible_form().is_some_and(ToolForm::accepts_digits)
     }
 
     fn hints(&self, tools: &Tools) -> Vec<Action> {
@@ -81,6 +77,15 @@ impl Pane<Tools> for FormPane {
         tools.form(context.company).map_or(Vec::new(), |form| form.paste(text))
     }
 
+    fn editor_document(&self, tools: &Tools) -> Option<EditorDocument> {
+        tools.visible_form().and_then(ToolForm::code_document)
+    }
+
+    fn replace_document(&self, tools: &mut Tools, text: &str) -> Vec<Effect> {
+        let form = tools.selected_tool().and_then(|spec| tools.forms.get_mut(&spec.id));
+        form.map_or(Vec::new(), |form| form.replace_code(text))
+    }
+
     fn handle_click(&self, tools: &mut Tools, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(form) = tools.form(context.company).filter(|form| !form.is_typing()) else { return Vec::new() };
         let place = form.sheet.positions().nth(row);
@@ -123,6 +128,8 @@ impl Pane<Tools> for FormPane {
         let rest = area_below(below, sheet.height + gap.min(sheet.height));
         let used = draw_outcome(&outcome.lines, canvas, rest, context);
         let below = area_below(rest, used + 1);
+        let used = tools.price_curve.draw(form, canvas, below);
+        let below = area_below(below, used);
         let used = draw_earlier(&form.earlier_calls, canvas, below);
         draw_manual(form.spec, canvas, area_below(below, used), context);
     }
@@ -162,7 +169,7 @@ fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenConte
     let terms = cost_and_effect_text(form.spec, &context.company.numbers, context.company.observation.day);
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
-    let outcome_with_detail = |detail| outcome_lines(form, &tools.leads, &tools.sales, context, (width, detail));
+    let outcome_with_detail = |detail| outcome_lines(form, tools, context, (width, detail));
     // One row is reserved for the note that the text is truncated.
     let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
         head.len() + values + gap + outcome.required_lines < area.height as usize && !outcome.is_truncated(width)

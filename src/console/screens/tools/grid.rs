@@ -6,10 +6,9 @@ use unicode_width::UnicodeWidthStr;
 use super::form::ToolForm;
 use super::outcome::ChannelLeads;
 use super::sheet::{ArgumentBlock, CellPosition, EditableCell};
-use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
-use novamind_tui::text::format_number;
+use novamind_tui::canvas::{Align, Canvas, Click, first_visible_row, row_rects};
+use novamind_tui::text::{first_fitting, format_number};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_visible_row;
 
 const NAME_WIDTH: u16 = 19;
 
@@ -71,7 +70,7 @@ pub(super) fn draw_sheet(
         FormLine::Head(_) | FormLine::Total(_) | FormLine::CurrentTotal(_) => false,
     };
     let here = lines.iter().position(is_here).unwrap_or(0);
-    let from = first_visible_row(here, area.height as usize, lines.len());
+    let from = canvas.scroll_to_row(area, here, lines.len());
     for (row, line) in row_rects(area).zip(lines.iter().skip(from)) {
         match line {
             FormLine::Head(at) => draw_head(form, *at, canvas, row),
@@ -141,6 +140,8 @@ fn draw_head(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect) {
         return;
     }
     let shown = visible_columns(form, at, row.width);
+    // The title of the form names the argument, so a narrow column shows only its unit.
+    let name = first_fitting([name, block.argument.unit.to_owned()], NAME_WIDTH.into());
     canvas.draw_text(Rect { width: NAME_WIDTH.min(row.width), ..row }, &name, Role::Header);
     for (place, column) in shown.clone().enumerate() {
         canvas.draw_aligned(cell_area(block, row, place), &block.columns[column], Role::Header, Align::Right);

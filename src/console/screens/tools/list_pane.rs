@@ -12,7 +12,6 @@ use novamind_tools::{ToolModule, ToolSpec};
 use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
-use novamind_tui::widgets::table::first_visible_row;
 
 pub struct ToolListPane;
 
@@ -111,7 +110,7 @@ impl Pane<Tools> for ToolListPane {
         }
         let is_here = |line: &ListLine| matches!(line, ListLine::Tool(place, _) if *place == tools.selected);
         let selected = lines.iter().position(is_here).unwrap_or(0);
-        let from = first_visible_row(selected, list.height as usize, lines.len());
+        let from = canvas.scroll_to_row(list, selected, lines.len());
         for (row, line) in row_rects(list).zip(lines.into_iter().skip(from)) {
             match line {
                 ListLine::Module(module) => canvas.draw_text(row, module.id(), Role::Header),

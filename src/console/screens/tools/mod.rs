@@ -9,6 +9,7 @@ mod grid;
 mod list_pane;
 mod margins;
 mod outcome;
+mod price_curve;
 mod reference;
 mod sheet;
 #[cfg(test)]
@@ -25,6 +26,7 @@ use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
 use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
+use crate::tour::FormFacts;
 use form::{ToolForm, format_json};
 use novamind_base::formatting::normalize_json_numbers;
 use novamind_database::QueryResult;
@@ -39,6 +41,8 @@ use novamind_worker::company::DisplayedCompany;
 use novamind_worker::message::Response;
 use novamind_worker::screen_queries::Reading;
 use outcome::ChannelLeads;
+use price_curve::PriceCurve;
+use sheet::CellPosition;
 
 /// Panes of the tools screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -62,6 +66,7 @@ pub struct Tools {
     forms: BTreeMap<ToolId, ToolForm>,
     leads: ChannelLeads,
     sales: PlanSales,
+    price_curve: PriceCurve,
 }
 
 impl Tools {
@@ -132,6 +137,17 @@ impl Tools {
         self.form(company).map_or(Vec::new(), |form| {
             form.sheet.fill(arguments);
             form.check()
+        })
+    }
+
+    /// Returns the state of the form that has the focus, for the tour.
+    pub fn tour_facts(&self) -> Option<FormFacts> {
+        let form = self.visible_form().filter(|_| self.focus == ToolsPane::Form)?;
+        Some(FormFacts {
+            tool: Some(form.spec.id),
+            is_at_first_cell: form.focus == CellPosition::default(),
+            draft: form.sheet.cell(CellPosition::default()).and_then(|cell| Some(cell.draft.as_ref()?.text().to_owned())),
+            typed: form.typed_number(),
         })
     }
 
@@ -208,13 +224,22 @@ impl ScreenState for Tools {
     }
 
     fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.price_curve.set_outdated();
         for form in self.forms.values_mut() {
             form.update(context.company);
         }
         self.form(context.company);
     }
 
+    fn request_data(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
+        match context.company.has_tool(ToolId::SetPrices) {
+            true => self.price_curve.request(context.company),
+            false => Vec::new(),
+        }
+    }
+
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.price_curve.take_answer();
         self.forms.values_mut().for_each(ToolForm::take_preview);
         Vec::new()
     }
@@ -248,6 +273,11 @@ impl ScreenState for Tools {
             _ => {}
         }
         Vec::new()
+    }
+
+    /// Shows the list of tools. Forms keep their drafts, and enter opens the last form again.
+    fn show_first_view(&mut self) {
+        self.set_focused_pane(ToolsPane::List);
     }
 
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
@@ -307,10 +337,8 @@ impl PaneScreen for Tools {
 
     fn set_focused_pane(&mut self, name: ToolsPane) {
         self.focus = name;
-        if name == ToolsPane::List {
-            // The typed text remains a draft. Typing does not resume when the form gets the focus again.
-            self.forms.values_mut().for_each(ToolForm::stop_typing);
-        }
+        // The typed text remains a draft.
+        self.forms.values_mut().for_each(ToolForm::stop_typing);
     }
 
     fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {

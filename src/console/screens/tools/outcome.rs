@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
+use super::Tools;
 use super::form::ToolForm;
 use super::margins::form_margin_lines;
 use super::reference::reference_lines;
@@ -12,7 +13,6 @@ use crate::action::Action;
 use crate::context::ScreenContext;
 use novamind_base::formatting::{dollars, grouped_number};
 use novamind_database::{QueryResult, number_at, text_at};
-use novamind_report::plan_margins::PlanSales;
 use novamind_report::research::outlook_lines;
 use novamind_report::cost_review::cost_line;
 use novamind_tools::{ArgumentKind, MapKey};
@@ -96,8 +96,7 @@ impl OutcomeLines {
 /// Returns the text below the values: the draft, the check of the call, the call itself, reference figures, and the answer.
 pub(super) fn outcome_lines(
     form: &ToolForm,
-    leads: &ChannelLeads,
-    sales: &PlanSales,
+    tools: &Tools,
     context: &ScreenContext<'_>,
     (width, detail): (usize, DetailLevel),
 ) -> OutcomeLines {
@@ -127,7 +126,7 @@ pub(super) fn outcome_lines(
     if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.changes_company()) {
         paragraph(&format!("≡ {}", form.call_text()), Role::Dim);
     }
-    if let Some(words) = form.cell_names().and_then(|(channel, group)| leads.pair_summary(channel, group)) {
+    if let Some(words) = form.cell_names().and_then(|(channel, group)| tools.leads.pair_summary(channel, group)) {
         paragraph(&words, Role::Text);
     }
     if let Some(answer) = answer {
@@ -137,7 +136,7 @@ pub(super) fn outcome_lines(
         form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|result| result.research.is_some()));
     let mut needed = if spread { lines.len() } else { 0 };
     let tables =
-        [form_margin_lines(form, sales, context.company, detail == DetailLevel::Brief), reference_lines(form.spec.id, context.company)];
+        [form_margin_lines(form, &tools.sales, context.company, detail == DetailLevel::Brief), reference_lines(form.spec.id, context.company)];
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
         if !dense {
             lines.push((" ".to_owned(), Role::Text));
@@ -152,6 +151,12 @@ pub(super) fn outcome_lines(
                 needed = lines.len();
             }
         }
+    }
+    for text in tools.price_curve.lines(form, context.company) {
+        if !dense {
+            lines.push((" ".to_owned(), Role::Text));
+        }
+        lines.extend(wrap(&text, width).into_iter().map(|line| (line, Role::Strong)));
     }
     let mut about = |text: &str| {
         if !text.is_empty() {

@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use novamind_base::formatting::{dollars_and_cents, dollars, grouped_number};
+use novamind_base::formatting::{QUALITY_DECIMALS, dollars, dollars_and_cents, grouped_number};
 use novamind_report::research::{format_mean_days, format_mean_gain};
 use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
@@ -61,7 +61,7 @@ fn project_lines(company: &DisplayedCompany) -> Vec<String> {
             tier.name.clone(),
             dollars(f64::from(tier.cost)),
             format_mean_days(means),
-            format_mean_gain(means, 4),
+            format_mean_gain(means, QUALITY_DECIMALS),
             running.to_owned(),
         ]
     };

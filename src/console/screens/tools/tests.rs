@@ -97,14 +97,16 @@ fn leaving_the_form_keeps_the_draft() {
 }
 
 #[test]
-fn only_digits_start_typing_in_number_cells() {
-    let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "enter", "2"]);
+fn typing_starts_only_with_the_edit_key() {
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "9", "5", "enter", "e", "2"]);
     assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
-    let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "esc"]);
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "9", "5", "esc"]);
     assert!(!tools.visible_form().expect("a form").sheet.is_changed(), "esc restores the previous value");
-    let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, &["v", "t"]);
-    let form = tools.visible_form().expect("a form");
-    assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
+    for keys in [&["3", "5"][..], &["$"], &["-", "."], &["v", "t"], &["enter", "esc", "3"]] {
+        let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, keys);
+        let form = tools.visible_form().expect("a form");
+        assert!(!form.is_typing() && !form.sheet.is_changed(), "{keys:?}: {:?}", form.sheet.arguments());
+    }
 }
 
 #[test]
@@ -180,14 +182,14 @@ fn escape_restores_the_previous_value() {
 #[test]
 fn copy_down_fills_the_column() {
     // The copied value is the value of the focused cell, or the value that was just accepted with enter.
-    for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
+    for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "enter", "4", "0", "enter", "="]] {
         let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, keys);
         let arguments = tools.visible_form().expect("a form").sheet.arguments().expect("numbers");
         let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
         assert_eq!(matrix.len(), 5);
         assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
     }
-    let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
+    let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "enter", "4", "0", "enter", "down", "="]);
     assert!(matches!(&effects[..], [Effect::ShowError(text)] if text.contains("empty")), "{effects:?}");
 }
 
@@ -407,6 +409,37 @@ fn small_window_shows_all_values_and_plan_margins() {
             }
         }
     }
+}
+
+#[test]
+fn form_of_prices_shows_the_curve_and_both_conversions_at_the_drafted_prices() {
+    use novamind_insight::CurveExplorer;
+    use novamind_worker::page_questions::EstimatedCurveQuestion;
+
+    let (session, company, mut screen) = played_screen::<Tools>(6);
+    let keys = KeyBindings::bundled();
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let asked = screen.request_data(&context);
+    let group = crate::test_kit::only_question::<EstimatedCurveQuestion>(&asked).0;
+    let leads = |fit: &novamind_report::fit::Fit| fit.measured.leads;
+    let most = company.fits.iter().filter(|fit| !fit.group.is_enterprise()).map(leads).max();
+    assert_eq!(company.fit(group).map(leads), most, "the group with the most leads");
+    assert!(screen.request_data(&context).is_empty());
+    screen.price_curve.set_answer(CurveExplorer::from_estimates(&session, group));
+    screen.prefill(ToolId::SetPrices, &json!({}), &company);
+    let current = screen_text(&screen, &company, 200, 57);
+    screen.prefill(ToolId::SetPrices, &json!({"A": 400, "B": 401, "C": 402}), &company);
+    let drafted = screen_text(&screen, &company, 200, 57);
+    for text in [&current, &drafted] {
+        for words in ["participation curve of", "measured ", "The estimate leaves out", "half"] {
+            assert!(text.contains(words), "{words} in\n{text}");
+        }
+    }
+    assert!(drafted.contains("at the drafted prices: estimated 0%"), "{drafted}");
+    assert!(!current.contains("estimated 0%"), "{current}");
+    let small = screen_text(&screen, &company, 80, 21);
+    assert!(small.contains("paid $"), "margins have precedence: {small}");
+    draw_at_all_sizes(&mut screen, &company);
 }
 
 #[test]

@@ -36,8 +36,7 @@ pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, cont
             text_rows(found, marked, placement.focused, width)
         }
     };
-    let height = usize::from(placement.area.height);
-    let from = xray.scroll.clamped_first_row(rows.len().saturating_sub(height));
+    let from = xray.scroll.scroll_rows(canvas, placement.area, rows.len());
     if placement.focused {
         canvas.page_rows = placement.area.height.max(1);
     }

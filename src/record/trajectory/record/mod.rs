@@ -36,6 +36,7 @@ pub use start::{Parent, Start};
 pub use voice::{FailedModelRequest, JudgedPost, ModelTask, RewordedPost, RewordedPosts, VoiceAnswer};
 pub use week::{
     Advance, Branch, CalculationOutput, ClosedDays, End, Override, RunEndReason, SubmittedForecast,
+    has_naive_forecasts, is_naive_week,
 };
 
 /// An event of a trajectory.

@@ -28,12 +28,20 @@ pub struct Advance {
     pub request: Option<RequestId>,
 }
 
-impl Advance {
-    /// Returns whether at least one submitted forecast is a naive forecast, or `None` if there are no forecasts.
-    pub fn has_naive_forecasts(&self) -> Option<bool> {
-        let any = self.forecasts.iter().any(|forecast| forecast.filled_naively);
-        (!self.forecasts.is_empty()).then_some(any)
-    }
+/// Returns whether at least one submitted forecast that ends within the run is a naive forecast, or `None` if there are no
+/// forecasts. `days_left` is the number of days from the submission to the last day of the run.
+pub fn has_naive_forecasts(forecasts: &[SubmittedForecast], days_left: u32) -> Option<bool> {
+    let all = forecasts.iter().map(|forecast| (forecast.horizon_days, forecast.filled_naively));
+    (!forecasts.is_empty()).then(|| is_naive_week(all, days_left))
+}
+
+/// Returns whether at least one forecast that ends within the run is a naive forecast. Each forecast consists of its
+/// horizon in days and whether it is naive. The program fills in forecasts that end after the last day, so these count
+/// only if no forecast ends within the run.
+pub fn is_naive_week(forecasts: impl Iterator<Item = (u32, bool)> + Clone, days_left: u32) -> bool {
+    let is_asked = |forecast: &(u32, bool)| forecast.0 <= days_left;
+    let asks_any = forecasts.clone().any(|forecast| is_asked(&forecast));
+    forecasts.filter(|forecast| is_asked(forecast) || !asks_any).any(|(_, is_naive)| is_naive)
 }
 
 /// A submitted forecast as recorded in a line.
@@ -152,4 +160,18 @@ pub struct CalculationOutput {
     pub name: String,
     /// Output of the calculation, truncated to the length that the dashboard shows.
     pub output: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_naive_week;
+
+    #[test]
+    fn naive_forecasts_beyond_the_last_day_do_not_count() {
+        let filled = |naive: [bool; 4]| [7, 28, 84, 182].into_iter().zip(naive);
+        assert!(!is_naive_week(filled([false, false, true, true]), 83));
+        assert!(is_naive_week(filled([false, false, true, true]), 84));
+        assert!(is_naive_week(filled([true; 4]), 3), "no forecast ends within the run");
+        assert!(!is_naive_week(filled([false; 4]), 500));
+    }
 }

@@ -111,3 +111,24 @@ fn steep_bands_have_no_gaps() {
         assert!(pair[1] == pair[0] + 1 && touch, "{}", picture.join("\n"));
     }
 }
+
+#[test]
+fn wide_band_is_cut_and_marked() {
+    let lines = [Curve::from_values(&[8e6, 9e6, 10e6, 9e6], Role::Text).with_name("cash")];
+    let wide = Band { bounds: vec![(3.0, 9e6, 9e6), (6.0, -50e6, 60e6)], name: "95 %" };
+    let picture = drawn(&plot(&lines, Some(&wide)), 60, 14, Marker::Braille);
+    let text = picture.join("\n");
+    assert!(text.contains('▲') && text.contains('▼'), "{text}");
+    assert!(!text.contains("$60M") && !text.contains("-$50M"), "{text}");
+    let narrow = Band { bounds: vec![(3.0, 9e6, 9e6), (6.0, 8e6, 11e6)], name: "95 %" };
+    let picture = drawn(&plot(&lines, Some(&narrow)), 60, 14, Marker::Braille).join("\n");
+    assert!(picture.contains('░') && !picture.contains('▲') && !picture.contains('▼'), "{picture}");
+}
+
+#[test]
+fn band_around_a_constant_curve_is_not_cut() {
+    let lines = [Curve::from_values(&[1e6, 1e6], Role::Text)];
+    let band = Band { bounds: vec![(1.0, 1e6, 1e6), (2.0, 0.9e6, 1.1e6)], name: "95 %" };
+    let picture = drawn(&plot(&lines, Some(&band)), 60, 14, Marker::Braille).join("\n");
+    assert!(picture.contains('░') && !picture.contains('▲') && !picture.contains('▼'), "{picture}");
+}

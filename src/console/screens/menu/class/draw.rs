@@ -14,7 +14,6 @@ use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::{Curve, Plot, PointLabel, XAxis, YAxis, zero_if_near};
 use novamind_tui::widgets::scale::AxisUnit;
-use novamind_tui::widgets::table::first_visible_row;
 
 /// Width of the ranking in narrow windows and in wide windows.
 const RANKING_WIDTH: (u16, u16) = (29, 52);
@@ -84,7 +83,8 @@ impl ClassPage {
         let for_measure = if for_measure > measure.len() as u16 { for_measure } else { 0 };
         let shown = (room - for_measure) as usize;
         canvas.page_rows = shown as u16;
-        let from = first_visible_row(lit.unwrap_or(0), shown, ranking.len());
+        let list = Rect { height: shown as u16, ..inside };
+        let from = canvas.scroll_to_row(list, lit.unwrap_or(0), ranking.len());
         for (row, (at, student)) in rows.take(shown).zip(ranking.iter().enumerate().skip(from)) {
             let here = lit == Some(at);
             if here {

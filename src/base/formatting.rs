@@ -121,11 +121,6 @@ pub fn percent(share: f64, decimals: usize) -> String {
     format!("{}%", grouped_number(share * 100.0, decimals).replace(',', ""))
 }
 
-/// Formats dollars per month: `$19,350/month`.
-pub fn dollars_per_month(value: f64) -> String {
-    format!("{}/month", dollars(value))
-}
-
 /// Formats a quality between 0 and 1, or a difference between qualities: `0.348`.
 pub fn quality(value: f64) -> String {
     grouped_number(value, QUALITY_DECIMALS)
@@ -382,7 +377,6 @@ mod tests {
         assert_eq!([12.0, 22.5, 0.4, 0.125].map(price), ["$12", "$22.50", "$0.40", "$0.125"]);
         assert_eq!([quality(0.3), quality(0.14706)], ["0.300", "0.147"]);
         assert_eq!([quality_change(0.0031), quality_change(-0.012)], ["+0.003", "-0.012"]);
-        assert_eq!(dollars_per_month(19_350.4), "$19,350/month");
         assert_eq!(percent(0.12345, 1), "12.3%");
         assert_eq!(percent(0.012345, 2), "1.23%");
         assert_eq!(percent(0.00474, 2), "0.47%");

@@ -69,7 +69,6 @@ pub use busy::BusyState;
 use exit::ExitTarget;
 pub use layers::Layer;
 use layers::Layers;
-pub use own_commands::own_commands_refusal;
 pub use pause_screen::PauseScreen;
 pub use settings::Settings;
 

@@ -25,6 +25,8 @@ pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> Str
 
 /// Minimum number of spaces after a truncated word that count as free space instead of a gap between columns.
 const MIN_FREE_SPACES: usize = 4;
+/// Width of the longest numbers in texts.
+const LONGEST_NUMBER: usize = 8;
 
 /// Returns the lines that contain a word that is truncated although free space follows up to the next border.
 pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
@@ -37,7 +39,10 @@ pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
             let behind = &line[at + sign.len()..];
             let blanks = behind.chars().take_while(|letter| *letter == ' ').count();
             let next = behind.chars().nth(blanks);
-            blanks >= MIN_FREE_SPACES && matches!(next, Some('│' | '┃') | None) && next.is_some()
+            // Numbers are never cut, so a line that ends between words has space for a part of a number.
+            let is_between_words = line[..at].ends_with(' ');
+            let least = if is_between_words { MIN_FREE_SPACES + LONGEST_NUMBER } else { MIN_FREE_SPACES };
+            blanks >= least && matches!(next, Some('│' | '┃') | None) && next.is_some()
         })
     };
     screen.lines().filter(wasteful).map(str::to_owned).collect()

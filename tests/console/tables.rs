@@ -115,8 +115,10 @@ fn lists_with_hidden_rows_have_marks() {
                     && first.right_border.len() > 2
                     // The headings stay, the rows below are other rows.
                     && first.rows.first() == last.rows.first()
-                    && first.rows.last() != last.rows.last()
+                    && first.rows.get(1) != last.rows.get(1)
                     && !first.right_border.contains(' ')
+                    // A list that was scrolled to its end fills the pane.
+                    && !last.rows.last().is_some_and(|row| row.trim().is_empty())
                 {
                     scrolled += 1;
                     let marks = (first.right_border.contains('↓'), last.right_border.contains('↑'));
@@ -155,10 +157,15 @@ fn moving_the_focus_does_not_move_panes() {
             }
             console.press(&format!("esc esc {screen}"));
             let before = console.screen();
-            for _ in 0..7 {
+            let Stage::Run(run) = &console.app.stage else { panic!("a run") };
+            for _ in 0..run.screens.get(run.screen).pane_count() {
                 console.press("tab");
                 let after = console.screen();
-                assert_eq!(corners(&before), corners(&after), "{screen} at {size:?}:\n{before}\n{after}");
+                // A pane can contain several boxes.
+                assert!(
+                    corners(&before).is_subset(&corners(&after)),
+                    "{screen} at {size:?}:\n{before}\n{after}"
+                );
             }
         }
     }
@@ -313,8 +320,8 @@ fn layout_of_columns_is_remembered() {
         "{}",
         console.screen()
     );
-    // Hides the kind of the groups and moves their names one place to the right.
-    console.press("C down down space up J");
+    // Hides the kind of the groups and moves their names behind the subscribers.
+    console.press("C down down space up J J");
     console.assert_shows("Columns of Groups");
     console.press("esc");
     let changed = head(&mut console);

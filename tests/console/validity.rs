@@ -91,11 +91,11 @@ const ELEMENTS: [Element; 9] = [
     Element {
         name: "own command: query",
         keys: "f11",
-        content: "4711",
+        content: "own 4711",
         baseline: Refused("own commands are closed in an unfinished baseline run"),
         study: Refused("own commands are closed in a study"),
-        sandbox: Shown("4711"),
-        finished: Shown("4711"),
+        sandbox: Shown("own 4711"),
+        finished: Shown("own 4711"),
     },
     Element {
         name: "own command: program",
@@ -150,7 +150,7 @@ const OWN_COMMANDS: &str = r#"
 [[commands]]
 name = "Mine: query"
 key = "f11"
-sql = "SELECT 4700 + 11 AS mine"
+sql = "SELECT 'own ' || (4700 + 11) AS mine"
 
 [[commands]]
 name = "Mine: program"

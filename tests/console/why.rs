@@ -38,7 +38,7 @@ fn causes_open_from_figures_on_screens() {
         ("end", "development, week 10: "),
         ("right right", "development, week 9: "),
         ("3", "subscribers of S1, week 10: "),
-        ("3 right right right right", "leads of S1, week 10: "),
+        ("3 right right right right right", "leads of S1, week 10: "),
         ("right right right", "cancellations of S1, week 10: "),
         ("right", "churn of S1, week 10: "),
         ("3 enter tab", "conversion of S1, week 10: "),

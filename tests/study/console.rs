@@ -182,7 +182,7 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     pub fn query(&mut self, sql: &str, error: &str) {
-        self.press_unrecorded(&format!("'{}' f5 esc", sql.replace(' ', "' _ '")));
+        self.press_unrecorded(&format!("i '{}' f5 esc", sql.replace(' ', "' _ '")));
         self.add_expected_line("draft", "sql", "sent", Some(0));
         self.add_expected_line("query", "typed", error, None);
         self.diary.queries.push(sql.to_owned());

@@ -7,11 +7,10 @@ use crate::context::ScreenId;
 use crate::dialogs::confirm::ConfirmDialog;
 use crate::dialogs::text_dialog::TextDialog;
 use crate::effect::Effect;
-use crate::own_commands::{ExternalProgram, OwnAction, OwnKeyMeaning, ProgramCall};
+use crate::own_commands::{ExternalProgram, OwnAction, OwnKeyMeaning, ProgramCall, own_commands_refusal};
 use novamind_tools::ToolId;
 use novamind_tui::chord::Chord;
 use novamind_tui::text::format_count;
-use novamind_worker::company::DisplayedCompany;
 
 /// Lines of an own command that have not been answered yet, the running line first.
 #[derive(Debug, Default)]
@@ -19,16 +18,6 @@ pub struct LineQueue {
     name: String,
     count: usize,
     lines: VecDeque<(ToolId, serde_json::Value)>,
-}
-
-/// Returns why own commands cannot be used in a run, if they cannot.
-pub fn own_commands_refusal(company: &DisplayedCompany, has_participant: bool) -> Option<&'static str> {
-    if has_participant {
-        return Some("own commands are closed in a study: they are help from outside");
-    }
-    (company.is_baseline() && company.is_running()).then_some(
-        "own commands are closed in an unfinished baseline run: they are help from outside, which agents do not have",
-    )
 }
 
 impl App {

@@ -5,12 +5,11 @@ use ratatui::layout::Rect;
 
 use super::{Dialog, DialogResponse};
 use crate::action::{ACTIONS, Action, Scope};
-use crate::app::own_commands_refusal;
 use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::keys::KeyBindings;
 use crate::lesson::closed_reason;
-use crate::own_commands::{COMMANDS_FILE, OwnCommand, OwnCommands};
+use crate::own_commands::{COMMANDS_FILE, OwnCommand, OwnCommands, own_commands_refusal};
 use novamind_glossary::Subject;
 use novamind_record::folder::query_library::QueryLibrary;
 use novamind_session::JournalEntry;

@@ -19,6 +19,7 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::query_library::{QueryHeader, QueryLibrary};
 use novamind_tools::ToolId;
 use novamind_tui::chord::{Chord, format_sequence, parse_sequence};
+use novamind_worker::company::DisplayedCompany;
 
 pub use rows::ListRows;
 
@@ -83,6 +84,16 @@ pub enum OwnKeyMeaning {
     Command(usize),
     /// The keys are the start of a sequence.
     Prefix,
+}
+
+/// Returns why own commands cannot be used in a run, if they cannot.
+pub fn own_commands_refusal(company: &DisplayedCompany, has_participant: bool) -> Option<&'static str> {
+    if has_participant {
+        return Some("own commands are closed in a study: they are help from outside");
+    }
+    (company.is_baseline() && company.is_running()).then_some(
+        "own commands are closed in an unfinished baseline run: they are help from outside, which agents do not have",
+    )
 }
 
 #[derive(Deserialize)]

@@ -487,8 +487,9 @@ fn propose_better_quality(
         false => format!("{duration}, for {} in total.", format_money(cost)),
     };
     let reached = format!(
-        "Development for {group} at {} a day reaches the estimate of the required quality, {floor:.4}, in {price}",
-        format_money(PROPOSED_DEVELOPMENT_SPEND)
+        "Development for {group} at {} a day reaches the estimate of the required quality, {}, in {price}",
+        format_money(PROPOSED_DEVELOPMENT_SPEND),
+        format_quality(floor)
     );
     let text = match cost > at_risk {
         true => {

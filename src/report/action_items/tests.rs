@@ -189,7 +189,7 @@ fn plan_with_higher_quality_but_too_small_quota_is_named() {
         "C has the better model"
     );
     let named = format!(
-        "B delivers quality {:.4}. C delivers {:.4} within the estimated budget of $",
+        "B delivers quality {:.3}. C delivers {:.3} within the estimated budget of $",
         delivered_quality.by_plan[Plan::B],
         delivered_quality.by_plan[Plan::C]
     );

@@ -81,7 +81,7 @@ fn sql_statement_is_completed_and_run_and_a_slow_statement_is_cancelled() {
     terminal.wait_for("day 0/500");
     terminal.type_keys("9");
     terminal.wait_for("Query");
-    terminal.type_keys("SELECT count(*) AS plans FROM rese");
+    terminal.type_keys("iSELECT count(*) AS plans FROM rese");
     terminal.wait_for("FROM rese");
     terminal.type_keys("\t");
     terminal.wait_for("FROM research_projects");

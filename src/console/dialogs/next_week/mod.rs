@@ -83,7 +83,6 @@ impl NextWeekDialog {
     pub fn reopen(&mut self, unsent: Vec<ToolId>, baseline: bool) {
         (self.tools_with_drafts, self.is_baseline) = (unsent, baseline);
         self.step = NextWeekStep::Review;
-        self.focus = (0, 0);
         self.review = ChangeReview::default();
         self.problem = None;
         self.is_typing = false;
@@ -134,7 +133,11 @@ impl NextWeekDialog {
             NextWeekStep::Rationale if self.rationale.is_blank() => {
                 self.problem = Some(RATIONALE_NEEDED.to_owned());
             }
-            NextWeekStep::Rationale => self.step = NextWeekStep::Forecasts,
+            NextWeekStep::Rationale => {
+                let last = context.company.observation.horizons_in_run.saturating_sub(1);
+                self.focus.0 = self.focus.0.min(last);
+                self.step = NextWeekStep::Forecasts;
+            }
             NextWeekStep::Forecasts => match self.parse_forecasts(context.company) {
                 Ok(forecasts) => {
                     let rationale = self.rationale.text().trim().to_owned();
@@ -333,6 +336,7 @@ impl Dialog for NextWeekDialog {
             {
                 self.fill_rationale(context.company);
                 self.fill_naive_forecasts(context.company);
+                self.focus = (0, 0);
                 self.step = NextWeekStep::Forecasts;
             }
             Action::FillNaiveForecasts if self.step == NextWeekStep::Review => {

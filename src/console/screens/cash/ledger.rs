@@ -130,7 +130,7 @@ fn ledger_row(subject: &LedgerSubject, all: &[CategoryAmounts; 4], week: u32) ->
     let whole = income_or_cost_total(&all[0], income).abs();
     let share = if *subject == LedgerSubject::Net || whole <= 0.0 { None } else { Some(now.abs() / whole) };
     let amount = |value: f64| TableCell::from_number(value, if value == 0.0 { "–".to_owned() } else { format_money(value) });
-    let moved = if week < 2 { "–".to_owned() } else { format_change(change, &short_dollars(change.abs())) };
+    let moved = if week < 2 { "–".to_owned() } else { format_change(change, &short_dollars(change.abs().round())) };
     vec![
         TableCell::from_text(match subject {
             LedgerSubject::Category(_) => format!("  {name}"),

@@ -148,7 +148,7 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
             optional_cell((monthly > 0.0).then_some(monthly), &dollars)
         }
         GroupColumn::RevenuePerSeat => optional_cell(facts.revenue_per_seat(), &dollars_and_cents),
-        GroupColumn::Usage => optional_cell(facts.usage(), &compact_number),
+        GroupColumn::Usage => optional_cell(facts.usage(), &|units| compact_number(units.round())),
         GroupColumn::AdBudget => budget(total_ad_budget(company, group)),
         GroupColumn::AcquisitionCost => {
             let (spend, signed) = (market.ad_spend(group), facts.sum_of_last_weeks(week, 4, |flow| flow.signups));

@@ -1,7 +1,7 @@
 use super::model::*;
 use super::*;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, screen_text, played_screen, draw_at_all_sizes};
+use crate::test_kit::{handle_action, screen_text, zoomed_text, played_screen, draw_at_all_sizes};
 use novamind_database::Cell as Value;
 use novamind_session::Session;
 use novamind_session::identifiers::Channel;
@@ -236,7 +236,10 @@ fn fit_shows_the_curve_and_both_conversions_of_the_open_group() {
     screen.curve.set_answer(CurveExplorer::from_estimates(&session, group("S1")));
     screen.set_focused_pane(CustomersPane::Fit);
     for (width, height) in [(60, 12), (80, 20), (120, 37), (200, 57)] {
-        let text = screen_text(&screen, &company, width, height);
+        let text = match height {
+            12 | 20 => zoomed_text(&screen, &company, width, height),
+            _ => screen_text(&screen, &company, width, height),
+        };
         for words in ["estimated conversion ", "half"] {
             assert!(text.contains(words), "{words} at {width}×{height} in\n{text}");
         }

@@ -197,7 +197,7 @@ impl PaneScreen for Journal {
 
     fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if area.width < 60 || area.height < 14 {
-            return draw_pane(self, self.focus, canvas, area, context);
+            return draw_stack(self, self.panes(), canvas, area, context);
         }
         let few = context.company.forecast_scores.len() as u16 + 4;
         let wide = area.width >= 104;

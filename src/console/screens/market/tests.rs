@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::*;
 use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{handle_action, only_question, screen_text, played_screen, played_session, loaded_screen};
+use crate::test_kit::{handle_action, only_question, screen_text, zoomed_text, played_screen, played_session, loaded_screen};
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
 use novamind_worker::posts::PostKind;
@@ -141,7 +141,7 @@ fn economy_is_shown_with_its_publication_lag() {
             assert!(text.contains(words), "{width}×{height} {words} in\n{text}");
         }
     }
-    screen.set_focused_pane(MarketPane::Attempts);
+    screen.set_focused_pane(MarketPane::Economy);
     assert!(screen_text(&screen, &company, 80, 21).contains("PMI "));
     assert!(!screen.news.is_empty() && screen.news.iter().all(|item| item.post.kind == PostKind::Press));
     screen.set_focused_pane(MarketPane::News);
@@ -172,7 +172,11 @@ fn economy_chart_marks_unpublished_days_and_competitor_news() {
     assert!(rivals > 0 && rivals < screen.news.len(), "{rivals} of {}", screen.news.len());
     screen.set_focused_pane(MarketPane::Economy);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
-        let text = screen_text(&screen, &company, width, height);
+        // In a small window, the pane has space for news only when it is enlarged.
+        let text = match height {
+            21 => zoomed_text(&screen, &company, width, height),
+            _ => screen_text(&screen, &company, width, height),
+        };
         for words in [
             "░░",
             "publ",

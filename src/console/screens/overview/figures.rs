@@ -219,11 +219,14 @@ pub static METRICS: [Metric; 22] = [
 ];
 
 /// Returns the columns of the table. In narrow windows, the last columns are omitted first.
+/// Number of weeks in a sparkline.
+const TREND_WEEKS: usize = 10;
+
 pub fn columns() -> Vec<TableColumn> {
     let numbers = ["this week", "change"].map(TableColumn::numeric);
     let last = ["last week", "4-wk mean"].map(TableColumn::numeric);
     let name = [TableColumn::text("figure")];
-    name.into_iter().chain(numbers).chain([TableColumn::text("trend")]).chain(last).collect()
+    name.into_iter().chain(numbers).chain([TableColumn::text("trend").indivisible()]).chain(last).collect()
 }
 
 /// Returns the first and the last week that a column covers, as numbers of weeks before the last week.
@@ -268,7 +271,7 @@ pub fn metric_row(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell>
         TableCell::from_text(figure_label(metric.name)),
         cell(now).with_role(Role::Strong),
         moved,
-        TableCell::from_text(sparkline(&trend, 12)).with_role(Role::Series(0)),
+        TableCell::from_text(sparkline(&trend, TREND_WEEKS)).with_role(Role::Series(0)),
         cell(before).with_role(Role::Dim),
         cell(company.four_week_mean(metric.read)).with_role(Role::Dim),
     ]

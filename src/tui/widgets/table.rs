@@ -603,7 +603,7 @@ mod tests {
         assert_eq!(drawn(&table, 30), ["group  cash  leads        +2 →", "S1     1.00   2.00"]);
         assert_eq!(drawn(&table, 12)[0], "group   +4 →");
         table.select_column(3);
-        assert_eq!(drawn(&table, 26)[0], "group ←leads  churn   +1 →");
+        assert_eq!(drawn(&table, 25)[0], "group ←leads  churn  +1 →");
         table.select_column(4);
         assert_eq!(drawn(&table, 26)[0], "group ←leads  churn  usage");
     }

@@ -77,7 +77,7 @@ impl Draws {
     }
 
     fn log_uniform(&mut self, least: f64, most: f64) -> f64 {
-        least * (most / least).powf(self.unit())
+        least * libm::pow(most / least, self.unit())
     }
 
     fn pick<T: Copy>(&mut self, from: &[T]) -> T {

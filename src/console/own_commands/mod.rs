@@ -390,7 +390,7 @@ lines = ["set_prices A=16 B=34", "set_capacity_tier 1"]
                 "Set it to \"selected\" or \"all\"",
             ),
             ("[[commands]]\nname = \"a\"\nprogram = [\"x\"]\ntimeout = 0", "Set it to 1 to 3600 seconds"),
-            ("[[commands]]\nname = \"a\"\nrules = \"acept rest\"", "rules: "),
+            ("[[commands]]\nname = \"a\"\nrules = \"agree rest\"", "rules: "),
             ("[[commands]]\nname = \"a\"\nlines = [\"set_price A=3\"]", "lines: set_price A=3: "),
             ("[[commands]]\nname = \"a\"\nlines = [\"next naive\"]", "lines: next naive: "),
             ("[[commands]]\nname = \"a\"\nkeys = \"x\"\nsql = \"x\"", "unknown field `keys`"),

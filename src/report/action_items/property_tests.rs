@@ -230,7 +230,7 @@ fn check_no_sales(need: &ActionItem, said: &[f64], proposed: &[f64], group: Grou
 fn check_capacity(need: &ActionItem, said: &[f64], proposed: &[f64]) {
     let [busiest, share, units, tier, growth, time] = said[..] else { panic!("{need:#?}") };
     assert_near(share, 100.0 * busiest / units, 0.5, need);
-    let weeks = (units / busiest).ln() / (1.0 + growth / 100.0).ln();
+    let weeks = libm::log(units / busiest) / libm::log(1.0 + growth / 100.0);
     match need.text.contains("weeks.") {
         true => assert_near(time, weeks, 0.05, need),
         false => assert!(time == (weeks * 7.0).ceil().max(1.0), "{weeks}: {need:#?}"),

@@ -11,7 +11,7 @@ pub fn plan_economics(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEcon
     let studied = company
         .insights
         .iter()
-        .map(|(group, insights)| (*group, (insights.info_level as u8, insights.estimates.usage_volume)));
+        .map(|(group, insights)| (*group, (insights.info_level, insights.estimates.usage_volume)));
     PlanEconomics {
         list_prices: per_plan(ToolId::SetPrices),
         quotas: per_plan(ToolId::SetUsageQuotas),

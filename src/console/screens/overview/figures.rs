@@ -218,10 +218,10 @@ pub static METRICS: [Metric; 22] = [
     ),
 ];
 
-/// Returns the columns of the table. In narrow windows, the last columns are omitted first.
 /// Number of weeks in a sparkline.
 const TREND_WEEKS: usize = 10;
 
+/// Returns the columns of the table. In narrow windows, the last columns are omitted first.
 pub fn columns() -> Vec<TableColumn> {
     let numbers = ["this week", "change"].map(TableColumn::numeric);
     let last = ["last week", "4-wk mean"].map(TableColumn::numeric);

@@ -101,8 +101,8 @@ fn is_write_failure(kind: ErrorKind) -> bool {
 }
 
 impl From<Rejection> for Failure {
-    fn from(refusal: Rejection) -> Failure {
-        Failure::failed(refusal.to_string())
+    fn from(rejection: Rejection) -> Failure {
+        Failure::failed(rejection.to_string())
     }
 }
 

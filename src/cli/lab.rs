@@ -271,10 +271,11 @@ fn confirm_bias(
     let count = seeds.last - seeds.first + 1;
     let following = SeedRange { first: seeds.last + 1, last: seeds.last + count };
     let figures = checkpoint_figures(policy, scenario, reference, &following, context, pool)?;
-    let again = compare_with_reference(reference, &figures).suspect_figures();
+    let repetition = compare_with_reference(reference, &figures).suspect_figures();
     let confirmed = suspects.into_iter().filter_map(|(figure, first)| {
-        let (_, second) =
-            again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;
+        let (_, second) = repetition
+            .iter()
+            .find(|(other, second)| *other == figure && second.signum() == first.signum())?;
         Some((figure, first, *second))
     });
     Ok(confirmed.collect())
@@ -303,8 +304,8 @@ fn describe_verdict(verdict: &Verdict, all: bool) -> String {
         text += &format!("  excluded from the comparison: {cell}\n");
     }
     for (figure, first) in comparison.suspect_figures() {
-        let again = verdict.biased.iter().find(|(biased, ..)| *biased == figure);
-        text += &match again {
+        let repetition = verdict.biased.iter().find(|(biased, ..)| *biased == figure);
+        text += &match repetition {
             Some((.., second)) => {
                 format!("  biased: {figure}, median z {first:.2} and {second:.2} on the subsequent seeds\n")
             }

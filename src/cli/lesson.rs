@@ -150,7 +150,8 @@ fn write_debrief(
     let folder = find_run_to_read(&context.runs_folder()?, run)?;
     context.authorize_view(&folder, "lesson", "debrief")?;
     let session = Session::open_to_read(&folder, true)?;
-    let played = FinishedPart::from_session(&session).map_err(|refusal| Failure::failed(refusal.message))?;
+    let played =
+        FinishedPart::from_session(&session).map_err(|rejection| Failure::failed(rejection.message))?;
     let debrief = played.debrief(calls_for_waiting_threads);
     let (path, text) = match (html, markdown) {
         (Some(path), _) => (path, debrief_to_html(&debrief)),

@@ -150,8 +150,8 @@ fn query_database_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option
                 read_manifest(folder).is_ok_and(|manifest| can_inspect(&manifest, ended, Some(folder)))
             };
             return answer.map(Some).map_err(|error| match query_rejection(error) {
-                refusal if may_look() => with_hidden_table_hint(refusal).into(),
-                refusal => refusal.into(),
+                rejection if may_look() => with_hidden_table_hint(rejection).into(),
+                rejection => rejection.into(),
             });
         }
     }

@@ -263,9 +263,9 @@ mod tests {
     #[test]
     fn write_in_order_fails_if_a_seed_has_no_result() {
         let played = |seed| {
-            let refusal = Rejection::new("no_play", "nothing was played");
+            let rejection = Rejection::new("no_play", "nothing was played");
             let error =
-                RunError::Refused { seed, day: 0, tool: "test".to_owned(), refusal: Box::new(refusal) };
+                RunError::Refused { seed, day: 0, tool: "test".to_owned(), rejection: Box::new(rejection) };
             (seed, Err(error), MetricsCollector::disabled())
         };
         let written = |seeds: &[u64]| {

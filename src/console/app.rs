@@ -461,8 +461,8 @@ impl App {
                 self.orders.push(Order::Ask(ask, self.busy.is_some()));
             }
         }
-        let asks = self.with_screen(|screen, context| screen.request_data(context)).unwrap_or_default();
-        self.execute_effects(asks);
+        let effects = self.with_screen(|screen, context| screen.request_data(context)).unwrap_or_default();
+        self.execute_effects(effects);
         self.request_hidden_values();
     }
 

@@ -20,7 +20,9 @@ pub fn write_in_background(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>
     };
     let work = move || files.into_iter().map(write).collect::<Result<Vec<PathBuf>, _>>().map(Some);
     answer_on_thread(news, work, |written| {
-        Response::FilesWritten(written.map(|paths| format_paths(&paths)).map_err(|refusal| refusal.message))
+        Response::FilesWritten(
+            written.map(|paths| format_paths(&paths)).map_err(|rejection| rejection.message),
+        )
     });
 }
 
@@ -34,7 +36,7 @@ pub fn save_query_in_background(
         Ok(path) => Ok(Some((format!("saved: {}", path.display()), QueryLibrary::load(&configuration)))),
         Err(error) => Err(Rejection::new("io_error", error.to_string())),
     };
-    answer_on_thread(news, work, |saved| Response::QuerySaved(saved.map_err(|refusal| refusal.message)));
+    answer_on_thread(news, work, |saved| Response::QuerySaved(saved.map_err(|rejection| rejection.message)));
 }
 
 /// Formats the full path of the first file and the names of the other files.

@@ -472,8 +472,8 @@ mod tests {
         assert!(text.width() < 76, "{text}");
         assert!(!progress_text(&busy(days), 60, "esc").contains("cash"));
         // Figures are shown once the first day is simulated.
-        let begun = progress_text(&busy(SimulationProgress::new(70, 77)), 120, "esc");
-        assert!(begun.contains("day 0 of 7") && !begun.contains("cash"), "{begun}");
+        let started = progress_text(&busy(SimulationProgress::new(70, 77)), 120, "esc");
+        assert!(started.contains("day 0 of 7") && !started.contains("cash"), "{started}");
         // The last week of a run is shorter.
         assert!(
             progress_text(

@@ -203,8 +203,8 @@ fn push_goal(lines: &mut StyledLines, goal: &GoalStatus) {
     match goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0 && room > 3) {
         Some((value, bound)) => {
             // A bar is full only if the goal is reached.
-            let most = if goal.met == Some(true) || value >= bound { 1.0 } else { 1.0 - 1.0 / room as f64 };
-            lines.push_text(&format!("{} {at}", bar((value / bound).min(most), room)), Role::Text);
+            let max = if goal.met == Some(true) || value >= bound { 1.0 } else { 1.0 - 1.0 / room as f64 };
+            lines.push_text(&format!("{} {at}", bar((value / bound).min(max), room)), Role::Text);
         }
         None => lines.push_text(&at, Role::Text),
     }

@@ -68,8 +68,8 @@ mod tests {
     fn documentation_matches_the_key_bindings() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/interfaces/keys.md");
         let page = std::fs::read_to_string(path).expect("the page of keys");
-        let shipped = format!("{}\n", to_markdown(&KeyBindings::bundled()).trim_end());
-        if page.ends_with(&shipped) {
+        let bundled = format!("{}\n", to_markdown(&KeyBindings::bundled()).trim_end());
+        if page.ends_with(&bundled) {
             return;
         }
         assert!(
@@ -78,6 +78,6 @@ mod tests {
         );
         let first = format!("**{}**", Scope::Global.title());
         let words = page.split_once(&first).map_or(page.as_str(), |(words, _)| words);
-        std::fs::write(path, format!("{words}{shipped}")).expect("the page is written");
+        std::fs::write(path, format!("{words}{bundled}")).expect("the page is written");
     }
 }

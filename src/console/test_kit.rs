@@ -33,7 +33,7 @@ pub fn new_company() -> DisplayedCompany {
 pub fn run_screen_queries(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, QueryResult)> {
     let ask = |reading: &Reading| {
         let rows = session.query(reading.sql());
-        (*reading, rows.unwrap_or_else(|refusal| panic!("{reading:?}: {refusal}")))
+        (*reading, rows.unwrap_or_else(|rejection| panic!("{reading:?}: {rejection}")))
     };
     screen.screen_queries().iter().map(ask).collect()
 }

@@ -112,7 +112,7 @@ pub(super) fn write_column(
 
 /// Returns the age of an issue by the issue clock. The clock advances on days on which issues are processed.
 /// On each day, issues are resolved before the clock advances, and new issues are opened afterwards. `clock` contains
-/// the value after each day.
+/// the value of the issue clock at the end of each day.
 pub(super) fn days_open(clock: &[u32], opened: u32, solved: Option<u32>) -> u32 {
     let after = |day: u32| clock.get(day as usize).or(clock.last()).copied().unwrap_or(0);
     let until = solved.map_or_else(|| clock.last().copied().unwrap_or(0), |day| after(day.saturating_sub(1)));

@@ -194,10 +194,8 @@ impl Projector {
     pub fn limit_pages(&self, more: Option<u32>) {
         self.send(WriterJob::Run(Box::new(move |connection| {
             let pages: u32 = connection.query_row("PRAGMA page_count", [], |row| row.get(0)).expect("pages");
-            let most = more.map_or(u32::MAX - 1, |more| pages + more);
-            connection
-                .query_row(&format!("PRAGMA max_page_count = {most}"), [], |_| Ok(()))
-                .expect("a bound");
+            let max = more.map_or(u32::MAX - 1, |more| pages + more);
+            connection.query_row(&format!("PRAGMA max_page_count = {max}"), [], |_| Ok(())).expect("a bound");
         })));
     }
 

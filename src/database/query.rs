@@ -106,11 +106,11 @@ impl QueryConnection {
         for table in ["daily_usage", "ads_revenue", "issues", "ledger", "notifications"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
-        let (objections, views) = (guard.last_rejection(), guard.views());
+        let (rejection_slot, views) = (guard.last_rejection(), guard.views());
         let trusted = Arc::new(AtomicBool::new(false));
-        let by_desk = trusted.clone();
+        let authorizer_trust = trusted.clone();
         connection.authorizer(Some(move |context: AuthContext<'_>| {
-            match by_desk.load(Ordering::Relaxed) {
+            match authorizer_trust.load(Ordering::Relaxed) {
                 true => Authorization::Allow,
                 false => guard.authorize(&context),
             }
@@ -122,7 +122,7 @@ impl QueryConnection {
             released,
             connection,
             surface,
-            last_rejection: objections,
+            last_rejection: rejection_slot,
             views,
             trusted,
             interrupt,
@@ -381,8 +381,8 @@ impl QueryConnection {
                 "world.db is damaged; open the run to play it, which rebuilds world.db",
             ),
             QueryFault::TooLarge => {
-                let most = MAX_RESULT_TEXT_BYTES >> 20;
-                query_error("sql_error", &format!("the result is larger than {most} MiB; select less data"))
+                let max = MAX_RESULT_TEXT_BYTES >> 20;
+                query_error("sql_error", &format!("the result is larger than {max} MiB; select less data"))
             }
             QueryFault::Sqlite(_) if objection == RejectionReason::Write || is_write_statement(sql) => {
                 write_error()

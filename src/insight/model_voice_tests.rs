@@ -26,7 +26,7 @@ fn play_three_weeks(runs: &Path, configuration: &Configuration) -> Session {
     };
     let mut session = Session::create(new, configuration).expect("a run");
     let call = |session: &mut Session, tool: &str, arguments| {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
     };
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),

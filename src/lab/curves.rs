@@ -99,7 +99,8 @@ pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
         Column::number("median", "half", Measure::Number(3)),
         Column::number("ninetieth", "9 in 10", Measure::Number(3)),
     ];
-    let caption = "Quality required by the mean customer, and quality that satisfies shares of customers";
+    let caption =
+        "Quality required by the mean customer, and quality at which shares of customers accept the price";
     let mut table = LabTable::new("curve", caption, columns);
     for point in sample.iter().step_by(PRICES_PER_ROW) {
         let of_mean = (point.price <= curve.c_max).then(|| required_quality(point.price, &curve, params));
@@ -121,7 +122,7 @@ pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
     let mean = fine.map(|price| (price, required_quality(price, &curve, params))).collect();
     exhibit.graphs.push(Graph {
         title: format!("{}: quality required by price", group.id()),
-        summary: "Mean customer, and quality that satisfies shares of customers".to_owned(),
+        summary: "Required quality by price: the mean customer, and the quality at which 10 %, 50 % and 90 % of customers accept the price".to_owned(),
         x_axis: GraphAxis { label: "dollars a month", scale: AxisScale::Linear },
         y_axis: GraphAxis { label: "required quality", scale: AxisScale::Linear },
         series: vec![

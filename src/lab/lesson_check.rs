@@ -132,9 +132,9 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
             needs_database: lesson.needs_database(),
         };
         let session = play_part(&of_part, calls_for_waiting_threads)?;
-        let Some(standing) = session.lesson() else { continue };
+        let Some(lesson_progress) = session.lesson() else { continue };
         for (step, lesson_step) in lesson_part.steps.iter().enumerate() {
-            let judged = standing.goal_results(step);
+            let judged = lesson_progress.goal_results(step);
             result.goals.extend(lesson_step.goals.iter().enumerate().map(|(at, goal)| {
                 let note = judged.get(at);
                 GoalResult {
@@ -145,7 +145,7 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
                 }
             }));
         }
-        result.pitfalls.extend(standing.triggered_pitfall_names().into_iter().map(str::to_owned));
+        result.pitfalls.extend(lesson_progress.triggered_pitfall_names().into_iter().map(str::to_owned));
     }
     Ok(result)
 }

@@ -139,7 +139,7 @@ pub enum RunError {
         /// Name of the rejected tool.
         tool: String,
         /// Reason for the rejection.
-        refusal: Box<Rejection>,
+        rejection: Box<Rejection>,
     },
 }
 
@@ -147,8 +147,8 @@ impl fmt::Display for RunError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             RunError::Start(error) => error.fmt(formatter),
-            RunError::Refused { seed, day, tool, refusal } => {
-                write!(formatter, "seed {seed}, day {day}: {tool} was rejected: {refusal}")
+            RunError::Refused { seed, day, tool, rejection } => {
+                write!(formatter, "seed {seed}, day {day}: {tool} was rejected: {rejection}")
             }
         }
     }
@@ -259,11 +259,11 @@ pub(super) fn decide_with_answers(
         arguments,
         Via::Policy,
     ) {
-        Err(refusal) if !may_fail => Err(RunError::Refused {
+        Err(rejection) if !may_fail => Err(RunError::Refused {
             seed,
             day: session.day(),
             tool: tool.to_owned(),
-            refusal: Box::new(refusal),
+            rejection: Box::new(rejection),
         }),
         answer => {
             answer.iter().for_each(&mut *tell);
@@ -306,11 +306,11 @@ pub(super) fn advance_week(
         let forecasts = session.company().naive_forecasts();
         session.advance(&policy_rationale(&policy.name), &forecasts, Via::Policy, watch)
     };
-    ran.map(|_| ()).map_err(|refusal| RunError::Refused {
+    ran.map(|_| ()).map_err(|rejection| RunError::Refused {
         seed,
         day,
         tool: ToolId::NextWeek.to_string(),
-        refusal: Box::new(refusal),
+        rejection: Box::new(rejection),
     })
 }
 

@@ -352,8 +352,8 @@ mod tests {
     fn lesson_session(access: &str) -> Session {
         let place = tempfile::tempdir().expect("a folder");
         let file = place.path().join("two-weeks.toml");
-        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/lessons/two-weeks.toml");
-        let plan = std::fs::read_to_string(shipped).expect("a plan");
+        let bundled = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/lessons/two-weeks.toml");
+        let plan = std::fs::read_to_string(bundled).expect("a plan");
         std::fs::write(&file, plan.replace("forecasts = \"naive\"\nrationale = \"off\"", access))
             .expect("a file");
         let lesson = Arc::new(Lesson::from_file(&file).expect("a lesson"));

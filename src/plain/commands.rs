@@ -248,7 +248,7 @@ impl Interpreter {
         // Errors report columns of the whole line.
         let column = line.trim_end().chars().count() - rest.chars().count() + 1;
         match grammar::current_name(word) {
-            "inbox" => self.run_inbox_where(rest, column),
+            "inbox" => self.run_inbox_query(rest, column),
             "memo" if rest.is_empty() => self.show_notes(),
             "memo" => self.add_note(rest),
             "explain" | "what" => self.explain(word, rest),
@@ -282,7 +282,7 @@ impl Interpreter {
             Ok(rows) => {
                 CommandResponse::success("sql", format_result(&rows), Value::Object(rows_to_json(&rows)))
             }
-            Err(refusal) => CommandResponse::rejected("sql", refusal),
+            Err(rejection) => CommandResponse::rejected("sql", rejection),
         }
     }
 
@@ -395,7 +395,7 @@ impl Interpreter {
                 let offers = self.describe_offers(&planned.sent_in(&data));
                 answer.with_notes(&self.late_project_warnings(&data)).with_notes(&offers)
             }
-            Err(refusal) => CommandResponse::rejected(tool.name(), refusal),
+            Err(rejection) => CommandResponse::rejected(tool.name(), rejection),
         }
     }
 
@@ -417,7 +417,7 @@ impl Interpreter {
                 describe_changes("undone", &back),
                 json!({ "taken_back": back }),
             ),
-            Err(refusal) => CommandResponse::rejected("undo", refusal),
+            Err(rejection) => CommandResponse::rejected("undo", rejection),
         }
     }
 
@@ -428,14 +428,14 @@ impl Interpreter {
                 describe_changes("redone", &setting_changes),
                 json!({ "set_again": setting_changes }),
             ),
-            Err(refusal) => CommandResponse::rejected("redo", refusal),
+            Err(rejection) => CommandResponse::rejected("redo", rejection),
         }
     }
 
     fn step(&mut self, days: u32) -> CommandResponse {
         match self.session.step(days, &mut |_| {}) {
             Ok(week) => advance::week_response("step", &self.session, &week),
-            Err(refusal) => CommandResponse::rejected("step", refusal),
+            Err(rejection) => CommandResponse::rejected("step", rejection),
         }
     }
 }

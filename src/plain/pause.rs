@@ -25,7 +25,7 @@ impl Interpreter {
                 let text = "the clock is stopped. To restart it, type: resume".to_owned();
                 CommandResponse::success("pause", text, json!({ "stopped": true }))
             }
-            Err(refusal) => CommandResponse::rejected("pause", refusal),
+            Err(rejection) => CommandResponse::rejected("pause", rejection),
         }
     }
 
@@ -41,7 +41,7 @@ impl Interpreter {
                 let text = format!("the clock is running; it was stopped for {stood:.0} s");
                 CommandResponse::success("resume", text, json!({ "stood_seconds": stood }))
             }
-            Err(refusal) => CommandResponse::rejected("resume", refusal),
+            Err(rejection) => CommandResponse::rejected("resume", rejection),
         }
     }
 
@@ -101,13 +101,13 @@ impl Interpreter {
             return "clock stopped> ".to_owned();
         }
         let day = self.session.day();
-        let least = self
+        let min = self
             .session
             .log()
             .time_left()
             .into_iter()
             .min_by(|one, other| one.seconds.total_cmp(&other.seconds));
-        match least {
+        match min {
             Some(left) => format!("day {day} · {}> ", left.describe()),
             None => format!("day {day}> "),
         }

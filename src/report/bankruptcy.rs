@@ -74,8 +74,8 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
         format_money(income),
         format_money(costs)
     ));
-    let outgrown = weeks.iter().find(|week| week.cancellations > week.new_individual_subscribers);
-    if let Some(week) = outgrown.filter(|week| week.cancellations > 20) {
+    let shrinking_week = weeks.iter().find(|week| week.cancellations > week.new_individual_subscribers);
+    if let Some(week) = shrinking_week.filter(|week| week.cancellations > 20) {
         texts.push(format!(
             "In the week to day {}, cancellations ({}) exceeded new subscribers ({}) for the first time.",
             week.day,

@@ -85,7 +85,9 @@ mod tests {
             ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S1": 1000}}})),
             ("research_market", json!({})),
         ] {
-            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+            session
+                .call(tool, &arguments, Via::Script)
+                .unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
         }
         let lines = income_and_cost_lines(&session.company().observe());
         let expected = [
@@ -106,7 +108,9 @@ mod tests {
         let mut session = test_kit::play_weeks(4);
         assert_eq!(identical_plan_lines(&session.company().observe()), [""; 0]);
         let call = |session: &mut Session, tool: &str, arguments: Value| {
-            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+            session
+                .call(tool, &arguments, Via::Script)
+                .unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
         };
         call(&mut session, "set_model_tiers", json!({"A": 2, "B": 2}));
         call(&mut session, "set_usage_quotas", json!({"A": 60_000, "B": 60_000, "C": 1_200_000}));
@@ -134,7 +138,7 @@ mod tests {
                 Via::Script,
                 &mut |_| {},
             )
-            .unwrap_or_else(|refusal| panic!("{refusal}"));
+            .unwrap_or_else(|rejection| panic!("{rejection}"));
         assert!(identical_plan_lines(&session.company().observe())[0].contains("A and B still differ"));
     }
 }

@@ -81,8 +81,8 @@ impl DatabaseFigures {
         let connection = session.wait_for_database().and_then(|()| session.database().open_connection());
         let connection = match connection {
             Ok(connection) => connection,
-            Err(refusal) => {
-                let missing = vec![format!("groups and channels: {refusal}")];
+            Err(rejection) => {
+                let missing = vec![format!("groups and channels: {rejection}")];
                 return DatabaseFigures {
                     ledger: ledger_by_week(session),
                     missing,

@@ -132,7 +132,9 @@ mod tests {
             ("set_targeted_ad_spend", json!({"targeted_spend": {"social_media": ads, "linkedin": ads}})),
             ("set_capacity_tier", json!({"tier": 5})),
         ] {
-            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+            session
+                .call(tool, &arguments, Via::Script)
+                .unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
         }
         for _ in 0..16 {
             let deals: Vec<_> = session

@@ -126,14 +126,14 @@ fn sample_values(values: &[f64]) -> Vec<f64> {
 }
 
 fn min_and_max(values: &[f64]) -> [f64; 2] {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+    let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+    [min, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// Draws values as one row of bars, scaled between two limits.
-fn sparkline_between(values: &[f64], [least, most]: [f64; 2]) -> String {
-    let height = |value: &f64| match most > least {
-        true => sparkline_char((value - least) / (most - least)),
+fn sparkline_between(values: &[f64], [min, most]: [f64; 2]) -> String {
+    let height = |value: &f64| match most > min {
+        true => sparkline_char((value - min) / (most - min)),
         false => SPARKLINE_CHARS[3],
     };
     sample_values(values).iter().map(height).collect()

@@ -67,7 +67,7 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
         (Some(RunEndReason::Abandoned), None) => NamedValue::new("Score", "none", "abandoned"),
         (_, None) => NamedValue::new("Cash", format_money(seen.cash), describe_cash_change(seen)),
     };
-    let lived = report.measures.survival_days;
+    let survival_days = report.measures.survival_days;
     let last_day = format_whole(f64::from(seen.last_day));
     let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
@@ -79,7 +79,7 @@ fn result_facts(report: &RunReport) -> Vec<NamedValue> {
     let change = signed_dollars(seen.cash - report.start_cash);
     vec![
         score,
-        NamedValue::new("Days", format_whole(f64::from(lived)), format!("of {last_day}")),
+        NamedValue::new("Days", format_whole(f64::from(survival_days)), format!("of {last_day}")),
         NamedValue::new("Since the start", change, runway),
         NamedValue::new(
             "Subscribers",
@@ -106,15 +106,15 @@ fn describe_rank(report: &RunReport) -> String {
     }
 }
 
-fn bankruptcy_blocks(ruin: &Bankruptcy) -> Vec<Block> {
+fn bankruptcy_blocks(bankruptcy: &Bankruptcy) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Bankruptcy")];
     blocks.push(Block::Text(format!(
         "Cash fell below zero on day {}, which ended the run. {}",
-        ruin.day,
-        ruin.turning_points.join(" ")
+        bankruptcy.day,
+        bankruptcy.turning_points.join(" ")
     )));
-    if !ruin.costs.is_empty() {
-        let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
+    if !bankruptcy.costs.is_empty() {
+        let most = bankruptcy.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
         blocks.push(Block::Text("Costs by category:".to_owned()));
         let bar = |cost: &super::bankruptcy::CostShare| Bar {
             name: cost.name.to_owned(),
@@ -122,34 +122,34 @@ fn bankruptcy_blocks(ruin: &Bankruptcy) -> Vec<Block> {
             share: cost.share / most,
             is_highlighted: false,
         };
-        blocks.push(Block::Bars(ruin.costs.iter().map(bar).collect()));
+        blocks.push(Block::Bars(bankruptcy.costs.iter().map(bar).collect()));
     }
     blocks
 }
 
 fn ranking_blocks(report: &RunReport) -> Vec<Block> {
-    let standing = &report.ranking;
-    let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
+    let ranking = &report.ranking;
+    let most = ranking.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
     let bar = |place: &super::ranking::RankedResult| Bar {
         name: place.name.clone(),
         value_text: describe_place(place),
         share: (place.cash / most).clamp(0.0, 1.0),
         is_highlighted: place.origin == ResultOrigin::ThisRun,
     };
-    let text = match standing.rank {
+    let text = match ranking.rank {
         Some(_) => {
-            format!("{}: final cash, the best of three runs of each agent.", capitalize(&standing.describe()))
+            format!("{}: final cash, the best of three runs of each agent.", capitalize(&ranking.describe()))
         }
-        None if !standing.obstacles.is_empty() => format!("{}.", capitalize(&standing.describe())),
+        None if !ranking.obstacles.is_empty() => format!("{}.", capitalize(&ranking.describe())),
         None => "The run has no score to compare. Published results: final cash, the best of three \
                  runs of each agent."
             .to_owned(),
     };
     let mut blocks = vec![Block::Heading("Comparison with published results"), Block::Text(text)];
-    if let Some(source) = &standing.source {
-        blocks.push(Block::Bars(standing.entries.iter().map(bar).collect()));
-        blocks.extend(standing.caveat.clone().map(Block::Note));
-        let (generation, all) = (standing.generation.name(), published_results());
+    if let Some(source) = &ranking.source {
+        blocks.push(Block::Bars(ranking.entries.iter().map(bar).collect()));
+        blocks.extend(ranking.caveat.clone().map(Block::Note));
+        let (generation, all) = (ranking.generation.name(), published_results());
         blocks.push(Block::Note(format!("All results are of {generation}. Source: {source}.")));
         blocks.push(Block::Note(format!("{}.", all.explain_unranked_agents())));
     }

@@ -125,7 +125,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
 
 /// Draws horizontal bars, each with its label on the left and its value on the right.
 pub fn horizontal_bars(points: &[(f64, f64)], width: usize) -> String {
-    let most = points.iter().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let max = points.iter().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
         points.iter().map(|(x, y)| (format_tick(*x), compact_number(*y))).unzip();
     let widest = |texts: &[String]| texts.iter().map(|text| text.width()).max().unwrap_or(0);
@@ -133,7 +133,7 @@ pub fn horizontal_bars(points: &[(f64, f64)], width: usize) -> String {
     let room = width.saturating_sub(before + behind + 3).max(4);
     let mut text = String::new();
     for ((point, label), value) in points.iter().zip(&labels).zip(&values) {
-        let length = if most > 0.0 { (point.1.max(0.0) / most * room as f64).round() as usize } else { 0 };
+        let length = if max > 0.0 { (point.1.max(0.0) / max * room as f64).round() as usize } else { 0 };
         text += &format!("{label:>before$} │{} {value}\n", "█".repeat(length.min(room)));
     }
     text
@@ -145,11 +145,11 @@ fn interpolate(from: f64, to: f64, share: f64) -> f64 {
 
 /// Returns the range of the values, or `None` without values. If all values are equal, the range is widened.
 fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let (least, most) = values
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
-    let apart = most - least > 1e-9 * most.abs().max(least.abs()).min(1.0);
-    (least <= most).then_some(match least {
-        _ if apart => (least, most),
+    let (min, max) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| (min.min(value), max.max(value)));
+    let apart = max - min > 1e-9 * max.abs().max(min.abs()).min(1.0);
+    (min <= max).then_some(match min {
+        _ if apart => (min, max),
         // A positive value is widened by factors, so that the range is positive and can be drawn on a logarithmic scale.
         level if level > 0.0 => (0.5 * level, 1.5 * level),
         level => (level - 1.0, level + 1.0),

@@ -41,11 +41,11 @@ fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> S
 
 fn describe_gain(spread: &ResearchSpread) -> String {
     let [quarter, _, three_quarters] = spread.quartile_gains;
-    let least = match format_whole_percent(spread.at_least_gain).as_str() {
+    let min = match format_whole_percent(spread.at_least_gain).as_str() {
         "less than 1%" => String::new(),
         share => format!("; {share} gain the minimum, {:+}", spread.least_gain),
     };
-    format!("half of all projects gain between {quarter:+.4} and {three_quarters:+.4} quality{least}")
+    format!("half of all projects gain between {quarter:+.4} and {three_quarters:+.4} quality{min}")
 }
 
 /// Formats a share as a whole percentage: `62%`.

@@ -62,7 +62,7 @@ impl RunReport {
         let start_cash = session.manifest().cash;
         let (weeks, journal) = (session.weeks(), session.journal());
         let figures = DatabaseFigures::load(session);
-        let ruin = (seen.ended == Some(RunEndReason::Bankruptcy)).then(|| Bankruptcy {
+        let bankruptcy = (seen.ended == Some(RunEndReason::Bankruptcy)).then(|| Bankruptcy {
             day: seen.day,
             costs: cost_shares(&figures.totals_by_category()),
             turning_points: describe_turning_points(weeks),
@@ -78,7 +78,7 @@ impl RunReport {
             decision_periods: decision_periods(session.company().decisions(), journal, start_cash),
             highlights: highlights(weeks, session.cash_by_day(), &figures.outages, seen.ended),
             measures,
-            bankruptcy: ruin,
+            bankruptcy: bankruptcy,
             rules: session.rules(),
             origin: session.folder().and_then(branch_origin),
             database: figures,
@@ -148,25 +148,25 @@ mod tests {
     #[test]
     fn bankrupt_run_lists_costs() {
         let report = RunReport::from_session(&test_kit::bankrupt_run());
-        let ruin = report.bankruptcy.as_ref().expect("a bankruptcy");
+        let bankruptcy = report.bankruptcy.as_ref().expect("a bankruptcy");
         assert_eq!(
-            (ruin.day, report.measures.survival_days),
+            (bankruptcy.day, report.measures.survival_days),
             (report.observation.day, report.observation.day)
         );
-        assert_eq!(ruin.costs[0].name, "development and R&D");
-        let shares: f64 = ruin.costs.iter().map(|cost| cost.share).sum();
-        assert!((shares - 1.0).abs() < 1e-9 && !ruin.turning_points.is_empty());
+        assert_eq!(bankruptcy.costs[0].name, "development and R&D");
+        let shares: f64 = bankruptcy.costs.iter().map(|cost| cost.share).sum();
+        assert!((shares - 1.0).abs() < 1e-9 && !bankruptcy.turning_points.is_empty());
         assert!(report.headline().contains("bankrupt"));
         assert_eq!(report.highlights.last().map(|last| last.text.as_str()), Some("bankrupt"));
     }
 
     #[test]
     fn unfinished_run_has_a_report() {
-        let begun = RunReport::from_session(&test_kit::play_weeks(0));
+        let started = RunReport::from_session(&test_kit::play_weeks(0));
         assert!(
-            begun.decision_periods.is_empty()
-                && begun.measures.channels.is_none()
-                && begun.highlights.is_empty()
+            started.decision_periods.is_empty()
+                && started.measures.channels.is_none()
+                && started.highlights.is_empty()
         );
         let running = RunReport::from_session(&test_kit::play_weeks(2));
         assert_eq!((running.ranking.rank, running.bankruptcy.is_none()), (None, true));

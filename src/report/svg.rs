@@ -102,10 +102,10 @@ impl Scale {
     }
 }
 
-/// Returns the smallest of 1, 2, 5, 10, … that is at least `least`.
-fn round_step(least: f64) -> f64 {
-    let magnitude = libm::pow(10.0, libm::floor(libm::log10(least)));
-    let fitting = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * magnitude >= least * 0.999);
+/// Returns the smallest of 1, 2, 5, 10, … that is at least `min`.
+fn round_step(min: f64) -> f64 {
+    let magnitude = libm::pow(10.0, libm::floor(libm::log10(min)));
+    let fitting = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| step * magnitude >= min * 0.999);
     fitting.unwrap_or(10.0) * magnitude
 }
 
@@ -184,8 +184,8 @@ fn draw_plot(chart: &Chart, kinds: AxisScales) -> (String, f64) {
 
 /// Returns the smallest distance between neighboring bars, which limits the width of a bar.
 fn bar_spacing(at: &[f64]) -> f64 {
-    let least = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
-    if least.is_finite() && least > 0.0 { least } else { 1.0 }
+    let min = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+    if min.is_finite() && min > 0.0 { min } else { 1.0 }
 }
 
 fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
@@ -220,10 +220,10 @@ fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     if let Some((low, high)) = chart.y_limits {
         values.iter_mut().for_each(|value| *value = value.clamp(low, high));
     }
-    let most = values.iter().copied().fold(0.0, f64::max);
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = values.iter().copied().fold(0.0, f64::max);
+    let min = values.iter().copied().fold(f64::INFINITY, f64::min);
     // Includes zero in the range if the smallest value is less than half of the largest value.
-    if least > 0.0 && least < 0.5 * most {
+    if min > 0.0 && min < 0.5 * max {
         values.push(0.0);
     }
     Scale::for_axis(kind, values.into_iter(), 5.0, true)

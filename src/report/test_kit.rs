@@ -63,7 +63,9 @@ fn play_run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Sess
     let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     for week in 0..weeks {
         let call = |session: &mut Session, tool: &str, arguments: &Value| {
-            session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+            session
+                .call(tool, arguments, Via::Script)
+                .unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
         };
         match week {
             0 => calls.iter().for_each(|(tool, arguments)| call(&mut session, tool, arguments)),

@@ -244,7 +244,7 @@ impl WeekReport {
             customer_posts,
             comments,
             news_items,
-            limit_days: sources.journal.iter().filter_map(filed_at_limit).collect(),
+            limit_days: sources.journal.iter().filter_map(day_filed_at_limit).collect(),
         })
     }
 
@@ -267,7 +267,7 @@ fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
 
 /// Returns the day of a journal entry for a week that was filed automatically at a time limit. Returns `None` for
 /// other entries.
-fn filed_at_limit(entry: &JournalEntry) -> Option<u32> {
+fn day_filed_at_limit(entry: &JournalEntry) -> Option<u32> {
     match entry {
         JournalEntry::Advance { day, rationale, filled_naively: [true, true, true, true], .. }
             if rationale == TIME_LIMIT_RATIONALE =>

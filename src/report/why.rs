@@ -140,8 +140,8 @@ mod tests {
             1137.0,
             &[(price, 938.0), (Cause::Competitors, 3.5)],
         );
-        let equation_told = equation(&change_explanation);
-        assert_eq!(equation_told, "cancellations +942 = price +938 · competitors +3.5 · residual +0.5");
+        let equation_text = equation(&change_explanation);
+        assert_eq!(equation_text, "cancellations +942 = price +938 · competitors +3.5 · residual +0.5");
         assert_eq!(heading(&change_explanation), "cancellations, week 20: 195 → 1,137");
         let short = ChangeExplanation { days: [7, 3], ..change_explanation };
         assert_eq!(

@@ -80,12 +80,12 @@ mod tests {
 
     #[test]
     fn first_non_finite_literal_is_named() {
-        let (value, refusal) =
+        let (value, rejection) =
             parse_with_literals(br#"{"tool":"t \" NaN","args":{"m":{"a":[1,-Infinity]},"n":NaN}}"#)
                 .expect("it reads");
         assert_eq!(value, json!({"tool": "t \" NaN", "args": {"m": {"a": [1, "-Infinity"]}, "n": "NaN"}}));
-        assert_eq!((refusal.code, refusal.field.as_deref()), ("wrong_type", Some("m.a.1")));
-        assert_eq!(refusal.message, "m.a.1 is -Infinity, and must be a finite number");
+        assert_eq!((rejection.code, rejection.field.as_deref()), ("wrong_type", Some("m.a.1")));
+        assert_eq!(rejection.message, "m.a.1 is -Infinity, and must be a finite number");
         for other in ["{\"a\": \"NaN\"", "{\"a\": nan}", "{\"a\": NaNa}", "{\"a\": \"NaN\"}", "\\", "\"\\"] {
             assert!(parse_with_literals(other.as_bytes()).is_none(), "{other}");
         }

@@ -79,10 +79,10 @@ fn describe_release_2(paths: &mut Value) {
             require_id(schema);
         }
     }
-    let refusal = |summary: &str, status: &str, code: &str| json!({ "summary": summary, "responses": { status: { "description": format!("always {code}") } } });
-    let gone = refusal("Not supported", "410", "daily_scripts_unsupported");
+    let rejection = |summary: &str, status: &str, code: &str| json!({ "summary": summary, "responses": { status: { "description": format!("always {code}") } } });
+    let gone = rejection("Not supported", "410", "daily_scripts_unsupported");
     paths["/daily-scripts"] = json!({ "get": gone, "post": gone, "delete": gone });
-    paths["/reinitialize"] = json!({ "post": refusal("Not supported", "403", "game_reset_forbidden") });
+    paths["/reinitialize"] = json!({ "post": rejection("Not supported", "403", "game_reset_forbidden") });
     let mut status = get_operation("Status of a request: unknown, pending or completed with its result");
     status["parameters"] =
         json!([{ "name": "id", "in": "path", "required": true, "schema": { "type": "string" } }]);

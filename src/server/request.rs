@@ -25,7 +25,7 @@ pub enum ApiRequest {
         /// Arguments as they were sent.
         args: Value,
         /// Rejection that the response contains.
-        refusal: Rejection,
+        rejection: Rejection,
     },
     /// Request to submit a rationale and forecasts and to simulate a week.
     NextWeek {
@@ -97,8 +97,8 @@ impl ApiRequest {
             return ApiRequest::Call { tool: name.to_owned(), args: fields.into(), request_id };
         }
         if name == ToolId::NextWeek.name() {
-            if let Some(refusal) = unknown_week_argument(&fields) {
-                return ApiRequest::RejectedCall { tool: name.to_owned(), args: fields.into(), refusal };
+            if let Some(rejection) = unknown_week_argument(&fields) {
+                return ApiRequest::RejectedCall { tool: name.to_owned(), args: fields.into(), rejection };
             }
             let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
             return ApiRequest::NextWeek {
@@ -213,13 +213,13 @@ impl ApiResponse {
     }
 
     /// Returns the response for a rejection. Programs for the released simulator read the fields `error` and `data`.
-    pub fn rejected(status: ResponseStatus, refusal: impl Into<RejectionRecord>) -> ApiResponse {
-        let refusal = refusal.into();
-        let error = error_text(&refusal.message, &json!(refusal.results));
-        let mut body = json!({ "success": false, "error": error, "code": refusal.code });
-        body["field"] = json!(refusal.field);
-        if !refusal.results.is_empty() {
-            body["results"] = json!(refusal.results);
+    pub fn rejected(status: ResponseStatus, rejection: impl Into<RejectionRecord>) -> ApiResponse {
+        let rejection = rejection.into();
+        let error = error_text(&rejection.message, &json!(rejection.results));
+        let mut body = json!({ "success": false, "error": error, "code": rejection.code });
+        body["field"] = json!(rejection.field);
+        if !rejection.results.is_empty() {
+            body["results"] = json!(rejection.results);
         }
         body["data"] = Value::Null;
         ApiResponse { status, body }

@@ -25,9 +25,9 @@ pub fn handle_request(session: &mut Session, request: ApiRequest, via: Via) -> A
             handle_next_week(session, &week, via)
         }
         ApiRequest::Query { sql } => handle_query(session, &sql),
-        ApiRequest::RejectedCall { tool, args, refusal } => ApiResponse::rejected(
+        ApiRequest::RejectedCall { tool, args, rejection } => ApiResponse::rejected(
             ResponseStatus::BadRequest,
-            session.record_early_rejection(&tool, &args, via, refusal),
+            session.record_early_rejection(&tool, &args, via, rejection),
         ),
         ApiRequest::CurrentDay => ApiResponse::with_body(json!({ "current_day": session.day() })),
         ApiRequest::Dashboard => ApiResponse::with_body(
@@ -69,16 +69,16 @@ fn handle_call(
     }
     match session.call_once(tool, &args, via, request_id) {
         Ok(data) => ApiResponse::tool_data(data),
-        Err(refusal) if tool == ToolId::Query.name() => {
-            ApiResponse::rejected(ResponseStatus::BadRequest, refusal)
+        Err(rejection) if tool == ToolId::Query.name() => {
+            ApiResponse::rejected(ResponseStatus::BadRequest, rejection)
         }
-        Err(refusal) => ApiResponse::rejected(ResponseStatus::Done, refusal),
+        Err(rejection) => ApiResponse::rejected(ResponseStatus::Done, rejection),
     }
 }
 
 fn handle_next_week(session: &mut Session, request: &WeekRequest<'_>, via: Via) -> ApiResponse {
     match session.advance_once(request, via) {
-        Err(refusal) => ApiResponse::rejected(ResponseStatus::BadRequest, refusal),
+        Err(rejection) => ApiResponse::rejected(ResponseStatus::BadRequest, rejection),
         Ok(week) => week_response(&week),
     }
 }
@@ -104,8 +104,8 @@ fn request_status(session: &Session, id: &str) -> ApiResponse {
     };
     let response = match stored {
         IdempotentResponse::Call(Outcome::Accepted(answer)) => ApiResponse::tool_data(answer.clone()),
-        IdempotentResponse::Call(Outcome::Rejected(refusal)) => {
-            ApiResponse::rejected(ResponseStatus::Done, refusal.clone())
+        IdempotentResponse::Call(Outcome::Rejected(rejection)) => {
+            ApiResponse::rejected(ResponseStatus::Done, rejection.clone())
         }
         IdempotentResponse::Week(week) => week_response(week),
     };
@@ -121,9 +121,9 @@ fn handle_query(session: &mut Session, sql: &Value) -> ApiResponse {
     };
     match session.query_as(None, sql, QuerySource::Program) {
         Ok(rows) => ApiResponse::success(rows_to_json(&rows)),
-        Err(refusal) => {
+        Err(rejection) => {
             let interface = session.params().fidelity.interface;
-            ApiResponse::rejected(query_error_status(refusal.code, interface), refusal)
+            ApiResponse::rejected(query_error_status(rejection.code, interface), rejection)
         }
     }
 }
@@ -163,16 +163,16 @@ fn daily_scripts(session: &Session) -> Vec<Value> {
 fn save_script(session: &mut Session, args: &Value, request_id: &Value, via: Via) -> ApiResponse {
     match session.call_once(ToolId::RegisterScript, args, via, request_id) {
         Ok(answer) => ApiResponse::tool_data(json!({ "name": answer["name"], "registered": true })),
-        Err(refusal) => ApiResponse::rejected(ResponseStatus::BadRequest, refusal),
+        Err(rejection) => ApiResponse::rejected(ResponseStatus::BadRequest, rejection),
     }
 }
 
 fn delete_script(session: &mut Session, name: Value, request_id: &Value, via: Via) -> ApiResponse {
     match session.call_once(ToolId::DeleteScript, &json!({ "name": name }), via, request_id) {
         Ok(_) => ApiResponse::tool_data(json!({ "removed": name })),
-        Err(refusal) if refusal.code == "script_not_found" => {
-            ApiResponse::rejected(ResponseStatus::NotFound, refusal)
+        Err(rejection) if rejection.code == "script_not_found" => {
+            ApiResponse::rejected(ResponseStatus::NotFound, rejection)
         }
-        Err(refusal) => ApiResponse::rejected(ResponseStatus::BadRequest, refusal),
+        Err(rejection) => ApiResponse::rejected(ResponseStatus::BadRequest, rejection),
     }
 }

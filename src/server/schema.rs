@@ -108,9 +108,9 @@ fn number_schema(kind: &str, range: &NumberRange) -> Value {
     if range.min.is_finite() {
         schema[if range.excludes_min { "exclusiveMinimum" } else { "minimum" }] = json!(range.min);
     }
-    let most = range.max.min(range.magnitude_limit);
-    if most.is_finite() {
-        schema["maximum"] = json!(most);
+    let max = range.max.min(range.magnitude_limit);
+    if max.is_finite() {
+        schema["maximum"] = json!(max);
     }
     schema
 }

@@ -51,7 +51,7 @@ pub struct SessionWorker {
 
 impl SessionWorker {
     /// Moves a session to a new thread and returns a handle for requests.
-    pub fn start(session: Session, door: InterfaceInfo) -> (SessionWorker, SessionHandle) {
+    pub fn start(session: Session, interface: InterfaceInfo) -> (SessionWorker, SessionHandle) {
         let (sender, receiver) = channel();
         let advancing = PendingWeeks::default();
         let running = CurrentRequest::default();
@@ -69,7 +69,7 @@ impl SessionWorker {
             folder: folder.clone(),
             model,
             session: Some(session),
-            door,
+            interface,
             running: running.clone(),
             committed,
         };
@@ -173,7 +173,7 @@ struct WorkerState {
     folder: Option<PathBuf>,
     /// Settings of the model voice.
     model: Option<ModelSettings>,
-    door: InterfaceInfo,
+    interface: InterfaceInfo,
     running: CurrentRequest,
     /// State that the server reports during a request, if the run has the interface of release 2.
     committed: Option<CommittedState>,
@@ -181,7 +181,7 @@ struct WorkerState {
 
 impl WorkerState {
     fn run(mut self, receiver: &Receiver<QueuedRequest>, advancing: &PendingWeeks) -> Result<(), RunError> {
-        let interface = Interface { name: self.door.interface, window: None };
+        let interface = Interface { name: self.interface.interface, window: None };
         if let Some(session) = &mut self.session {
             session.activity().attach(interface);
         }
@@ -240,7 +240,7 @@ impl WorkerState {
             return ApiResponse::invalid_request(ResponseStatus::Failed, "internal_error", error);
         }
         let Some(session) = &mut self.session else { return worker_gone_response() };
-        let InterfaceInfo { via, on_defect, .. } = self.door;
+        let InterfaceInfo { via, on_defect, .. } = self.interface;
         catch_unwind(AssertUnwindSafe(|| handle_request(session, request, via))).unwrap_or_else(|_| {
             // The session in memory may be inconsistent, but the trajectory is consistent.
             self.session = None;

@@ -12,7 +12,7 @@ const LOCATOR_64_SIGNATURE: &[u8] = b"PK\x06\x07";
 const ENTRY_SIGNATURE: &[u8] = b"PK\x01\x02";
 const FILE_SIGNATURE: &[u8] = b"PK\x03\x04";
 /// Size of the end record without the comment, in bytes.
-const END_BYTES: usize = 22;
+const END_RECORD_BYTES: usize = 22;
 /// Size of the record that locates the 64-bit end record, in bytes.
 const LOCATOR_BYTES: usize = 20;
 
@@ -169,11 +169,11 @@ impl Read for Frames<'_> {
 
 /// Returns the offset of the end record. The record stores the length of the comment that follows it.
 fn end_record(bytes: &[u8]) -> Option<usize> {
-    let last = bytes.len().checked_sub(END_BYTES)?;
+    let last = bytes.len().checked_sub(END_RECORD_BYTES)?;
     let first = last.saturating_sub(usize::from(u16::MAX));
     let is_end = |at: &usize| {
         let comment = u16_at(bytes, at + 20).map(usize::from);
-        starts_with(bytes, *at, END_SIGNATURE) && comment == Some(bytes.len() - END_BYTES - at)
+        starts_with(bytes, *at, END_SIGNATURE) && comment == Some(bytes.len() - END_RECORD_BYTES - at)
     };
     (first..=last).rev().find(is_end)
 }

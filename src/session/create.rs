@@ -134,9 +134,9 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
         let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.apply_to(new.clone()));
-        let shipped = Configuration::bundled();
+        let bundled = Configuration::bundled();
         // Use the bundled configuration: lessons must not depend on the configuration of the machine.
-        let configuration = if new.lesson.is_some() { &shipped } else { configuration };
+        let configuration = if new.lesson.is_some() { &bundled } else { configuration };
         // Runs of handouts must not depend on the configuration of the machine.
         let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
         let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
@@ -144,9 +144,9 @@ impl Session {
         let speaker = model.as_ref().map(ModelClient::new).transpose().map_err(model_voice_error)?;
         let (manifest, params) = build_manifest(&new, configuration)?;
         let manifest = Manifest { voice: model.map(|model| model.recorded_settings()), ..manifest };
-        let mut begun = Session::create_stored(manifest, params, &new, progress)?;
-        begun.set_model_client(speaker);
-        Ok(begun)
+        let mut started = Session::create_stored(manifest, params, &new, progress)?;
+        started.set_model_client(speaker);
+        Ok(started)
     }
 
     fn create_stored(
@@ -161,11 +161,11 @@ impl Session {
                 remove_stale_staging_folders(runs);
                 let folder = runs.join(&manifest.id);
                 create_folder(&folder)?;
-                let begun = Session::create_run(manifest, params, Some(folder.clone()), new, progress);
-                if begun.is_err() {
+                let started = Session::create_run(manifest, params, Some(folder.clone()), new, progress);
+                if started.is_err() {
                     let _ = std::fs::remove_dir_all(&folder);
                 }
-                begun
+                started
             }
         }
     }

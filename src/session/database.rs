@@ -225,14 +225,14 @@ fn cell_to_json(cell: &Cell) -> Value {
 
 /// Replaces the message about a missing hidden table with a hint on how to query hidden tables. Callers use the hint
 /// only if the run can be inspected. Otherwise, the message must not reveal that the table exists.
-pub fn with_hidden_table_hint(refusal: Rejection) -> Rejection {
-    let named = refusal.message.strip_prefix("there is no table hidden.");
-    let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };
+pub fn with_hidden_table_hint(rejection: Rejection) -> Rejection {
+    let named = rejection.message.strip_prefix("there is no table hidden.");
+    let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return rejection };
     let message = format!(
         "hidden.{name} is not a visible table; query hidden tables with novamind query --xray, or with xray sql in \
          plain mode"
     );
-    Rejection { message, ..refusal }
+    Rejection { message, ..rejection }
 }
 
 #[cfg(test)]

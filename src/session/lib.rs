@@ -1,6 +1,6 @@
 //! Sessions of a run: open, act, query, advance, record, resume and replay. Only this crate changes the world of a run.
 //!
-//! A call is first planned without effect. Then the line of the call is written, and then the world changes. Applying a planned
+//! A call is first planned, which changes nothing. Then the line of the call is written, and then the world changes. Applying a planned
 //! call never fails. Therefore memory is never ahead of the trajectory, and a run can always be rebuilt from
 //! `run.toml` and `trajectory.jsonl`.
 
@@ -37,7 +37,7 @@ pub use database::{
     RunDatabase, query_rejection, rows_to_json, unreadable_record_rejection, with_hidden_table_hint,
 };
 pub use figures::attendance::{
-    Attendance, AttendedWeek, Attention, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent,
+    Attendance, AttendedWeek, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent, TimeUse,
 };
 pub use figures::changes::{Decisions, SettingChange};
 pub use figures::dashboard::DeliveredQuality;

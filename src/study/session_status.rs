@@ -91,7 +91,7 @@ fn session_status(folder: &Path, manifest: &Manifest) -> SessionStatus {
 fn last_save_error(lines: &[Line]) -> Option<String> {
     lines.iter().rev().find_map(|line| match &line.record {
         Record::Call(call) => Some(match &call.outcome {
-            Outcome::Rejected(refusal) if refusal.code == "not_saved" => Some(refusal.message.clone()),
+            Outcome::Rejected(rejection) if rejection.code == "not_saved" => Some(rejection.message.clone()),
             _ => None,
         }),
         Record::Week(_) => Some(None),

@@ -146,7 +146,7 @@ impl fmt::Display for VisitSummary {
         write!(out, "{came} came: {declined} declined, {withdrew} withdrew, {finished} finished")?;
         write!(
             out,
-            ", {} neither · refused: {refused_labels} labels",
+            ", {} in progress or left · rejected: {refused_labels} labels",
             came - declined - withdrew - finished
         )?;
         write!(out, ", {refused_codes} codes")

@@ -69,9 +69,9 @@ pub(super) fn check_number(number: f64, bound: f64, path: &str, unit: &str) -> R
 
 /// Returns the rejection of a number beyond a limit.
 pub(super) fn too_large_rejection(bound: f64, path: &str, unit: &str) -> Rejection {
-    let most = match unit.strip_prefix('$') {
+    let max = match unit.strip_prefix('$') {
         Some(rest) => format!("${}{rest}", grouped_number(bound, 0)),
         None => format!("{} {unit}", grouped_number(bound, 0)),
     };
-    Rejection::for_field(path, REJECTION_CODE, format!("{path} is too large: at most {most}"))
+    Rejection::for_field(path, REJECTION_CODE, format!("{path} is too large: at most {max}"))
 }

@@ -183,7 +183,7 @@ mod tests {
             code: "x".repeat(bytes),
         };
         let field = |notebook: &Notebook, change: &NotebookChange| {
-            notebook.check_quota(change).err().map(|refusal| (refusal.code, refusal.field))
+            notebook.check_quota(change).err().map(|rejection| (rejection.code, rejection.field))
         };
         let beyond = |field: &str| Some((QUOTA_EXCEEDED, Some(field.to_owned())));
         let mut notebook = Notebook::new();

@@ -230,28 +230,28 @@ mod tests {
         let spec = |tool: &str| crate::find(tool).expect("a tool").spec();
         let (study, find, post, week) =
             (spec("research_group"), spec("research_market"), spec("post_social_media"), spec("next_week"));
-        let shipped = ParameterNumbers::bundled();
+        let bundled = ParameterNumbers::bundled();
         assert_eq!(
-            shipped.substitute(study.cost),
+            bundled.substitute(study.cost),
             "$60,000 for level 2, $175,000 for 3, $350,000 for 4, $700,000 for 5, at once"
         );
-        assert!(shipped.substitute(study.effect).contains(
+        assert!(bundled.substitute(study.effect).contains(
             "Level 2 takes 3 days, 3 takes 5, 4 takes 7, 5 takes 10; the errors are at most 40, 25, 15 and 5 %."
         ));
-        assert!(shipped.substitute(study.arguments[1].description).starts_with("level 2 to 5; if left out"));
-        assert_eq!(shipped.substitute(find.cost), "$25,000 per attempt, at once");
-        assert!(shipped.substitute(find.effect).starts_with("Three attempts in ten find"));
-        assert_eq!(shipped.substitute(post.arguments[0].description), "the text, 1 to 280 characters");
-        assert!(shipped.substitute(post.effect).contains("half as many every three days"));
+        assert!(bundled.substitute(study.arguments[1].description).starts_with("level 2 to 5; if left out"));
+        assert_eq!(bundled.substitute(find.cost), "$25,000 per attempt, at once");
+        assert!(bundled.substitute(find.effect).starts_with("Three attempts in ten find"));
+        assert_eq!(bundled.substitute(post.arguments[0].description), "the text, 1 to 280 characters");
+        assert!(bundled.substitute(post.effect).contains("half as many every three days"));
         assert!(
-            shipped.substitute(week.arguments[1].description).starts_with("cash in 7, 28, 84 and 182 days")
+            bundled.substitute(week.arguments[1].description).starts_with("cash in 7, 28, 84 and 182 days")
         );
         let overview = spec("get_market_overview");
-        assert!(shipped.substitute(overview.result_fields[2].description).ends_with("null before day 31"));
-        assert!(shipped.substitute(spec("set_ads_strength").effect).contains("log10(1 + 9 s)"));
-        assert!(shipped.substitute(spec("query").result_fields[1].description).ends_with("5,000"));
+        assert!(bundled.substitute(overview.result_fields[2].description).ends_with("null before day 31"));
+        assert!(bundled.substitute(spec("set_ads_strength").effect).contains("log10(1 + 9 s)"));
+        assert!(bundled.substitute(spec("query").result_fields[1].description).ends_with("5,000"));
         assert!(
-            shipped
+            bundled
                 .substitute(spec("send_enterprise_deal").arguments[0].description)
                 .contains("one to three offerings")
         );

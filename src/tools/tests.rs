@@ -43,23 +43,23 @@ impl TestCompany {
 
     fn call(&mut self, name: &str, arguments: Value) -> Value {
         self.try_call(name, arguments.clone())
-            .unwrap_or_else(|refusal| panic!("{name} {arguments}: {refusal}"))
+            .unwrap_or_else(|rejection| panic!("{name} {arguments}: {rejection}"))
     }
 
     /// Returns the code and field of an expected rejection. Checks that the call has changed nothing.
     fn expect_rejection(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
         let before = self.world.part_hashes();
-        let refusal =
+        let rejection =
             self.try_call(name, arguments.clone()).expect_err(&format!("{name} {arguments} is invalid"));
         assert_eq!(self.world.part_hashes(), before, "{name} {arguments} changed something");
-        assert!(!refusal.message.is_empty());
-        (refusal.code, refusal.field)
+        assert!(!rejection.message.is_empty());
+        (rejection.code, rejection.field)
     }
 
     /// Returns the results of all deals in a call that is expected to be rejected.
     fn rejected_results(&mut self, name: &str, arguments: Value) -> Value {
-        let refusal = self.try_call(name, arguments).expect_err("a refusal");
-        serde_json::to_value(refusal.results).expect("results are JSON")
+        let rejection = self.try_call(name, arguments).expect_err("a refusal");
+        serde_json::to_value(rejection.results).expect("results are JSON")
     }
 
     fn assert_rejections(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
@@ -384,8 +384,8 @@ fn rejections_of_large_amounts_name_the_limit() {
             "A is too large: at most 1,000,000,000,000,000 units/day",
         ),
     ] {
-        let refusal = company.try_call(tool, arguments).expect_err("too large");
-        assert_eq!(refusal.message, message);
+        let rejection = company.try_call(tool, arguments).expect_err("too large");
+        assert_eq!(rejection.message, message);
         let manual = super::describe::format_manual(
             find(tool).expect("a tool").spec(),
             &super::ParameterNumbers::bundled(),
@@ -399,8 +399,8 @@ fn rejections_of_large_amounts_name_the_limit() {
 fn rejections_round_dollars_as_displayed() {
     let mut company = TestCompany::new();
     company.world.finance.cash = 166_666.99;
-    let refusal = company.try_call("start_research_project", json!({"tier": 1})).expect_err("too dear");
-    assert_eq!(refusal.message, "costs $166,667, cash is $166,667");
+    let rejection = company.try_call("start_research_project", json!({"tier": 1})).expect_err("too dear");
+    assert_eq!(rejection.message, "costs $166,667, cash is $166,667");
     company.world.finance.cash = 166_667.0;
     company.call("start_research_project", json!({"tier": 1}));
     assert_eq!(company.world.finance.cash, 0.0);

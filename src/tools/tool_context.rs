@@ -46,8 +46,8 @@ impl<'a> ToolContext<'a> {
     }
 
     /// Returns this view with the data of a session.
-    pub fn with_session(self, surroundings: &'a dyn SessionContext) -> ToolContext<'a> {
-        ToolContext { session: surroundings, ..self }
+    pub fn with_session(self, session: &'a dyn SessionContext) -> ToolContext<'a> {
+        ToolContext { session, ..self }
     }
 
     /// Returns the session data of the view.

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     fn report(result: Result<u32, Rejection>) -> Response {
-        Response::FilesWritten(result.map(|value| value.to_string()).map_err(|refusal| refusal.message))
+        Response::FilesWritten(result.map(|value| value.to_string()).map_err(|rejection| rejection.message))
     }
 
     #[test]

@@ -107,7 +107,7 @@ impl SessionThread {
                 let _ = self.detach(DetachCause::Quit);
                 self.show_opened_run(Ok(adopted.session), "", Some(remark));
             }
-            Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),
+            Err(rejection) => self.send_response(Response::NotOpened(rejection.to_string(), None)),
         }
     }
 }

@@ -92,7 +92,7 @@ impl Question for InspectionQuestion {
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
         let changes_run = matches!(&self, InspectionQuestion::Command(_, inspection_command) if inspection_command.changes_run());
         let found = match thread.read_only_rejection().filter(|_| changes_run) {
-            Some(refusal) => Err(refusal),
+            Some(rejection) => Err(rejection),
             None => thread.inspection_session(false).and_then(|session| run_inspection(session, &self)),
         };
         match changes_run && found.is_ok() {

@@ -44,7 +44,7 @@ impl SessionThread {
                 let _ = self.detach(DetachCause::Quit);
                 self.show_opened_run(Ok(begun), "", Some(remark.to_owned()));
             }
-            Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),
+            Err(rejection) => self.send_response(Response::NotOpened(rejection.to_string(), None)),
         }
     }
 

@@ -29,9 +29,9 @@ impl SessionThread {
     /// Returns the time until the next scheduled task, or `None` if no task is scheduled.
     pub(super) fn time_until_next_task(&mut self) -> Option<Duration> {
         let follows = self.playback().is_some_and(|playback| playback.is_following());
-        let look = follows.then(|| self.last_poll + FOLLOW_INTERVAL);
+        let next_poll = follows.then(|| self.last_poll + FOLLOW_INTERVAL);
         let next =
-            [self.next_week_at, look, self.repair_at, self.next_limit_check].into_iter().flatten().min();
+            [self.next_week_at, next_poll, self.repair_at, self.next_limit_check].into_iter().flatten().min();
         next.map(|moment| moment.saturating_duration_since(Instant::now()))
     }
 
@@ -163,7 +163,7 @@ impl SessionThread {
                 let remark = format!("now playing run {text} from day {day}; run {parent} is unchanged");
                 self.show_opened_run(Ok(session), "", Some(remark));
             }
-            Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),
+            Err(rejection) => self.send_response(Response::NotOpened(rejection.to_string(), None)),
         }
     }
 }
@@ -171,11 +171,11 @@ impl SessionThread {
 /// Returns the company at a position. Notes that were written later are excluded.
 fn playback_company(playback: &Playback, before: Option<&DisplayedCompany>) -> DisplayedCompany {
     let memo = playback.notes().unwrap_or_default();
-    let may_look_inside = playback.can_inspect();
+    let can_inspect = playback.can_inspect();
     DisplayedCompany {
         notes: memo,
         is_playback: true,
-        can_inspect: may_look_inside,
+        can_inspect,
         ..DisplayedCompany::update_from_session(playback.session(), before)
     }
 }

@@ -368,8 +368,8 @@ mod tests {
             workers.ask(&pending.ask(question), false);
             deliver_until_answer(&messages);
             let (_, answer) = pending.try_take().expect("an answer");
-            let refusal = answer.expect_err("a refusal");
-            assert!(refusal.code == "internal_error" && refusal.message.contains(words), "{refusal}");
+            let rejection = answer.expect_err("a refusal");
+            assert!(rejection.code == "internal_error" && rejection.message.contains(words), "{rejection}");
             workers.shut_down();
         }
         // A panic on the session thread ends the program, but later questions are answered with an error.

@@ -51,11 +51,13 @@ impl SessionThread {
                 self.send_next_step();
             }
             StudyRequest::Decline => {
-                self.with_study(|desk| desk.participant.iter().for_each(ParticipantSession::record_declined));
+                self.with_study(|state| {
+                    state.participant.iter().for_each(ParticipantSession::record_declined)
+                });
                 self.send_response(Response::Study(StudyResponse::ConsentDeclined));
             }
             StudyRequest::SkipPractice => {
-                self.with_study(|desk| desk.participant.iter().for_each(ParticipantSession::skip_practice));
+                self.with_study(|state| state.participant.iter().for_each(ParticipantSession::skip_practice));
                 self.send_next_step();
             }
             StudyRequest::Play => self.open_participant_run(),
@@ -68,12 +70,12 @@ impl SessionThread {
             StudyRequest::SubmitAnswers(answers) => self.record_answers(&answers),
             StudyRequest::Withdraw => self.erase_participant(),
             StudyRequest::CheckCode(code) => {
-                let right = self.study.as_ref().and_then(|desk| {
-                    let protocol = &desk.study.protocol;
+                let right = self.study.as_ref().and_then(|state| {
+                    let protocol = &state.study.protocol;
                     protocol.access.code.is_some().then(|| protocol.accepts_code(Some(&code)))
                 });
                 if right != Some(true) {
-                    self.study.iter().for_each(|desk| record_rejected_code(&desk.study, &self.runs_folder));
+                    self.study.iter().for_each(|state| record_rejected_code(&state.study, &self.runs_folder));
                 }
                 if right == Some(true) {
                     (self.study, self.lists_all_participants) = (None, true);

@@ -44,7 +44,7 @@ fn apply_initial_settings(session: &mut Session) {
         ("start_research_project", json!({"tier": 1})),
     ];
     for (tool, arguments) in calls {
-        session.call(tool, &arguments, Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        session.call(tool, &arguments, Via::Form).unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
     }
 }
 
@@ -62,7 +62,7 @@ pub fn session_with_negotiations() -> Session {
         ("set_targeted_ad_spend", json!({"targeted_spend": {"social_media": ads, "linkedin": ads}})),
         ("set_capacity_tier", json!({"tier": 5})),
     ] {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
     }
     for _ in 0..20 {
         if session.company().observe().waiting.len() >= 3 {

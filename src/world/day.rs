@@ -119,11 +119,11 @@ pub fn step_day_observed(
 
     // Subscribers open issues, update satisfaction, decide and pay; enterprises negotiate.
     let scene = OpinionContext { day: &today, chronicle: &market.social.chronicle };
-    let mut felt = update_satisfaction(customers, &today, &scene, watch);
-    let crowd = felt
+    let mut updated = update_satisfaction(customers, &today, &scene, watch);
+    let crowd = updated
         .post_weights
         .map(|voices| author_selection::from_subscribers(voices, customers, &scene, streams));
-    issues::allocate_resolutions(&mut felt.calls, settings, customers, issue_desk, &today);
+    issues::allocate_resolutions(&mut updated.calls, settings, customers, issue_desk, &today);
     let judgement = RenewalContext {
         day: &today,
         involuntary: renewal::involuntary_rates(day, params, streams),
@@ -131,7 +131,7 @@ pub fn step_day_observed(
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
     };
-    let decided = update_issues_and_decide(customers, felt.calls, &judgement, watch);
+    let decided = update_issues_and_decide(customers, updated.calls, &judgement, watch);
     issues::record_issues(decided.settled, facts);
     let mut on_write = |write: &ReputationWrite<'_>| watch.on_reputation_change(write);
     let renewals =
@@ -140,10 +140,10 @@ pub fn step_day_observed(
     watch.before_negotiations(enterprise, customers, &talks);
     let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts, &mut on_write);
     let knowledge = market.knowledge;
-    let moods = satisfaction::sum_by_group(felt.moods);
+    let contributions = satisfaction::sum_by_group(updated.contributions);
     let is_known = |group: Group| knowledge[group].level >= 1;
-    reputation::apply_contributions(&mut market.reputation, &moods, is_known, params, &mut on_write);
-    watch.after_reputation_changes(&moods, market, params);
+    reputation::apply_contributions(&mut market.reputation, &contributions, is_known, params, &mut on_write);
+    watch.after_reputation_changes(&contributions, market, params);
 
     // Publish posts of customers and the press.
     if let Some(mut crowd) = crowd {
@@ -197,7 +197,7 @@ pub fn step_day_observed(
 /// Results of the first sweep over subscribers, one element per block.
 struct SatisfactionRound {
     calls: Vec<IssueBatch>,
-    moods: Vec<(Group, ReputationContribution)>,
+    contributions: Vec<(Group, ReputationContribution)>,
     /// Post weights by block; `None` unless customers post today.
     post_weights: Option<Vec<BlockWeights>>,
 }
@@ -210,18 +210,18 @@ fn update_satisfaction(
     watch: &dyn DayObserver,
 ) -> SatisfactionRound {
     let listening = author_selection::is_posting_day(day.day(), day.params);
-    let felt = customers.sweep(|group, number, block| {
+    let updated = customers.sweep(|group, number, block| {
         let calls = issues::find_issues(group, number, block, day);
         let before = listening.then(|| block.satisfaction.clone());
         watch.before_satisfaction(group, block, day);
-        let mood = satisfaction::update_block(group, block, day);
+        let contribution = satisfaction::update_block(group, block, day);
         let voices = before.map(|before| author_selection::weigh_block(group, block, before, scene));
-        (calls, (group, mood), voices)
+        (calls, (group, contribution), voices)
     });
-    let (calls, moods, voices): (Vec<_>, Vec<_>, Vec<_>) = felt.into_iter().collect();
+    let (calls, contributions, voices): (Vec<_>, Vec<_>, Vec<_>) = updated.into_iter().collect();
     SatisfactionRound {
         calls,
-        moods,
+        contributions,
         post_weights: listening.then(|| voices.into_iter().flatten().collect()),
     }
 }

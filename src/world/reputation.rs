@@ -126,14 +126,14 @@ pub fn contribution(satisfaction: f64, reputation: &Reputation) -> f64 {
 
 /// Returns the change in a group's reputation from today's contributions, before the threshold is applied: (sum / m)
 /// log2(m), where m = max(count, 2).
-pub fn daily_change_before_threshold(mood: &ReputationContribution, reputation: &Reputation) -> f64 {
-    let size = f64::from(mood.count.max(reputation.min_group_size));
-    mood.sum / size * libm::log2(size)
+pub fn daily_change_before_threshold(contribution: &ReputationContribution, reputation: &Reputation) -> f64 {
+    let size = f64::from(contribution.count.max(reputation.min_group_size));
+    contribution.sum / size * libm::log2(size)
 }
 
 /// Returns the daily change in a group's reputation, or `None` if the change is below the threshold.
-pub fn daily_change(mood: &ReputationContribution, reputation: &Reputation) -> Option<f64> {
-    let change = daily_change_before_threshold(mood, reputation);
+pub fn daily_change(contribution: &ReputationContribution, reputation: &Reputation) -> Option<f64> {
+    let change = daily_change_before_threshold(contribution, reputation);
     (change.abs() >= reputation.daily_delta_min_abs).then_some(change)
 }
 
@@ -190,15 +190,20 @@ pub fn event_damage(subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
 /// Applies today's contributions to all reputations, and the spillover of each change to the other known groups.
 pub fn apply_contributions(
     book: &mut Reputations,
-    moods: &ByGroup<ReputationContribution>,
+    contributions: &ByGroup<ReputationContribution>,
     is_known: impl Fn(Group) -> bool,
     params: &Params,
     on_write: &mut OnReputationWrite<'_>,
 ) {
     let reputation = &params.reputation;
-    for group in Group::all().filter(|group| moods[*group].count > 0) {
-        let Some(change) = daily_change(&moods[group], reputation) else { continue };
-        book.add_all((group, ReputationCause::Contributions(moods[group])), &[change], params, on_write);
+    for group in Group::all().filter(|group| contributions[*group].count > 0) {
+        let Some(change) = daily_change(&contributions[group], reputation) else { continue };
+        book.add_all(
+            (group, ReputationCause::Contributions(contributions[group])),
+            &[change],
+            params,
+            on_write,
+        );
         if !is_known(group) {
             continue;
         }
@@ -221,17 +226,17 @@ mod tests {
         Group::parse(id).expect("a group")
     }
 
-    /// Returns the reputations after a day with the given `moods`: group, number of subscribers, satisfaction.
-    fn reputation_after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> Reputations {
+    /// Returns the reputations after a day with the given `contributions`: group, number of subscribers, satisfaction.
+    fn reputation_after(contributions: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> Reputations {
         let params = Params::bundled();
         let mut book = Reputations::initial(&params);
         let mut by_group = ByGroup::<ReputationContribution>::default();
-        for &(id, count, satisfaction) in moods {
+        for &(id, count, satisfaction) in contributions {
             book.set(group(id), start);
-            let mood = &mut by_group[group(id)];
-            mood.count += count;
+            let total = &mut by_group[group(id)];
+            total.count += count;
             for _ in 0..count {
-                mood.sum += contribution(satisfaction, &params.reputation);
+                total.sum += contribution(satisfaction, &params.reputation);
             }
         }
         let known = |group: Group| group.is_initially_known() || discovered.contains(&group.id());

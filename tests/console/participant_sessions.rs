@@ -32,7 +32,7 @@ offer = "none"
 code = "CODE"
 "#;
 
-const BEFORE: &str = r#"
+const QUESTIONNAIRE_BEFORE_FIRST_WEEK: &str = r#"
 title = "About you"
 introduction = "Two questions before you begin."
 when = "before"
@@ -93,7 +93,7 @@ impl StudyHome {
         let consent: Vec<String> =
             (1..=40).map(|line| format!("- Paragraph {line} of\n**what** is recorded.")).collect();
         write("consent.md", &consent.join("\n"));
-        write("questions/1-before.toml", BEFORE);
+        write("questions/1-before.toml", QUESTIONNAIRE_BEFORE_FIRST_WEEK);
         write("questions/2-week.toml", WEEK);
         write("questions/3-end.toml", END);
         write("assignment.csv", "label,condition,seed,order\nP01,,,1\nP02,,,2\n");

@@ -318,9 +318,9 @@ const SHORT_LESSONS: [&str; 4] = ["ads-in-the-product", "ladder", "list-price", 
 
 fn check_lessons(names: &[&str]) {
     let configuration = Configuration::bundled();
-    let shipped = configuration.lesson_names();
-    assert_eq!(shipped.len(), 12);
-    for name in shipped {
+    let bundled = configuration.lesson_names();
+    assert_eq!(bundled.len(), 12);
+    for name in bundled {
         let lesson =
             Arc::new(Lesson::load(&name, &configuration).unwrap_or_else(|error| panic!("{name}: {error}")));
         assert!(!lesson.debrief.is_empty() && !lesson.instructor_notes.is_empty(), "{name}");

@@ -165,7 +165,8 @@ fn declined_and_withdrawn_participants_leave_no_run() {
     assert!(lab.play_session("P03\n").stdout.contains("You have withdrawn"));
     assert!(!lab.0.runs().join("participants/P02").exists());
     // Both participants are counted and appear in the table of visits.
-    let counted = "2 came: 1 declined, 1 withdrew, 0 finished, 0 neither · refused: 0 labels, 0 codes";
+    let counted =
+        "2 came: 1 declined, 1 withdrew, 0 finished, 0 in progress or left · rejected: 0 labels, 0 codes";
     for command in ["watch", "audit"] {
         let program_output = lab.0.run(&["study", command, &lab.folder()]);
         assert!(program_output.stdout.contains(counted), "{}", program_output.stdout);

@@ -111,7 +111,7 @@ pub struct StudyQuestion {
 pub const WEEKS: u32 = 4;
 
 /// Question that is asked before the first week.
-pub const BEFORE: StudyQuestion =
+pub const QUESTION_BEFORE_FIRST_WEEK: StudyQuestion =
     StudyQuestion { occasion: "before", questionnaire: "1-before", question: "experience" };
 /// Question that is asked after the second week.
 pub const WEEK: StudyQuestion =

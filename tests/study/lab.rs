@@ -35,7 +35,7 @@ at_limit = "naive"
 drafts = "text"
 "#;
 
-const BEFORE: &str = r#"
+const QUESTIONNAIRE_BEFORE_FIRST_WEEK: &str = r#"
 title = "About you"
 when = "before"
 [[question]]
@@ -90,7 +90,7 @@ impl StudyLab {
         let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("written");
         write("study.toml", PROTOCOL);
         write("consent.md", "# Taking part\n\nEverything you do is recorded.\n");
-        write("questions/1-before.toml", BEFORE);
+        write("questions/1-before.toml", QUESTIONNAIRE_BEFORE_FIRST_WEEK);
         write("questions/2-week.toml", WEEK);
         write("questions/3-break.toml", BREAK);
         write("questions/4-end.toml", END);

@@ -29,7 +29,7 @@ fn tables_match_twelve_scripted_participants() {
     let notes = [
         "label P05 has no session; last visit: consent declined",
         "label P06 has no session; last visit: withdrew",
-        "12 came: 1 declined, 1 withdrew, 10 finished, 0 neither · refused: 2 labels, 0 codes",
+        "12 came: 1 declined, 1 withdrew, 10 finished, 0 in progress or left · rejected: 2 labels, 0 codes",
     ];
     let output_lines = program_output.stdout.lines().filter(|line| !line.contains("verified"));
     assert_eq!(

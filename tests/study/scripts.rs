@@ -3,7 +3,7 @@
 use novamind::record::clock::{ScriptedClock, parse_nanoseconds};
 
 use crate::console::ConsoleParticipant;
-use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};
+use crate::diary::{BREAK, Diary, END, QUESTION_BEFORE_FIRST_WEEK, WEEK};
 use crate::lab::StudyLab;
 use crate::plain::PlainParticipant;
 
@@ -23,7 +23,7 @@ fn play_without_breaks(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P01", clock);
     player.agree(&[], 30);
     player.start_run();
-    player.answer(BEFORE, "6 enter", "6", 5);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "6 enter", "6", 5);
     player.wait(20);
     player.show_screen("2", "cash");
     player.wait(7);
@@ -48,7 +48,7 @@ fn play_with_breaks(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P02", clock);
     player.agree(&[], 20);
     player.start_run();
-    player.answer(BEFORE, "2 enter", "2", 4);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "2 enter", "2", 4);
     player.wait(11);
     player.pause("lunch", 1800);
     player.answer(BREAK, "1 enter", "no", 3);
@@ -65,7 +65,7 @@ fn play_out_of_time(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P03", clock);
     player.agree(&[], 20);
     player.start_run();
-    player.answer(BEFORE, "1 enter", "1", 4);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "1 enter", "1", 4);
     player.play_week("go", 1, 2);
     player.report(3);
     player.wait(20);
@@ -80,7 +80,7 @@ fn play_with_absences(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m1", "P04", clock);
     player.agree(&[], 20);
     player.start_run();
-    player.answer(BEFORE, "7 enter", "7", 4);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "7 enter", "7", 4);
     player.idle(200);
     player.wait(5);
     player.lose_focus(40);
@@ -126,7 +126,7 @@ fn play_and_withdraw(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P06", clock);
     player.agree(&[], 20);
     player.start_run();
-    player.answer(BEFORE, "7 enter", "7", 4);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "7 enter", "7", 4);
     player.play_week("go", 1, 2);
     player.report(3);
     player.withdraw()
@@ -137,7 +137,7 @@ fn play_with_mistakes(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P07", clock);
     player.agree(&["P99", "../x"], 20);
     player.start_run();
-    player.answer(BEFORE, "3 enter", "3", 4);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "3 enter", "3", 4);
     player.show_screen("9", "sql");
     player.query("SELECT nothing FROM ledger", "sql_error");
     player.show_screen("8", "tools");
@@ -154,7 +154,7 @@ fn play_with_hang_up(lab: &StudyLab, clock: &ScriptedClock) -> Diary {
     let mut player = ConsoleParticipant::arrive(lab, "m2", "P08", clock);
     player.agree(&[], 20);
     player.start_run();
-    player.answer(BEFORE, "3 enter", "3", 4);
+    player.answer(QUESTION_BEFORE_FIRST_WEEK, "3 enter", "3", 4);
     let mut player = player.hang_up_with_text(lab, "m2", "half", 1200);
     player.answer(BREAK, "1 enter", "no", 3);
     finish_console_session(player)
@@ -173,7 +173,7 @@ pub fn play_third_machine(lab: &StudyLab) -> Vec<Diary> {
 
 fn play_in_plain_mode(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P09");
-    plain.answer(BEFORE, "4", "4");
+    plain.answer(QUESTION_BEFORE_FIRST_WEEK, "4", "4");
     plain.call("set_prices", "A=12");
     plain.query("SELECT count(*) FROM ledger");
     plain.write_note("ads for S1");
@@ -185,7 +185,7 @@ fn play_in_plain_mode(lab: &StudyLab) -> Diary {
 
 fn play_with_kill(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P10");
-    plain.answer(BEFORE, "1", "1");
+    plain.answer(QUESTION_BEFORE_FIRST_WEEK, "1", "1");
     plain.play_week("go");
     let mut plain = plain.kill_and_return();
     plain.answer(BREAK, "2", "yes");
@@ -194,7 +194,7 @@ fn play_with_kill(lab: &StudyLab) -> Diary {
 
 fn play_with_closed_terminal(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P11");
-    plain.answer(BEFORE, "7", "7");
+    plain.answer(QUESTION_BEFORE_FIRST_WEEK, "7", "7");
     plain.call("set_prices", "A=10 B=20");
     let mut plain = plain.hang_up_and_return();
     plain.answer(BREAK, "1", "no");
@@ -203,7 +203,7 @@ fn play_with_closed_terminal(lab: &StudyLab) -> Diary {
 
 fn play_in_two_sessions(lab: &StudyLab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P12");
-    plain.answer(BEFORE, "2", "2");
+    plain.answer(QUESTION_BEFORE_FIRST_WEEK, "2", "2");
     plain.play_week("go");
     let mut plain = plain.quit_and_return();
     plain.answer(BREAK, "1", "no");

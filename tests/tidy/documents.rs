@@ -79,7 +79,7 @@ fn cells(line: &str) -> Option<Vec<&str>> {
     Some(inner.split('|').map(str::trim).collect())
 }
 
-fn is_table_rule(cells: &[&str]) -> bool {
+fn is_table_separator(cells: &[&str]) -> bool {
     cells.iter().all(|cell| !cell.is_empty() && cell.chars().all(|sign| "-: ".contains(sign)))
 }
 
@@ -127,7 +127,7 @@ fn fill_parameters(page: &Page, parameters: &Table) -> Result<String, String> {
         let starts = row.as_ref().is_some_and(|row| row.first() == Some(&"Parameter"));
         in_table = row.is_some() && (in_table || starts);
         match row {
-            Some(row) if in_table && !starts && !is_table_rule(&row) => {
+            Some(row) if in_table && !starts && !is_table_separator(&row) => {
                 let key = row[0].trim_matches('`');
                 let value = parameter_value(parameters, key)
                     .ok_or_else(|| page.problem_at(at + 1, &format!("there is no parameter {key}")))?;
@@ -327,7 +327,7 @@ fn check_values_match_the_tests() {
                 of_results = row.iter().position(|cell| *cell == "Result");
                 continue;
             }
-            if is_table_rule(&row) {
+            if is_table_separator(&row) {
                 continue;
             }
             let Some(result) = of_results else { continue };

@@ -58,9 +58,9 @@ impl AgentRun {
     /// The run does not exist or belongs to a study.
     pub fn find(named: Option<&str>, context: &Context) -> Result<AgentRun, Failure> {
         let runs = context.runs_folder()?;
-        let remembered =
+        let last_created =
             || std::fs::read_to_string(runs.join(LATEST_RUN_FILE)).ok().map(|id| id.trim().to_owned());
-        let id = named.map(str::to_owned).or_else(remembered).ok_or_else(|| {
+        let id = named.map(str::to_owned).or_else(last_created).ok_or_else(|| {
             Failure::usage("there is no agent run here: create a run with `novamind agent new`, or name a run with --run or NOVAMIND_RUN")
         })?;
         // If a folder is named after the run id, the other runs need not be read.

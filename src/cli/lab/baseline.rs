@@ -8,7 +8,7 @@ use crate::cli::run::{SeedRange, parse_seeds};
 use crate::cli::{Context, Failure};
 use crate::lab::RunSpec;
 use crate::lab::baseline::{
-    GridPoint, PAPER_GRID, PolicyGrid, baseline_report, is_shared_run, shared_run_leaders,
+    GridPoint, PAPER_GRID, PolicyGrid, baseline_report, is_shared_run, representative_configurations,
 };
 use crate::lab::experiment::{Arm, Experiment, ExperimentResults, PreparedExperiment};
 use crate::record::folder::configuration::DEFAULT_SCENARIO;
@@ -43,8 +43,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     options.output.show(&baseline_report(&grid, is_of_the_paper, &results))
 }
 
-/// Plays the leaders first, because the runs of most other configurations turn out to equal the run of their leader. A
-/// leader has the lowest cash floor among configurations that are otherwise equal.
+/// Plays the representatives first, because the runs of most other configurations turn out to equal the run of their representative. A
+/// representative has the lowest cash floor among configurations that are otherwise equal.
 fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;
@@ -54,8 +54,8 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
         arm
     };
     let all = Experiment::new(points.iter().map(arm).collect(), seeds.clone());
-    let leaders = shared_run_leaders(points);
-    let leading: Vec<usize> = (0..points.len()).filter(|at| leaders[*at] == *at).collect();
+    let representatives = representative_configurations(points);
+    let leading: Vec<usize> = (0..points.len()).filter(|at| representatives[*at] == *at).collect();
     let first = Experiment::new(leading.iter().map(|at| arm(&points[*at])).collect(), seeds);
     let known = run_experiment("baseline", &first, &options.play, context)?;
     let mut starts = Vec::new();
@@ -71,10 +71,10 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
         context,
         |prepared: &mut PreparedExperiment<'_>| {
             for (at, point) in points.iter().enumerate() {
-                let leader = &points[leaders[at]];
-                let runs = leading.iter().position(|place| *place == leaders[at]);
+                let representative = &points[representatives[at]];
+                let runs = leading.iter().position(|place| *place == representatives[at]);
                 for run in runs.into_iter().flat_map(|place| &known.by_arm[place]) {
-                    if is_shared_run(&leader.policy, &point.policy, starts[at], run) {
+                    if is_shared_run(&representative.policy, &point.policy, starts[at], run) {
                         prepared.add_result(at, run);
                     }
                 }

@@ -42,7 +42,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
     let mut other = open(&options.other)?;
     let found = one.inspect().compare_with_run(&mut other, options.day);
-    let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
+    let found = found.map_err(|rejection| Failure::failed(rejection.message))?;
     let ids = [&one, &other].map(|run| run.manifest().id.clone());
     if options.json {
         let object = json!({

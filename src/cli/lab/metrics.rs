@@ -22,7 +22,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let mut session = open_for_inspection(&folder, context.seal_key()?)?;
     let mut collector = MetricsCollector::new(None);
     let replayed = session.inspect().replay_days(&mut |day| collector.add_day(day));
-    replayed.map_err(|refusal| Failure::failed(refusal.message))?;
+    replayed.map_err(|rejection| Failure::failed(rejection.message))?;
     let manifest = session.manifest();
     // A participant of a study must not learn the seed.
     let seed = match manifest.study.is_none() || context.is_experimenter {

@@ -27,7 +27,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     context.check_view_allowed(&folder)?;
     let found = play_opponents(&folder, &context.configuration, &|| true);
-    let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
+    let found = found.map_err(|rejection| Failure::failed(rejection.message))?;
     let opponents = found.ok_or_else(|| Failure::failed("stopped"))?;
     let run = Session::open_to_read(&folder, false)?;
     if options.json {

@@ -70,11 +70,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
         progress.inc(1);
     }
-    let shipped = Configuration::bundled();
-    let policy = Policy::find(IDLE_POLICY, &shipped)?;
-    let mut idle = vec![play_idle_company(&policy, Interface::Release1, &shipped)?];
+    let bundled = Configuration::bundled();
+    let policy = Policy::find(IDLE_POLICY, &bundled)?;
+    let mut idle = vec![play_idle_company(&policy, Interface::Release1, &bundled)?];
     if results.iter().any(|run| run.generation == Interface::Release2) {
-        idle.push(play_idle_company(&policy, Interface::Release2, &shipped)?);
+        idle.push(play_idle_company(&policy, Interface::Release2, &bundled)?);
     }
     progress.finish_and_clear();
     let by = match options.by {

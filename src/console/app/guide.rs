@@ -43,11 +43,11 @@ impl App {
 
     pub(super) fn start_tour(&mut self) {
         self.starts_tour = true;
-        let begun = match &self.stage {
+        let started = match &self.stage {
             Stage::Menu(menu) => menu.tour_run().map(str::to_owned),
             Stage::Run(_) | Stage::Study(_) => None,
         };
-        self.execute_effects(vec![Effect::Request(match begun {
+        self.execute_effects(vec![Effect::Request(match started {
             Some(id) => Request::Open(id, Access::Write),
             None => Request::Create(Box::new(tour::tour_run())),
         })]);

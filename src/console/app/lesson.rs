@@ -166,7 +166,7 @@ impl App {
     ) {
         self.update_company(company);
         match refused {
-            Some(refusal) => self.show_error(refusal.to_string()),
+            Some(rejection) => self.show_error(rejection.to_string()),
             None if self.layers.is_empty() => {
                 let key = self.keys.label(Action::NextWeek).unwrap_or_default();
                 self.show_status(format!("guess recorded; {key} runs the week"));

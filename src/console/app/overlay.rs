@@ -84,9 +84,9 @@ impl App {
         let Some((_, found)) = run.overlay.requested_day.try_take() else { return };
         match found {
             Ok(seen) => run.overlay.values = Some(seen),
-            Err(refusal) => {
+            Err(rejection) => {
                 run.overlay.is_on = false;
-                self.show_error(refusal.message);
+                self.show_error(rejection.message);
             }
         }
         self.apply_hidden_values();

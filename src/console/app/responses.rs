@@ -104,7 +104,7 @@ impl App {
             Response::NotesSaved(kept, company) => {
                 match kept {
                     Ok(()) => self.show_status("notes saved"),
-                    Err(refusal) => self.show_error(refusal.to_string()),
+                    Err(rejection) => self.show_error(rejection.to_string()),
                 }
                 self.update_company(company);
             }
@@ -128,12 +128,12 @@ impl App {
         }
         let screen = match &news {
             Response::ToolCalled(tool, answer, company) => {
-                // The label for saving remains if the user has left the run in the meantime.
+                // Keeps the message about saving if the user has left the run in the meantime.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.update_company(company.clone());
                 match answer {
                     Ok(_) => self.show_status(format!("{tool}: done")),
-                    Err(refusal) => self.show_error(format!("{tool}: {refusal}")),
+                    Err(rejection) => self.show_error(format!("{tool}: {rejection}")),
                 }
                 self.continue_lines(*tool, answer.is_ok());
                 ScreenId::Tools
@@ -142,7 +142,7 @@ impl App {
                 self.update_company(company.clone());
                 match changes {
                     Ok(changes) => self.show_status(format!("{what}: {}", describe_setting_changes(changes))),
-                    Err(refusal) => self.show_error(refusal.message.clone()),
+                    Err(rejection) => self.show_error(rejection.message.clone()),
                 }
                 ScreenId::Tools
             }
@@ -207,7 +207,7 @@ impl App {
                     }
                     Vec::new()
                 }),
-                Err(refusal) => self.show_error(refusal.to_string()),
+                Err(rejection) => self.show_error(rejection.to_string()),
             }
             self.request_next_week();
         }
@@ -342,8 +342,8 @@ impl App {
         self.update_company(company);
         let week = match week {
             Ok(week) => week,
-            Err(refusal) => {
-                let text = refusal.to_string();
+            Err(rejection) => {
+                let text = rejection.to_string();
                 if let Stage::Run(run) = &mut self.stage {
                     run.next_week.show_rejection(text.clone());
                     self.push_layer(Layer::NextWeek);
@@ -395,7 +395,7 @@ impl App {
                     self.show_final_page();
                 }
             }
-            Err(refusal) => self.show_error(refusal.to_string()),
+            Err(rejection) => self.show_error(rejection.to_string()),
         }
     }
 }

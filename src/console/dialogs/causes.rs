@@ -161,7 +161,7 @@ impl Dialog for CausesDialog {
         let inner = width.saturating_sub(4) as usize;
         let (title, text, role) = match &self.answer {
             None => (self.record_name(), self.progress_text(), Role::Warning),
-            Some(Err(refusal)) => (self.record_name(), refusal.message.clone(), Role::Bad),
+            Some(Err(rejection)) => (self.record_name(), rejection.message.clone(), Role::Bad),
             Some(Ok(why)) => (heading(why), equation(why), Role::Strong),
         };
         let text = wrap(&text, inner);

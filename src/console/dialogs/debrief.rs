@@ -130,7 +130,7 @@ impl Dialog for DebriefPage {
                     Role::Warning,
                 );
             }
-            Some(Err(refusal)) => return canvas.draw_text(inside, &refusal.message, Role::Bad),
+            Some(Err(rejection)) => return canvas.draw_text(inside, &rejection.message, Role::Bad),
             Some(Ok(debrief)) => debrief,
         };
         let is_wide =

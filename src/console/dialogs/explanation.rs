@@ -222,9 +222,9 @@ impl Dialog for ExplainDialog {
         let text = page_lines(page, width.saturating_sub(4) as usize);
         // The text takes precedence over the links. At least three links stay visible, and the list of links scrolls.
         let links = (page.links.len() as u16).min(10);
-        let least = links.min(3) + u16::from(links > 0);
+        let min = links.min(3) + u16::from(links > 0);
         let room = area.height.saturating_sub(2);
-        let for_text = (text.len() as u16).min(room.saturating_sub(least));
+        let for_text = (text.len() as u16).min(room.saturating_sub(min));
         let for_links = (links + u16::from(links > 0)).min(room - for_text);
         // The chart of the term is drawn in the remaining rows.
         let for_picture = match (room - for_text - for_links).min(glossary_picture::MAX_ROWS) {

@@ -184,7 +184,7 @@ impl FinalPage {
         let roomy = height >= MIN_TWO_COLUMN_SIZE.1;
         let mut parts: Vec<Vec<TextLine<'a>>> = Vec::new();
         parts.extend(self.bankruptcy_lines(canvas, width, roomy));
-        let standing = rank_score(company.observation.score, &company.observation);
+        let ranking = rank_score(company.observation.score, &company.observation);
         // The explanation of a bankruptcy is shown before the ranking.
         let best = match (roomy, company.observation.ended) {
             (_, Some(RunEndReason::Bankruptcy)) => usize::from(roomy),
@@ -193,7 +193,7 @@ impl FinalPage {
         };
         let published = company.rules.results == ResultsDisclosure::Published;
         if published {
-            parts.push(ranking_lines(canvas, &standing, width, best, roomy));
+            parts.push(ranking_lines(canvas, &ranking, width, best, roomy));
         }
         parts.push(match &self.run_report {
             Some(report) => {
@@ -236,9 +236,9 @@ impl FinalPage {
         }
         lines.push(TextLine::from(canvas.span("Where the money went", Role::Header)));
         let room = (width as usize).saturating_sub(NAME_WIDTH + 20).min(40);
-        let most = bankruptcy.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
+        let max = bankruptcy.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
         for cost in bankruptcy.costs.iter().take(if roomy { 6 } else { 3 }) {
-            let bar = "█".repeat((cost.share / most * room as f64).round() as usize);
+            let bar = "█".repeat((cost.share / max * room as f64).round() as usize);
             lines.push(TextLine::from(vec![
                 canvas.span(format!("{:<NAME_WIDTH$}", cost.name), Role::Dim),
                 canvas.span(
@@ -295,21 +295,21 @@ fn headline(company: &DisplayedCompany) -> String {
 
 fn ranking_lines<'a>(
     canvas: &Canvas<'_>,
-    standing: &Ranking,
+    ranking: &Ranking,
     width: u16,
     best: usize,
     roomy: bool,
 ) -> Vec<TextLine<'a>> {
-    let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
+    let max = ranking.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
     let room = (width as usize).saturating_sub(49).min(50);
-    let mut lines: Vec<TextLine<'a>> = wrap(&standing.describe(), width as usize)
+    let mut lines: Vec<TextLine<'a>> = wrap(&ranking.describe(), width as usize)
         .into_iter()
         .map(|line| TextLine::from(canvas.span(line, Role::Header)))
         .collect();
-    for place in standing.top_and_neighbors(best, 1) {
+    for place in ranking.top_and_neighbors(best, 1) {
         let is_this_run = place.origin == ResultOrigin::ThisRun;
         let role = if is_this_run { Role::Good } else { Role::Text };
-        let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
+        let bar = "█".repeat(((place.cash.max(0.0) / max) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![
             canvas.span(if is_this_run { "▌ " } else { "  " }, role),
             canvas.span(format!("{:<21}{:>12}", place.name, grouped_number(place.cash, 0)), role),
@@ -317,7 +317,7 @@ fn ranking_lines<'a>(
             canvas.span(bar, if is_this_run { Role::Good } else { Role::Series(0) }),
         ]));
     }
-    if let Some(caveat) = &standing.caveat {
+    if let Some(caveat) = &ranking.caveat {
         match roomy {
             true => {
                 let caveat_lines = wrap(caveat, width as usize).into_iter();
@@ -351,8 +351,8 @@ fn measure_lines<'a>(
     let room = (width as usize).saturating_sub(NAME_WIDTH);
     let long = if roomy { 2 * room } else { room };
     let targeted = measures.targeted_development.map_or("–".to_owned(), |share| match published_shares {
-        Some((least, most)) => {
-            format!("{} · published agents {} to {}", percent(share, 0), percent(least, 0), percent(most, 0))
+        Some((min, max)) => {
+            format!("{} · published agents {} to {}", percent(share, 0), percent(min, 0), percent(max, 0))
         }
         None => percent(share, 0),
     });

@@ -76,7 +76,7 @@ fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, term_lines: &TermLines) {
 }
 
 fn draw_bars(canvas: &mut Canvas<'_>, area: Rect, bars: &[(String, f64)]) {
-    let most = bars.iter().map(|bar| bar.1).fold(0.0, f64::max);
+    let max = bars.iter().map(|bar| bar.1).fold(0.0, f64::max);
     let names = bars.iter().map(|bar| bar.0.width()).max().unwrap_or(0) as u16;
     for (row, (name, value)) in row_rects(area).zip(bars) {
         canvas.draw_text(Rect { width: names.min(row.width), ..row }, name, Role::Text);
@@ -84,7 +84,7 @@ fn draw_bars(canvas: &mut Canvas<'_>, area: Rect, bars: &[(String, f64)]) {
             |x: u16, width: u16| Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
         canvas.draw_aligned(after(names + 1, 7), &compact_number(*value), Role::Text, Align::Right);
         let room = row.width.saturating_sub(names + 9);
-        let cells = if most > 0.0 { (value.max(0.0) / most * f64::from(room)).round() as usize } else { 0 };
+        let cells = if max > 0.0 { (value.max(0.0) / max * f64::from(room)).round() as usize } else { 0 };
         canvas.draw_text(after(names + 9, room), &"█".repeat(cells), Role::Series(0));
     }
 }

@@ -278,8 +278,8 @@ impl Dialog for LessonDialog {
     }
 
     fn paste(&mut self, text: &str, context: &ScreenContext<'_>) -> DialogResponse {
-        let asks_number = self.open_question(context).is_some_and(|question| question.choices.is_empty());
-        if let Some(answer) = self.answer.as_mut().filter(|_| asks_number) {
+        let needs_number = self.open_question(context).is_some_and(|question| question.choices.is_empty());
+        if let Some(answer) = self.answer.as_mut().filter(|_| needs_number) {
             answer.number.insert(text.trim());
         }
         DialogResponse::stay()

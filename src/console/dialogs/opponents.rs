@@ -68,7 +68,7 @@ impl Dialog for OpponentsPage {
         let width = inside.width as usize;
         let (role, text) = match &self.result {
             None => (Role::Warning, "simulating the strong policies from day 0 …".to_owned()),
-            Some(Err(refusal)) => (Role::Bad, refusal.message.clone()),
+            Some(Err(rejection)) => (Role::Bad, rejection.message.clone()),
             Some(Ok(opponents)) => (Role::Dim, opponents.describe()),
         };
         let mut lines: Vec<TextLine<'_>> =
@@ -99,11 +99,11 @@ fn rank_results<'a>(
     if let Some((score, result_text)) = player_result {
         rows.insert(opponents.count_ahead_of(score), ("You".to_owned(), score, result_text, true));
     }
-    let most = rows.iter().map(|row| row.1).fold(1.0, f64::max);
+    let max = rows.iter().map(|row| row.1).fold(1.0, f64::max);
     let room = width.saturating_sub(NAME_COLUMNS) as f64;
     let line = |(name, score, result_text, is_own): (String, f64, String, bool)| {
         let role = if is_own { Role::Good } else { Role::Text };
-        let bar = "█".repeat((score.max(0.0) / most * room).round() as usize);
+        let bar = "█".repeat((score.max(0.0) / max * room).round() as usize);
         let mark = if is_own { "▌ " } else { "  " };
         let result_text = first_fitting([result_text], width.saturating_sub(22));
         TextLine::from(vec![

@@ -131,7 +131,7 @@ impl Dialog for SourceRowsDialog {
         let below = Rect { y: inside.y + taken, height: inside.height - taken, ..inside };
         match &self.answer {
             None => canvas.draw_text(below, "running … esc cancels", Role::Warning),
-            Some(Err(refusal)) => canvas.draw_text(below, &refusal.message, Role::Bad),
+            Some(Err(rejection)) => canvas.draw_text(below, &rejection.message, Role::Bad),
             Some(Ok(rows)) if rows.rows.is_empty() => {
                 canvas.draw_text(below, "no rows yet", Role::Dim);
             }

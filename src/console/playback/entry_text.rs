@@ -90,8 +90,8 @@ fn call_summary(call: &Call, names: &EnterpriseNames) -> Vec<(String, Role)> {
             };
             vec![(format!("{sign}{named}"), Role::Text)]
         }
-        Outcome::Rejected(refusal) => {
-            vec![(named, Role::Text), (format!("rejected: {}", refusal.message), Role::Bad)]
+        Outcome::Rejected(rejection) => {
+            vec![(named, Role::Text), (format!("rejected: {}", rejection.message), Role::Bad)]
         }
     }
 }
@@ -162,8 +162,8 @@ fn entry_text(entry: &RecordView, names: &EnterpriseNames) -> String {
                 Outcome::Accepted(answer) => {
                     format!("{tool}{remark}\n{}\n  result\n{}", pretty(args), pretty(answer))
                 }
-                Outcome::Rejected(refusal) => {
-                    format!("{tool}\n{}\n  rejected: {}", pretty(args), refusal.message)
+                Outcome::Rejected(rejection) => {
+                    format!("{tool}\n{}\n  rejected: {}", pretty(args), rejection.message)
                 }
             }
         }

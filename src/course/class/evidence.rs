@@ -79,9 +79,10 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
         );
         return Err(RunError::InvalidRequest(message));
     }
-    let standing = lesson.map(|lesson| LessonProgress::from_lines(lesson.clone(), part, &trajectory.lines));
+    let lesson_progress =
+        lesson.map(|lesson| LessonProgress::from_lines(lesson.clone(), part, &trajectory.lines));
     let asks = lesson.is_some_and(|lesson| lesson.needs_database());
-    let mut replay = EvidenceCollector { standing, decisions: BTreeMap::new(), weeks: 0 };
+    let mut replay = EvidenceCollector { lesson_progress, decisions: BTreeMap::new(), weeks: 0 };
     let session = origin.replay(&trajectory.lines, asks, &mut |session, line| {
         replay.observe_line(session, &origin.path, line)
     })?;
@@ -90,7 +91,7 @@ pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Res
 
 /// Results that are gathered while a run is re-simulated.
 struct EvidenceCollector {
-    standing: Option<LessonProgress>,
+    lesson_progress: Option<LessonProgress>,
     decisions: BTreeMap<String, f64>,
     /// Weeks in which the student decided.
     weeks: u32,
@@ -99,9 +100,11 @@ struct EvidenceCollector {
 impl EvidenceCollector {
     fn observe_line(&mut self, session: &mut Session, path: &Path, line: &Line) -> Result<(), RunError> {
         let days = session.params().run.days_per_week;
-        let start =
-            self.standing.as_ref().map_or(0, |lesson_progress| lesson_progress.current_part().start_weeks)
-                * days;
+        let start = self
+            .lesson_progress
+            .as_ref()
+            .map_or(0, |lesson_progress| lesson_progress.current_part().start_weeks)
+            * days;
         if line.closes_days() && session.day() > start {
             self.weeks += 1;
             for (setting, value) in setting_values(session.settings()) {
@@ -123,9 +126,9 @@ impl EvidenceCollector {
     /// Describes how the recorded result of a goal or a guess differs from the re-simulated result. Returns `None` if
     /// both results match.
     fn describe_mismatch(&self, session: &mut Session, note: &RecordedLessonEvent) -> Option<String> {
-        let standing = self.standing.clone()?;
+        let lesson_progress = self.lesson_progress.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
-        let lesson_step = standing.step(step)?;
+        let lesson_step = lesson_progress.step(step)?;
         let number = || (note.number.unwrap_or(1) as usize).checked_sub(1);
         let measurement: Measurement = match (note.event, lesson_step.guess.as_ref().map(|guess| &guess.form))
         {
@@ -133,7 +136,7 @@ impl EvidenceCollector {
             (LessonEvent::Outcome, Some(GuessForm::Number { outcome, .. })) => outcome.clone(),
             _ => return None,
         };
-        let from = standing.current_part().step_weeks(step).0 * session.params().run.days_per_week;
+        let from = lesson_progress.current_part().step_weeks(step).0 * session.params().run.days_per_week;
         let measured = measure(&measurement, session, from).ok().flatten();
         let is_same = match (measured, note.value) {
             (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs().max(1.0),
@@ -151,28 +154,36 @@ impl EvidenceCollector {
     }
 
     fn into_evidence(self, session: &Session, seed: u64) -> Evidence {
-        let EvidenceCollector { standing, decisions, weeks } = self;
+        let EvidenceCollector { lesson_progress, decisions, weeks } = self;
         let means = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1))));
         // An unlimited quota is infinite.
         let decisions = means.filter(|(_, mean)| mean.is_finite()).collect();
-        Evidence { decisions, ..session_evidence(session, standing.as_ref(), seed) }
+        Evidence { decisions, ..session_evidence(session, lesson_progress.as_ref(), seed) }
     }
 }
 
 /// Returns the results of a session that was played or re-simulated.
-pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgress>, seed: u64) -> Evidence {
-    let steps = standing.map_or(0, |lesson_progress| lesson_progress.current_part().steps.len());
+pub(super) fn session_evidence(
+    session: &Session,
+    lesson_progress: Option<&LessonProgress>,
+    seed: u64,
+) -> Evidence {
+    let steps = lesson_progress.map_or(0, |lesson_progress| lesson_progress.current_part().steps.len());
     let numbers: BTreeSet<usize> = (0..steps).collect();
-    let of_step = |step: &usize| standing.map(|progress| step_evidence(progress, *step)).unwrap_or_default();
-    let tries = numbers.iter().filter_map(|step| standing.map(|progress| progress.attempt(*step))).max();
-    let hints =
-        numbers.iter().filter_map(|step| standing.map(|progress| progress.hint_count(*step) as u32)).sum();
-    let pitfalls =
-        standing.map(|progress| progress.triggered_pitfall_names().into_iter().map(str::to_owned).collect());
+    let of_step =
+        |step: &usize| lesson_progress.map(|progress| step_evidence(progress, *step)).unwrap_or_default();
+    let tries =
+        numbers.iter().filter_map(|step| lesson_progress.map(|progress| progress.attempt(*step))).max();
+    let hints = numbers
+        .iter()
+        .filter_map(|step| lesson_progress.map(|progress| progress.hint_count(*step) as u32))
+        .sum();
+    let pitfalls = lesson_progress
+        .map(|progress| progress.triggered_pitfall_names().into_iter().map(str::to_owned).collect());
     let opening = session.cash_by_day().first().map(|cash| (0, *cash));
     let weeks = session.weeks().iter().map(|week| (week.day, week.cash));
     Evidence {
-        part: standing.map_or(1, |progress| progress.part as u32 + 1),
+        part: lesson_progress.map_or(1, |progress| progress.part as u32 + 1),
         seed,
         day: session.day(),
         is_over: session.ended().is_some(),
@@ -186,12 +197,12 @@ pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgre
     }
 }
 
-fn step_evidence(standing: &LessonProgress, step: usize) -> StepEvidence {
+fn step_evidence(lesson_progress: &LessonProgress, step: usize) -> StepEvidence {
     let goal = |note: &&RecordedLessonEvent| GoalEvidence { value: note.value, met: note.met == Some(true) };
     StepEvidence {
-        guess: standing.guess(step),
-        outcome: standing.outcome(step).and_then(|note| note.value),
-        goals: standing.goal_results(step).iter().map(goal).collect(),
+        guess: lesson_progress.guess(step),
+        outcome: lesson_progress.outcome(step).and_then(|note| note.value),
+        goals: lesson_progress.goal_results(step).iter().map(goal).collect(),
     }
 }
 

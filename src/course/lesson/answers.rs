@@ -12,11 +12,13 @@ use novamind_tools::Rejection;
 /// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice, `run_over`,
 /// `not_saved`.
 pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> {
-    let awaits = |step: &usize| session.lesson().is_some_and(|standing| standing.awaits_guess(*step));
+    let awaits =
+        |step: &usize| session.lesson().is_some_and(|lesson_progress| lesson_progress.awaits_guess(*step));
     let Some(step) = lesson_step(session).filter(awaits) else {
         return Err(Rejection::new("no_question", "the lesson has no open question"));
     };
-    let choices = session.lesson().and_then(|standing| standing.choices(step)).map(<[String]>::len);
+    let choices =
+        session.lesson().and_then(|lesson_progress| lesson_progress.choices(step)).map(<[String]>::len);
     let fits = choices.is_none_or(|count| value.fract() == 0.0 && (1.0..=count as f64).contains(&value));
     if !value.is_finite() || !fits {
         let message = match choices {
@@ -45,9 +47,9 @@ pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
 
 /// Returns the current step, the number of hints used in this step, and the text of the next hint.
 fn next_hint(session: &Session) -> Option<(usize, usize, String)> {
-    let (standing, step) = (session.lesson()?, lesson_step(session)?);
-    let given = standing.hint_count(step);
-    Some((step, given, standing.lesson.fill_figures(standing.step(step)?.hints.get(given)?)))
+    let (lesson_progress, step) = (session.lesson()?, lesson_step(session)?);
+    let given = lesson_progress.hint_count(step);
+    Some((step, given, lesson_progress.lesson.fill_figures(lesson_progress.step(step)?.hints.get(given)?)))
 }
 
 /// Evaluates a measurement over all weeks in which the student could decide, up to the current week.

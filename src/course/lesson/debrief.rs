@@ -24,7 +24,7 @@ use novamind_world::params::Params;
 /// A finished part of a lesson, from which the debrief is computed.
 #[derive(Debug, Clone)]
 pub struct FinishedPart {
-    standing: LessonProgress,
+    lesson_progress: LessonProgress,
     run: String,
     participant: Option<String>,
     seed: u64,
@@ -187,8 +187,8 @@ fn serialize_hint_usage<S: Serializer>(
 
 /// Returns the student's tool calls by week. Excludes the calls at the start of the part and the capacity changes of
 /// the lesson.
-fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledCalls> {
-    let part = standing.current_part();
+fn student_calls(session: &Session, lesson_progress: &LessonProgress) -> Vec<ScheduledCalls> {
+    let part = lesson_progress.current_part();
     let of_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
     let starts = part.start.iter().flat_map(|scheduled_calls| &scheduled_calls.calls);
     let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
@@ -198,7 +198,7 @@ fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledC
         _ => None,
     });
     let scheduled = |(day, tool, args)| ScheduledCalls {
-        part: standing.part,
+        part: lesson_progress.part,
         week: day / days,
         every: None,
         until: None,
@@ -225,7 +225,7 @@ impl FinishedPart {
     /// # Errors
     /// `not_in_a_lesson`, `lesson_not_over`.
     pub fn from_session(session: &Session) -> Result<FinishedPart, Rejection> {
-        let Some(standing) = session.lesson() else {
+        let Some(lesson_progress) = session.lesson() else {
             let message = "this run is not part of a lesson; `novamind lesson list` lists the lessons";
             return Err(Rejection::new("not_in_a_lesson", message));
         };
@@ -236,7 +236,7 @@ impl FinishedPart {
         }
         let manifest = session.manifest();
         Ok(FinishedPart {
-            standing: standing.clone(),
+            lesson_progress: lesson_progress.clone(),
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
             seed: manifest.seed,
@@ -244,20 +244,20 @@ impl FinishedPart {
             weeks: session.weeks().to_vec(),
             days_per_week: session.params().run.days_per_week,
             ended: session.ended(),
-            calls: student_calls(session, standing),
+            calls: student_calls(session, lesson_progress),
         })
     }
 
     /// Computes the debrief of the part, which is simulated up to four times in memory. `answers` evaluates the rules
     /// of plays that answer enterprises by rules.
     pub fn debrief(&self, answers: RuleEvaluator) -> Debrief {
-        let plan = &self.standing.lesson.plan;
+        let plan = &self.lesson_progress.lesson.plan;
         let [good, bad, play_result] = thread::scope(|scope| {
             let plays = [&plan.good.plays, &plan.bad.plays, &self.calls];
-            let begun = plays.map(|calls| scope.spawn(move || self.simulate_calls(calls, answers)));
-            begun.map(|play| play.join().ok().flatten())
+            let started = plays.map(|calls| scope.spawn(move || self.simulate_calls(calls, answers)));
+            started.map(|play| play.join().ok().flatten())
         });
-        let (part, decides) = (self.standing.part, plan.good.has_calls_in(self.standing.part));
+        let (part, decides) = (self.lesson_progress.part, plan.good.has_calls_in(self.lesson_progress.part));
         let both = good.as_ref().zip(play_result.as_ref());
         let comparison = match both {
             _ if !decides => DecisionComparison::NoDecisions,
@@ -275,13 +275,13 @@ impl FinishedPart {
                 bad_play: of(&bad),
             }
         });
-        let is_last = self.standing.part + 1 == plan.parts.len();
+        let is_last = self.lesson_progress.part + 1 == plan.parts.len();
         let curve = |played: Option<PlayResult>, play: &ReferencePlay| {
             let text = is_last.then(|| play.part_description(part).to_owned());
             let played = played.filter(|_| decides);
             played.map(|result| ReferenceCurve { text, cash_by_day: result.cash_by_day })
         };
-        let part = self.standing.current_part();
+        let part = self.lesson_progress.current_part();
         Debrief {
             title: plan.title.clone(),
             learning_goal: plan.learning_goal.clone(),
@@ -297,14 +297,15 @@ impl FinishedPart {
             judged_by,
             comparison,
             steps: self.step_results(),
-            pitfalls: triggered_pitfalls(&self.standing),
-            text: is_last.then(|| self.standing.lesson.fill_figures(&self.standing.lesson.debrief)),
+            pitfalls: triggered_pitfalls(&self.lesson_progress),
+            text: is_last
+                .then(|| self.lesson_progress.lesson.fill_figures(&self.lesson_progress.lesson.debrief)),
         }
     }
 
     /// Returns the figure of the first goal in the last step with goals, if the goal is the last value of a weekly figure.
     fn judged_figure(&self) -> Option<WeekFigure> {
-        let steps = &self.standing.current_part().steps;
+        let steps = &self.lesson_progress.current_part().steps;
         let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
         match (&goal.measurement.source, goal.measurement.aggregation) {
             (NumberSource::Figure(figure), WeekAggregation::Last) => Some(*figure),
@@ -314,8 +315,8 @@ impl FinishedPart {
 
     fn simulate_calls(&self, calls: &[ScheduledCalls], answers: RuleEvaluator) -> Option<PlayResult> {
         let play = PartPlay {
-            lesson: &self.standing.lesson,
-            part: self.standing.part,
+            lesson: &self.lesson_progress.lesson,
+            part: self.lesson_progress.part,
             seed: Some(self.seed),
             scheduled_calls: calls,
             weeks: Some((self.cash_by_day.len() as u32).saturating_sub(1).div_ceil(self.days_per_week)),
@@ -345,7 +346,7 @@ impl FinishedPart {
         let Some((at, decisions)) = parts.find(|(_, parted)| !parted.is_empty()) else {
             return DecisionComparison::Same;
         };
-        let before = self.standing.current_part().start_weeks + at as u32;
+        let before = self.lesson_progress.current_part().start_weeks + at as u32;
         let with = self.calls_with_decisions(before, &decisions, &good.weeks[at]);
         let effect = match self.refers_to_customers_after(before) {
             true => DecisionEffect::DifferentCustomers,
@@ -397,7 +398,7 @@ impl FinishedPart {
         let made =
             good.calls_for_tools(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
         calls.push(ScheduledCalls {
-            part: self.standing.part,
+            part: self.lesson_progress.part,
             week,
             every: None,
             until: None,
@@ -407,22 +408,24 @@ impl FinishedPart {
     }
 
     fn step_results(&self) -> Vec<DebriefStep> {
-        let standing = &self.standing;
-        let begun = (0..standing.current_part().steps.len()).filter(|step| standing.has_started(*step));
-        begun.filter_map(|step| step_result(standing, step)).collect()
+        let lesson_progress = &self.lesson_progress;
+        let started =
+            (0..lesson_progress.current_part().steps.len()).filter(|step| lesson_progress.has_started(*step));
+        started.filter_map(|step| step_result(lesson_progress, step)).collect()
     }
 }
 
 /// Returns the question, the goals and the results of a step, or `None` if the step does not exist.
-pub(super) fn step_result(standing: &LessonProgress, step: usize) -> Option<DebriefStep> {
-    let lesson_step = standing.step(step)?;
-    let judged = standing.goal_results(step);
-    let page = |(at, goal): (usize, &LessonGoal)| GoalStatus::new(standing, goal, judged.get(at).copied());
+pub(super) fn step_result(lesson_progress: &LessonProgress, step: usize) -> Option<DebriefStep> {
+    let lesson_step = lesson_progress.step(step)?;
+    let judged = lesson_progress.goal_results(step);
+    let page =
+        |(at, goal): (usize, &LessonGoal)| GoalStatus::new(lesson_progress, goal, judged.get(at).copied());
     Some(DebriefStep {
         title: lesson_step.title.clone(),
-        tries: standing.attempt(step),
-        hints: (standing.hint_count(step), lesson_step.hints.len()),
-        question: step_question(standing, step),
+        tries: lesson_progress.attempt(step),
+        hints: (lesson_progress.hint_count(step), lesson_step.hints.len()),
+        question: step_question(lesson_progress, step),
         goals: lesson_step.goals.iter().enumerate().map(page).collect(),
     })
 }

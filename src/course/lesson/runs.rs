@@ -20,19 +20,19 @@ pub(super) fn require_lesson(session: &Session) -> Result<&LessonProgress, Rejec
 /// # Errors
 /// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
 pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> {
-    let standing = require_lesson(session)?;
-    if !standing.has_started(step) {
-        let message = format!("choose a step from 1 to {}", standing.last_started_step() + 1);
+    let lesson_progress = require_lesson(session)?;
+    if !lesson_progress.has_started(step) {
+        let message = format!("choose a step from 1 to {}", lesson_progress.last_started_step() + 1);
         return Err(Rejection::for_field("step", "step_unknown", message));
     }
     let Some(folder) = session.folder() else {
         return Err(Rejection::new("not_saved", "a run in memory cannot be retried"));
     };
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved_rejection)?;
-    let begun = standing.current_part().step_weeks(step).0 * session.params().run.days_per_week;
-    let mut again = create_lesson_branch(folder, session.manifest(), &trajectory, begun)?;
+    let started = lesson_progress.current_part().step_weeks(step).0 * session.params().run.days_per_week;
+    let mut again = create_lesson_branch(folder, session.manifest(), &trajectory, started)?;
     // The first guess counts: the student has seen the outcome.
-    if let Some(value) = standing.guess(step) {
+    if let Some(value) = lesson_progress.guess(step) {
         let about = RecordedLessonEvent::new(LessonEvent::Guess, step as u32 + 1);
         again.record_lesson_event(RecordedLessonEvent { value: Some(value), ..about })?;
     }
@@ -44,8 +44,8 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
 /// # Errors
 /// `not_in_a_lesson`, `part_unknown`, `not_saved`.
 pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> {
-    let standing = require_lesson(session)?;
-    let parts = standing.lesson.plan.parts.len();
+    let lesson_progress = require_lesson(session)?;
+    let parts = lesson_progress.lesson.plan.parts.len();
     if part >= parts {
         return Err(Rejection::for_field("part", "part_unknown", format!("choose a part from 1 to {parts}")));
     }
@@ -56,7 +56,7 @@ pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> 
     let new = NewRun {
         mode: Mode::Lesson,
         participant: manifest.participant.clone(),
-        lesson: Some(LessonOptions { lesson: standing.lesson.clone(), part, is_judged: true }),
+        lesson: Some(LessonOptions { lesson: lesson_progress.lesson.clone(), part, is_judged: true }),
         handout: manifest.handout.clone().map(HandoutOptions::for_later_run),
         storage: Storage::Runs(runs.to_owned()),
         ..NewRun::default()

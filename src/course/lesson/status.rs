@@ -100,16 +100,16 @@ pub struct GoalStatus {
 impl LessonStatus {
     /// Returns the lesson page of a run, or `None` if the run does not belong to a lesson.
     pub fn from_session(session: &mut Session) -> Option<LessonStatus> {
-        let standing = session.lesson()?.clone();
-        let part = standing.current_part();
+        let lesson_progress = session.lesson()?.clone();
+        let part = lesson_progress.current_part();
         let going = lesson_step(session);
-        let step = going.unwrap_or_else(|| standing.last_started_step());
+        let step = going.unwrap_or_else(|| lesson_progress.last_started_step());
         let planned_step = part.steps.get(step)?;
         let (begin, end) = part.step_weeks(step);
         let passed = weeks_passed(session).clamp(begin, end) - begin;
-        let plan = &standing.lesson.plan;
-        let filled = |text: &String| standing.lesson.fill_figures(text);
-        let next_part = (standing.part as u32 + 2, plan.parts.len() as u32);
+        let plan = &lesson_progress.lesson.plan;
+        let filled = |text: &String| lesson_progress.lesson.fill_figures(text);
+        let next_part = (lesson_progress.part as u32 + 2, plan.parts.len() as u32);
         Some(LessonStatus {
             title: plan.title.clone(),
             part: (plan.parts.len() > 1).then(|| part.title.clone()),
@@ -118,20 +118,20 @@ impl LessonStatus {
             step_title: planned_step.title.clone(),
             text: filled(&planned_step.text),
             weeks: (passed, planned_step.weeks),
-            try_number: standing.attempt(step),
-            question: step_question(&standing, step),
-            goals: goal_statuses(session, &standing, step, (begin, passed)),
-            hints: planned_step.hints.iter().take(standing.hint_count(step)).map(filled).collect(),
+            try_number: lesson_progress.attempt(step),
+            question: step_question(&lesson_progress, step),
+            goals: goal_statuses(session, &lesson_progress, step, (begin, passed)),
+            hints: planned_step.hints.iter().take(lesson_progress.hint_count(step)).map(filled).collect(),
             hint_count: planned_step.hints.len(),
-            pitfalls: triggered_pitfalls(&standing),
+            pitfalls: triggered_pitfalls(&lesson_progress),
             previous_step: step
                 .checked_sub(1)
                 .filter(|_| passed == 0)
-                .and_then(|before| step_result(&standing, before)),
+                .and_then(|before| step_result(&lesson_progress, before)),
             is_finished: going.is_none(),
             has_opponents: going.is_none()
                 && next_part.0 > next_part.1
-                && standing.current_part().starts_empty(),
+                && lesson_progress.current_part().starts_empty(),
             next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
             screens: plan.access.screens.clone(),
             tools: plan.access.tools.clone(),
@@ -144,16 +144,16 @@ impl LessonStatus {
 /// Returns the goals of a step. A goal that is not judged yet is measured up to the current week.
 fn goal_statuses(
     session: &mut Session,
-    standing: &LessonProgress,
+    lesson_progress: &LessonProgress,
     step: usize,
     (begin, passed): (u32, u32),
 ) -> Vec<GoalStatus> {
     let from = begin * session.params().run.days_per_week;
-    let goals = standing.step(step).map(|lesson_step| lesson_step.goals.clone()).unwrap_or_default();
-    let judged = standing.goal_results(step);
+    let goals = lesson_progress.step(step).map(|lesson_step| lesson_step.goals.clone()).unwrap_or_default();
+    let judged = lesson_progress.goal_results(step);
     let page = |(at, goal): (usize, LessonGoal)| {
         let note = judged.get(at).copied();
-        let page = GoalStatus::new(standing, &goal, note);
+        let page = GoalStatus::new(lesson_progress, &goal, note);
         let is_open = note.is_none() && passed > 0;
         let so_far = is_open.then(|| measure(&goal.measurement, session, from).ok().flatten()).flatten();
         GoalStatus { value: page.value.or(so_far), ..page }
@@ -164,7 +164,7 @@ fn goal_statuses(
 impl GoalStatus {
     /// Creates the status of a goal, including the result of a judged goal.
     pub(super) fn new(
-        standing: &LessonProgress,
+        lesson_progress: &LessonProgress,
         goal: &LessonGoal,
         judged: Option<&RecordedLessonEvent>,
     ) -> GoalStatus {
@@ -173,7 +173,7 @@ impl GoalStatus {
             GoalBound::AtLeast(_) | GoalBound::AtMost(_) => None,
         };
         GoalStatus {
-            text: standing.lesson.fill_figures(&goal.text),
+            text: lesson_progress.lesson.fill_figures(&goal.text),
             value: judged.and_then(|note| note.value),
             bound: goal.bound.value(None).or(judged.and_then(|note| note.bound)),
             wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
@@ -184,28 +184,28 @@ impl GoalStatus {
     }
 }
 
-pub(super) fn step_question(standing: &LessonProgress, step: usize) -> Option<LessonQuestion> {
-    let guess = standing.step(step)?.guess.as_ref()?;
+pub(super) fn step_question(lesson_progress: &LessonProgress, step: usize) -> Option<LessonQuestion> {
+    let guess = lesson_progress.step(step)?.guess.as_ref()?;
     let (choices, unit) = match &guess.form {
         GuessForm::Number { unit, .. } => (Vec::new(), unit.clone()),
         GuessForm::Choice { choices, .. } => (choices.clone(), String::new()),
     };
-    let outcome = standing.outcome(step).and_then(|note| note.value);
+    let outcome = lesson_progress.outcome(step).and_then(|note| note.value);
     Some(LessonQuestion {
         text: guess.question.clone(),
         choices,
         unit,
-        guess: standing.guess(step),
+        guess: lesson_progress.guess(step),
         outcome,
         told_at_end: guess.told == OutcomeTiming::Part,
     })
 }
 
-pub(super) fn triggered_pitfalls(standing: &LessonProgress) -> Vec<(u32, String)> {
+pub(super) fn triggered_pitfalls(lesson_progress: &LessonProgress) -> Vec<(u32, String)> {
     let triggered = |(day, note): &(u32, RecordedLessonEvent)| {
         let name = note.name.as_deref()?;
-        let pitfall = standing.lesson.plan.pitfalls.iter().find(|pitfall| pitfall.name == name)?;
-        Some((*day, standing.lesson.fill_figures(&pitfall.say)))
+        let pitfall = lesson_progress.lesson.plan.pitfalls.iter().find(|pitfall| pitfall.name == name)?;
+        Some((*day, lesson_progress.lesson.fill_figures(&pitfall.say)))
     };
-    standing.events.iter().filter_map(triggered).collect()
+    lesson_progress.events.iter().filter_map(triggered).collect()
 }

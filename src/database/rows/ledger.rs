@@ -39,9 +39,9 @@ impl LedgerWriter {
         }
         let (next, lead_cost) = (self.next, -self.params.leads.lead_acquisition_cost);
         // If the ledger already contains this day, the day is the newest one.
-        let begun = self.days.last().filter(|last| last.day() == facts.day);
+        let started = self.days.last().filter(|last| last.day() == facts.day);
         let anew = || {
-            begun.map_or_else(|| LedgerDay::new(facts.day, next, lead_cost), |last| LedgerDay::clone(last))
+            started.map_or_else(|| LedgerDay::new(facts.day, next, lead_cost), |last| LedgerDay::clone(last))
         };
         let day = self.touched.entry(facts.day).or_insert_with(anew);
         let before = day.len();

@@ -89,8 +89,8 @@ impl NoticeWriter {
 
     /// Returns the inbox day with this number. If the inbox already contains the day, it is the newest one.
     fn notice_day(&mut self, day: u32) -> &mut NoticeDay {
-        let begun = self.inbox.days.last().filter(|last| last.day == day);
-        let anew = || begun.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));
+        let started = self.inbox.days.last().filter(|last| last.day == day);
+        let anew = || started.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));
         self.days.entry(day).or_insert_with(anew)
     }
 

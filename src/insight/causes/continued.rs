@@ -52,7 +52,7 @@ impl WeekResimulation {
         let change = |acting: u32| change_without_purchases(quantity, &self.continued_weeks[acting as usize]);
         let all = (1u32 << self.continued.len()) - 1;
         let valued = causes_with_values(candidates, all, change);
-        let amounts = shapley_values(valued.len(), |set| change(acting_causes(&valued, all, set)));
+        let amounts = shapley_values(valued.len(), |set| change(included_causes(&valued, all, set)));
         let contribution = |(at, amount): (&usize, f64)| {
             let cause = self.continued[*at];
             CauseContribution { cause, amount, details: vec![self.removed_days(cause)] }
@@ -137,14 +137,14 @@ fn causes_with_values(mut candidates: Vec<usize>, all: u32, change: impl Fn(u32)
     let effect = |at: &usize| (change(all) - change(all & !(1 << at))).abs();
     candidates.retain(|at| !effect(at).is_nan());
     candidates.sort_by(|left, right| effect(right).total_cmp(&effect(left)));
-    while (1..1u32 << candidates.len()).any(|set| change(acting_causes(&candidates, all, !set)).is_nan()) {
+    while (1..1u32 << candidates.len()).any(|set| change(included_causes(&candidates, all, !set)).is_nan()) {
         candidates.pop();
     }
     candidates
 }
 
 /// Returns all causes except the candidates whose bit is not in `set`.
-fn acting_causes(candidates: &[usize], all: u32, set: u32) -> u32 {
+fn included_causes(candidates: &[usize], all: u32, set: u32) -> u32 {
     let removed = candidates.iter().enumerate().filter(|(bit, _)| set & (1 << bit) == 0);
     all & !removed.fold(0, |mask, (_, at)| mask | 1 << at)
 }
@@ -173,6 +173,6 @@ mod tests {
         assert_eq!(valued(&without(0b010)), [2, 0], "cause 1 cannot be removed");
         assert_eq!(valued(&without(0b101)), [1, 2], "causes 0 and 2 cannot be removed together");
         assert_eq!(valued(&|_| f64::NAN), [0; 0], "the change has no value");
-        assert_eq!(acting_causes(&[1, 2], 0b111, 0b10), 0b101);
+        assert_eq!(included_causes(&[1, 2], 0b111, 0b10), 0b101);
     }
 }

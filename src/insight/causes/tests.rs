@@ -41,7 +41,7 @@ fn explain(session: &Session, quantity: WeekQuantity) -> ChangeExplanation {
 }
 
 /// Returns the recorded figures of week `at`, counted from 0, for comparison with re-simulations.
-fn simulated_week(session: &Session, at: usize) -> SimulatedWeek {
+fn recorded_week(session: &Session, at: usize) -> SimulatedWeek {
     let subscribers =
         |at: usize, group| session.company().group_weeks()[at][group].subscribers.0.iter().sum();
     SimulatedWeek {
@@ -65,7 +65,7 @@ fn simulated_week(session: &Session, at: usize) -> SimulatedWeek {
 }
 
 fn last_value(session: &Session, quantity: WeekQuantity) -> f64 {
-    quantity.value_in(&simulated_week(session, session.weeks().len() - 1))
+    quantity.value_in(&recorded_week(session, session.weeks().len() - 1))
 }
 
 /// Returns every figure of the company and the figures of some groups.
@@ -109,7 +109,7 @@ fn changed_settings_rank_first_and_equal_branch_differences() {
         let quantity = company_quantity(figure);
         let why = explain(&session, quantity);
         assert_contributions_add_up(&why);
-        let before = quantity.value_in(&simulated_week(&session, WEEKS_BEFORE_CHANGE as usize - 1));
+        let before = quantity.value_in(&recorded_week(&session, WEEKS_BEFORE_CHANGE as usize - 1));
         assert_eq!((why.before, why.after), (before, last_value(&session, quantity)));
         let paired = last_value(&session, quantity) - last_value(&control, quantity);
         let first = why.contributions.iter().find(|part| !is_continuing(part)).expect("a cause");
@@ -236,12 +236,12 @@ fn unchanged_settings_are_not_causes_and_contributions_add_up() {
             if is_told && !quantity.is_hidden() {
                 assert_eq!(
                     why.before,
-                    quantity.value_in(&simulated_week(&session, at - 1)),
+                    quantity.value_in(&recorded_week(&session, at - 1)),
                     "{quantity}, week {week}"
                 );
                 assert_eq!(
                     why.after,
-                    quantity.value_in(&simulated_week(&session, at)),
+                    quantity.value_in(&recorded_week(&session, at)),
                     "{quantity}, week {week}"
                 );
             }

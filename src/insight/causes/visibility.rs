@@ -73,7 +73,7 @@ mod tests {
             manifest.study = Some(StudyStamp::pilot_study(practice));
             manifest.rules = Some(SessionRules { results, ..SessionRules::for_mode(Mode::Baseline) });
             assert_eq!(
-                input_visibility(&manifest, true).map_err(|refusal| refusal.code),
+                input_visibility(&manifest, true).map_err(|rejection| rejection.code),
                 Err("not_in_this_mode")
             );
         }

@@ -33,11 +33,13 @@ pub(crate) fn play_weeks(runs: &Path, mode: Mode, seed: u64, change: Option<(&st
         ("set_targeted_ad_spend", json!({"search_ads": {"S1": 9000, "S2": 9000}, "linkedin": {"S3": 6000}})),
         ("set_capacity_tier", json!({"capacity_tier": 2})),
     ] {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
     }
     for week in 0..=WEEKS_BEFORE_CHANGE {
         if let (true, Some((tool, arguments))) = (week == WEEKS_BEFORE_CHANGE, &change) {
-            session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+            session
+                .call(tool, arguments, Via::Script)
+                .unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
         }
         let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");

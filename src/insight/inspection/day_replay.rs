@@ -24,7 +24,7 @@ pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunEr
     let session = Session::open_sealed(folder, Access::Write, false, key)?;
     match session.check_inspection() {
         Ok(()) => Ok(session),
-        Err(refusal) => Err(RunError::InvalidRequest(refusal.message)),
+        Err(rejection) => Err(RunError::InvalidRequest(rejection.message)),
     }
 }
 

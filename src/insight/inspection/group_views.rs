@@ -34,19 +34,26 @@ impl Inspector<'_> {
         let permit = InspectionPermit::start(self.run, "satisfaction", group.id(), day)?;
         let day = permit.day();
         let seen = self.hidden_day(&permit, day)?;
-        let evening = &seen.groups[group];
-        let evening = (
-            evening.active,
-            evening.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction),
+        let day_end = &seen.groups[group];
+        let subscribers = (
+            day_end.active,
+            day_end.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction),
         );
         let yesterday = match day {
             1 => None,
             day => Some(self.hidden_day(&permit, day - 1)?.satisfaction[group]),
         };
-        let evenings = self.values_of_recent_days(&permit, group, day, |day_end| {
+        let recent_days = self.values_of_recent_days(&permit, group, day, |day_end| {
             day_end.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction)
         })?;
-        Ok(SatisfactionEquation::new(group, day, seen.satisfaction[group], evening, yesterday, evenings))
+        Ok(SatisfactionEquation::new(
+            group,
+            day,
+            seen.satisfaction[group],
+            subscribers,
+            yesterday,
+            recent_days,
+        ))
     }
 
     /// Returns the reputation equation of a group on a day, by default the last day. Records the inspection in the
@@ -61,9 +68,9 @@ impl Inspector<'_> {
     ) -> Result<ReputationEquation, Rejection> {
         let permit = InspectionPermit::start(self.run, "reputation", group.id(), day)?;
         let day = permit.day();
-        let evenings = self.values_of_recent_days(&permit, group, day, |day_end| day_end.reputation)?;
+        let recent_days = self.values_of_recent_days(&permit, group, day, |day_end| day_end.reputation)?;
         self.hidden_day(&permit, day)
-            .map(|seen| ReputationEquation::new(group, day, &seen.reputation, evenings))
+            .map(|seen| ReputationEquation::new(group, day, &seen.reputation, recent_days))
     }
 
     /// Returns a group's values at the end of a day and of up to 27 days before.
@@ -76,8 +83,8 @@ impl Inspector<'_> {
     ) -> Result<Vec<T>, Rejection> {
         let diary = self.all_hidden_days(permit, self.cache.hidden_days.records_threads())?;
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
-        let evening = |day| diary.with_day(day, |seen| read(&seen.groups[group]));
-        Ok((first..=day).filter_map(evening).collect())
+        let value_of_day = |day| diary.with_day(day, |seen| read(&seen.groups[group]));
+        Ok((first..=day).filter_map(value_of_day).collect())
     }
 
     /// Returns the spillover of reputation between groups on a day, by default the last day. Records the inspection in

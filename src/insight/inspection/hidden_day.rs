@@ -170,11 +170,11 @@ impl DayObserver for HiddenDayRecorder {
 
     fn after_reputation_changes(
         &self,
-        moods: &ByGroup<ReputationContribution>,
+        contributions: &ByGroup<ReputationContribution>,
         market: &Market,
         params: &Params,
     ) {
-        self.lock().today.reputation.add_subscriber_contributions(moods, market, params);
+        self.lock().today.reputation.add_subscriber_contributions(contributions, market, params);
     }
 
     fn before_negotiations(
@@ -215,10 +215,10 @@ impl DayObserver for HiddenDayRecorder {
         facts.arrivals.iter().for_each(|arrival| pages.today.arrived_leads[arrival.group] += 1);
         let mut left = ByGroup::default();
         facts.endings.iter().for_each(|ending| left[ending.group] += 1);
-        let moods = std::mem::take(&mut pages.satisfaction_sums);
+        let satisfaction_sums = std::mem::take(&mut pages.satisfaction_sums);
         let weight = params.satisfaction.satisfaction_ema_alpha;
         let mut today = std::mem::take(&mut pages.today);
-        today.satisfaction = SatisfactionDay::by_group(&moods, &left, weight);
+        today.satisfaction = SatisfactionDay::by_group(&satisfaction_sums, &left, weight);
         today.banks = QualityBanks {
             shared_bonus: world.product.shared_bonus,
             shared: world.product.shared_bank,

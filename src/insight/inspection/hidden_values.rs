@@ -76,14 +76,14 @@ impl Inspector<'_> {
 }
 
 fn true_group_values(group: Group, seen: &HiddenDay) -> TrueGroupValues {
-    let evening = &seen.groups[group];
+    let day_end = &seen.groups[group];
     TrueGroupValues {
         is_known: seen.known_groups[group],
-        reputation: evening.reputation,
-        satisfaction: evening.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction),
+        reputation: day_end.reputation,
+        satisfaction: day_end.mean_satisfaction_and_relationship.map(|(satisfaction, _)| satisfaction),
         expected_leads: seen.lead_factors[group].expected(),
-        budget: evening.budget,
-        quality_floor: evening.quality_floor,
-        market_cap: evening.market_cap,
+        budget: day_end.budget,
+        quality_floor: day_end.quality_floor,
+        market_cap: day_end.market_cap,
     }
 }

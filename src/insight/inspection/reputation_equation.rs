@@ -81,7 +81,7 @@ impl ReputationDay {
     /// Adds the contributions of subscribers, including dropped contributions.
     pub(crate) fn add_subscriber_contributions(
         &mut self,
-        moods: &ByGroup<ReputationContribution>,
+        contributions: &ByGroup<ReputationContribution>,
         market: &Market,
         params: &Params,
     ) {
@@ -91,11 +91,12 @@ impl ReputationDay {
             spillover: reputation.cross_delta_min_abs,
         };
         self.after = ByGroup::from_fn(|group| market.reputation.get(group));
-        for group in Group::all().filter(|group| moods[*group].count > 0) {
-            let (mood, change) = (&moods[group], daily_change(&moods[group], reputation));
-            let called = daily_change_before_threshold(mood, reputation);
+        for group in Group::all().filter(|group| contributions[*group].count > 0) {
+            let (contribution, change) =
+                (&contributions[group], daily_change(&contributions[group], reputation));
+            let called = daily_change_before_threshold(contribution, reputation);
             self.contributions[group] = SubscriberContribution {
-                subscribers: mood.count,
+                subscribers: contribution.count,
                 requested_change: called,
                 is_applied: change.is_some(),
             };
@@ -139,7 +140,7 @@ impl ReputationEquation {
         group: Group,
         day: u32,
         seen: &ReputationDay,
-        evenings: Vec<f64>,
+        recent_days: Vec<f64>,
     ) -> ReputationEquation {
         ReputationEquation {
             group,
@@ -151,7 +152,7 @@ impl ReputationEquation {
             spillovers: seen.spillovers.iter().copied().filter(|spill| spill.to == group).collect(),
             bounds: seen.bounds[group],
             after: seen.after[group],
-            recent_days: evenings,
+            recent_days,
             thresholds: seen.thresholds,
         }
     }

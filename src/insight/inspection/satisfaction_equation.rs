@@ -175,15 +175,15 @@ pub struct SatisfactionEquation {
 }
 
 impl SatisfactionEquation {
-    /// Creates the equation of a group on a day. `subscribers` and `evening` are the number and the mean satisfaction
+    /// Creates the equation of a group on a day. `subscribers` and `mean_satisfaction` are the number and the mean satisfaction
     /// of the subscribers at the end of the day.
     pub(crate) fn new(
         group: Group,
         day: u32,
         satisfaction_day: SatisfactionDay,
-        (subscribers, evening): (u32, Option<f64>),
+        (subscribers, mean_satisfaction): (u32, Option<f64>),
         yesterday: Option<SatisfactionDay>,
-        evenings: Vec<Option<f64>>,
+        recent_days: Vec<Option<f64>>,
     ) -> SatisfactionEquation {
         SatisfactionEquation {
             group,
@@ -192,8 +192,8 @@ impl SatisfactionEquation {
             departed: satisfaction_day.departed,
             joined: (subscribers + satisfaction_day.departed).saturating_sub(satisfaction_day.sums.count),
             subscribers,
-            end_of_day: evening,
-            recent_days: evenings,
+            end_of_day: mean_satisfaction,
+            recent_days,
             today: satisfaction_day,
             yesterday,
         }

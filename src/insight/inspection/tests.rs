@@ -51,7 +51,7 @@ struct ObservedDay {
     service_penalty: f64,
     /// Satisfaction of all subscribers after the daily change, by block.
     satisfaction_updates: BTreeMap<(Group, u32), Vec<f64>>,
-    evening: ByGroup<Vec<f64>>,
+    satisfaction_at_day_end: ByGroup<Vec<f64>>,
     reputation: ByGroup<f64>,
     /// Number of cancellations that affect reputation, by group.
     gave_up: ByGroup<u32>,
@@ -83,7 +83,7 @@ impl DayObserver for WorldObserver {
 
     fn on_day_end(&self, world: &World, _: &Params, facts: &Facts) {
         let mut today = std::mem::take(&mut *self.today.lock().expect("a lock"));
-        today.evening = ByGroup::from_fn(|group| {
+        today.satisfaction_at_day_end = ByGroup::from_fn(|group| {
             let blocks = world.customers.groups[group].blocks.iter();
             blocks.flat_map(|block| block.satisfaction.iter().copied()).collect()
         });
@@ -157,12 +157,12 @@ fn satisfaction_terms_add_up_to_the_mean() {
         for group in Group::all() {
             let satisfaction_equation =
                 session.inspect().satisfaction_equation(group, Some(day)).expect("a look");
-            let evening = &used.evening[group];
-            assert_eq!(satisfaction_equation.subscribers as usize, evening.len());
-            let mean = evening.iter().sum::<f64>() / evening.len() as f64;
+            let satisfactions = &used.satisfaction_at_day_end[group];
+            assert_eq!(satisfaction_equation.subscribers as usize, satisfactions.len());
+            let mean = satisfactions.iter().sum::<f64>() / satisfactions.len() as f64;
             assert_eq!(
                 satisfaction_equation.end_of_day.map(f64::to_bits),
-                (!evening.is_empty()).then_some(mean.to_bits())
+                (!satisfactions.is_empty()).then_some(mean.to_bits())
             );
             let moved: Vec<f64> = (used.satisfaction_updates.iter())
                 .filter(|((of, _), _)| *of == group)
@@ -190,7 +190,7 @@ fn satisfaction_terms_add_up_to_the_mean() {
                 instant,
                 SatisfactionTerm::ALL.iter().filter_map(|term| satisfaction_equation.term(*term)).sum(),
             );
-            let earlier = &days[day as usize - 2].evening[group];
+            let earlier = &days[day as usize - 2].satisfaction_at_day_end[group];
             assert_close(before, earlier.iter().sum::<f64>() / earlier.len() as f64);
             compared += 1;
         }

@@ -90,7 +90,7 @@ impl PolicyGrid {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
             return PolicyGrid::parse(&ParameterSource { name: name.to_owned(), text });
         }
-        match novamind_assets::grids().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::grids().into_iter().find(|(bundled, _)| *bundled == name) {
             Some((_, text)) => {
                 let file = format!("configs/grids/{name}.toml");
                 PolicyGrid::parse(&ParameterSource { name: file, text: text.to_owned() })
@@ -125,7 +125,7 @@ impl PolicyGrid {
                 return Err(reader.error_at(
                     Some(span),
                     &format!(
-                        "axis names need letters or digits, must be unique and must not be {}; a name {LABEL_RULE}",
+                        "axis names need letters or digits, must be unique and must not be {}; a name {NAME_REQUIREMENT}",
                         RESERVED_COLUMNS.join(", ")
                     ),
                 ));
@@ -153,7 +153,8 @@ impl PolicyGrid {
 }
 
 /// Rule for the names of axes and levels, worded for use in error messages.
-const LABEL_RULE: &str = "is one line of text without \" / \", which separates the levels of a combination";
+const NAME_REQUIREMENT: &str =
+    "is one line of text without \" / \", which separates the levels of a combination";
 
 /// Column names of reports, which axes must not use.
 const RESERVED_COLUMNS: [&str; 13] = [
@@ -208,9 +209,8 @@ impl GridReader<'_> {
                 return Err(self.error_at(Some(span), &problem));
             }
             if !is_valid_label_part(&name) {
-                return Err(
-                    self.error_at(Some(span), &format!("axis {axis}: the name of a level {LABEL_RULE}"))
-                );
+                return Err(self
+                    .error_at(Some(span), &format!("axis {axis}: the name of a level {NAME_REQUIREMENT}")));
             }
             levels.push(GridLevel { name, set, calls: call, span });
         }

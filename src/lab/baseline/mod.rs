@@ -8,7 +8,7 @@ mod tests;
 
 pub use grid::{GridPoint, PolicyGrid};
 pub use report::baseline_report;
-pub use shared_runs::{is_shared_run, shared_run_leaders};
+pub use shared_runs::{is_shared_run, representative_configurations};
 
 /// Name of the bundled grid with the paper's configurations.
 pub const PAPER_GRID: &str = "paper";

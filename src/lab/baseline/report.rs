@@ -14,25 +14,25 @@ use novamind_report::ranking::published_results;
 
 /// Returns the report on the configurations of a grid.
 pub fn baseline_report(grid: &PolicyGrid, is_published: bool, results: &ExperimentResults) -> LabReport {
-    let board = RankedResults::new(results);
+    let ranked = RankedResults::new(results);
     let count = results.seeds.len();
     let seeds = match (results.seeds.first(), results.seeds.last()) {
         (Some(first), Some(last)) if first != last => format!("seeds {first} to {last}"),
         (Some(first), _) => format!("seed {first}"),
         _ => "no seeds".to_owned(),
     };
-    let table = if count > 1 { many_seeds_table(grid, &board) } else { single_seed_table(grid, &board) };
+    let table = if count > 1 { many_seeds_table(grid, &ranked) } else { single_seed_table(grid, &ranked) };
     let mut exhibit = LabReport::with_table(
         format!("{}: {} configurations, {seeds}", grid.name, grid.configurations.len()),
         table,
     );
     if count > 1 {
-        exhibit.tables.push(stability_table(grid, &board));
-        exhibit.tables.push(best_by_seed_table(grid, &board));
+        exhibit.tables.push(stability_table(grid, &ranked));
+        exhibit.tables.push(best_by_seed_table(grid, &ranked));
     }
-    exhibit.graphs.push(if count > 1 { cash_quartile_graph(&board) } else { cash_bar_graph(&board) });
-    exhibit.tables.push(run_table(grid, &board));
-    exhibit.notes.extend(notes(grid, is_published, &board));
+    exhibit.graphs.push(if count > 1 { cash_quartile_graph(&ranked) } else { cash_bar_graph(&ranked) });
+    exhibit.tables.push(run_table(grid, &ranked));
+    exhibit.notes.extend(notes(grid, is_published, &ranked));
     exhibit
 }
 
@@ -65,11 +65,11 @@ impl<'a> RankedResults<'a> {
 
     /// Returns the share of seeds in which a configuration ranks first, including ties.
     fn share_of_first_places(&self, arm: usize) -> f64 {
-        let least = |places: &[f64]| places.iter().copied().fold(f64::INFINITY, f64::min);
+        let min = |places: &[f64]| places.iter().copied().fold(f64::INFINITY, f64::min);
         let firsts = self
             .ranks_by_seed
             .iter()
-            .filter(|places| places.get(arm).is_some_and(|value| *value == least(places)));
+            .filter(|places| places.get(arm).is_some_and(|value| *value == min(places)));
         firsts.count() as f64 / self.ranks_by_seed.len().max(1) as f64
     }
 
@@ -86,7 +86,7 @@ fn level_cells(grid: &PolicyGrid, arm: usize) -> Vec<CellValue> {
     grid.configurations[arm].levels.iter().map(CellValue::text).collect()
 }
 
-fn single_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
+fn single_seed_table(grid: &PolicyGrid, ranked: &RankedResults<'_>) -> LabTable {
     let mut columns = axis_columns(grid);
     columns.extend([
         Column::number("cash", "final cash", Measure::Dollars),
@@ -95,8 +95,8 @@ fn single_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
         Column::number("peak_day", "peak day", Measure::Days),
     ]);
     let mut table = LabTable::new("configurations", "Highest final cash first", columns);
-    for arm in &board.order {
-        let Some(run) = board.runs_of_arm(*arm).first() else { continue };
+    for arm in &ranked.order {
+        let Some(run) = ranked.runs_of_arm(*arm).first() else { continue };
         let mut row = level_cells(grid, *arm);
         row.extend([
             CellValue::number(run.cash),
@@ -109,7 +109,7 @@ fn single_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
     table
 }
 
-fn many_seeds_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
+fn many_seeds_table(grid: &PolicyGrid, ranked: &RankedResults<'_>) -> LabTable {
     let mut columns = axis_columns(grid);
     columns.extend([
         Column::number("median_cash", "median cash", Measure::Dollars),
@@ -119,8 +119,8 @@ fn many_seeds_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
         Column::number("bankrupt", "bankrupt", Measure::Share),
     ]);
     let mut table = LabTable::new("configurations", "Highest median final cash first", columns);
-    for arm in &board.order {
-        let of = |figure: fn(&RunResult) -> f64| board.results.figures_of_arm(*arm, figure);
+    for arm in &ranked.order {
+        let of = |figure: fn(&RunResult) -> f64| ranked.results.figures_of_arm(*arm, figure);
         let cash = of(|run| run.cash);
         let quartiles = Quartiles::from_values(&cash);
         let mut row = level_cells(grid, *arm);
@@ -136,7 +136,7 @@ fn many_seeds_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
     table
 }
 
-fn stability_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
+fn stability_table(grid: &PolicyGrid, ranked: &RankedResults<'_>) -> LabTable {
     let mut columns = axis_columns(grid);
     columns.extend([
         Column::number("survival", "mean survival, days", Measure::Number(1)),
@@ -145,21 +145,21 @@ fn stability_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
         Column::number("place", "mean rank", Measure::Number(1)),
     ]);
     let mut table = LabTable::new("stability", "Survival, size, and rank by final cash", columns);
-    for arm in &board.order {
-        let of = |figure: fn(&RunResult) -> f64| board.results.figures_of_arm(*arm, figure);
+    for arm in &ranked.order {
+        let of = |figure: fn(&RunResult) -> f64| ranked.results.figures_of_arm(*arm, figure);
         let mut row = level_cells(grid, *arm);
         row.extend([
             CellValue::number(mean(&of(|run| f64::from(run.day)))),
             CellValue::number(median(&of(|run| f64::from(run.peak_subscribers)))),
-            CellValue::number(board.share_of_first_places(*arm)),
-            CellValue::number(board.mean_rank(*arm)),
+            CellValue::number(ranked.share_of_first_places(*arm)),
+            CellValue::number(ranked.mean_rank(*arm)),
         ]);
         table.rows.push(row);
     }
     table
 }
 
-fn best_by_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
+fn best_by_seed_table(grid: &PolicyGrid, ranked: &RankedResults<'_>) -> LabTable {
     let mut columns = vec![Column::text("seed", "seed")];
     columns.extend(axis_columns(grid));
     columns.extend([
@@ -168,13 +168,13 @@ fn best_by_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable 
         Column::number("bankrupt", "bankrupt", Measure::Count),
     ]);
     let mut table = LabTable::new("seeds", "Best configuration of each seed", columns);
-    for (at, seed) in board.results.seeds.iter().enumerate() {
-        let run = |arm: usize| board.runs_of_arm(arm).get(at);
+    for (at, seed) in ranked.results.seeds.iter().enumerate() {
+        let run = |arm: usize| ranked.runs_of_arm(arm).get(at);
         let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |run_result| run_result.cash);
-        let best = board.order.iter().map(cash).fold(f64::NEG_INFINITY, f64::max);
-        let first: Vec<usize> = board.order.iter().copied().filter(|arm| cash(arm) == best).collect();
+        let best = ranked.order.iter().map(cash).fold(f64::NEG_INFINITY, f64::max);
+        let first: Vec<usize> = ranked.order.iter().copied().filter(|arm| cash(arm) == best).collect();
         let bankrupt =
-            board.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();
+            ranked.order.iter().filter(|arm| run(**arm).is_some_and(RunResult::is_bankrupt)).count();
         let Some((one, equal)) = first.split_first() else { continue };
         let mut row = vec![CellValue::text(seed.to_string())];
         row.extend(level_cells(grid, *one));
@@ -195,7 +195,7 @@ fn describe_ties(grid: &PolicyGrid, first: &[usize]) -> String {
     }
 }
 
-fn run_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
+fn run_table(grid: &PolicyGrid, ranked: &RankedResults<'_>) -> LabTable {
     let mut columns = axis_columns(grid);
     columns.extend([
         Column::text("seed", "seed"),
@@ -208,7 +208,7 @@ fn run_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
     let mut table =
         LabTable { is_machine_readable_only: true, ..LabTable::new("runs", "Every run", columns) };
     for arm in 0..grid.configurations.len() {
-        for run in board.runs_of_arm(arm) {
+        for run in ranked.runs_of_arm(arm) {
             let mut row = level_cells(grid, arm);
             row.extend([
                 CellValue::text(run.seed.to_string()),
@@ -224,9 +224,9 @@ fn run_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
     table
 }
 
-fn cash_bar_graph(board: &RankedResults<'_>) -> Graph {
+fn cash_bar_graph(ranked: &RankedResults<'_>) -> Graph {
     let cash = |(at, arm): (usize, &usize)| {
-        board.runs_of_arm(*arm).first().map(|run| ((at + 1) as f64, run.cash.max(0.0)))
+        ranked.runs_of_arm(*arm).first().map(|run| ((at + 1) as f64, run.cash.max(0.0)))
     };
     Graph {
         title: "Final cash of the configurations, highest first".to_owned(),
@@ -235,15 +235,15 @@ fn cash_bar_graph(board: &RankedResults<'_>) -> Graph {
         y_axis: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: vec![Series {
             name: "final cash".to_owned(),
-            points: board.order.iter().enumerate().filter_map(cash).collect(),
+            points: ranked.order.iter().enumerate().filter_map(cash).collect(),
         }],
         form: GraphForm::Bars,
     }
 }
 
-fn cash_quartile_graph(board: &RankedResults<'_>) -> Graph {
-    let quartiles: Vec<Quartiles> = (board.order.iter())
-        .filter_map(|arm| Quartiles::from_values(&board.results.figures_of_arm(*arm, |run| run.cash)))
+fn cash_quartile_graph(ranked: &RankedResults<'_>) -> Graph {
+    let quartiles: Vec<Quartiles> = (ranked.order.iter())
+        .filter_map(|arm| Quartiles::from_values(&ranked.results.figures_of_arm(*arm, |run| run.cash)))
         .collect();
     let series = |name: &str, of: fn(&Quartiles) -> f64| Series {
         name: name.to_owned(),
@@ -267,21 +267,21 @@ fn cash_quartile_graph(board: &RankedResults<'_>) -> Graph {
     }
 }
 
-fn notes(grid: &PolicyGrid, is_published: bool, board: &RankedResults<'_>) -> Vec<String> {
+fn notes(grid: &PolicyGrid, is_published: bool, ranked: &RankedResults<'_>) -> Vec<String> {
     let mut notes = Vec::new();
-    if let Some(best) = board.order.first() {
-        let alike = |arm: &&usize| board.runs_of_arm(**arm) == board.runs_of_arm(*best);
-        let first: Vec<usize> = board.order.iter().filter(alike).copied().collect();
+    if let Some(best) = ranked.order.first() {
+        let alike = |arm: &&usize| ranked.runs_of_arm(**arm) == ranked.runs_of_arm(*best);
+        let first: Vec<usize> = ranked.order.iter().filter(alike).copied().collect();
         let label = describe_ties(grid, &first);
-        notes.push(match board.results.seeds.len() {
+        notes.push(match ranked.results.seeds.len() {
             1 => format!("Best configuration: {label}."),
             _ => format!("Best configuration by median final cash: {label}."),
         });
     }
-    if let Some(value) = concordance(&board.ranks_by_seed) {
+    if let Some(value) = concordance(&ranked.ranks_by_seed) {
         notes.push(format!(
             "Rank stability: Kendall's W of the rankings by final cash is {value:.2}: 1 if every seed gives the same ranking, about {:.2} if the rankings are unrelated.",
-            1.0 / board.ranks_by_seed.len() as f64
+            1.0 / ranked.ranks_by_seed.len() as f64
         ));
     }
     if !grid.description.is_empty() {

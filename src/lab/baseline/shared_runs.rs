@@ -5,16 +5,16 @@ use super::grid::GridPoint;
 use crate::experiment::RunResult;
 use crate::policy::{Policy, RuleBased};
 
-/// Returns for each configuration the index of its leader: the configuration with the lowest cash floor among the
+/// Returns for each configuration the index of its representative: the configuration with the lowest cash floor among the
 /// otherwise equal configurations.
-pub fn shared_run_leaders(points: &[GridPoint]) -> Vec<usize> {
+pub fn representative_configurations(points: &[GridPoint]) -> Vec<usize> {
     let floor = |at: usize| cash_floor(&points[at].policy);
-    let leader = |at: usize| {
+    let representative = |at: usize| {
         let alike = (0..points.len())
             .filter(|other| differ_only_in_floor(&points[at].policy, &points[*other].policy));
         alike.min_by(|one, other| floor(*one).total_cmp(&floor(*other))).unwrap_or(at)
     };
-    (0..points.len()).map(leader).collect()
+    (0..points.len()).map(representative).collect()
 }
 
 /// Returns the cash floor of a policy, or negative infinity if the policy has no routine.
@@ -30,10 +30,10 @@ fn differ_only_in_floor(one: &Policy, other: &Policy) -> bool {
         && (&one.start, &one.calls, &one.enterprise) == (&other.start, &other.calls, &other.enterprise)
 }
 
-/// Returns whether a run of the leader is also valid for a configuration with another cash floor. The run is valid
+/// Returns whether a run of the representative is also valid for a configuration with another cash floor. The run is valid
 /// unless cash was between the two floors on a decision day.
-pub fn is_shared_run(leader: &Policy, policy: &Policy, start_cash: f64, run: &RunResult) -> bool {
-    let (low, high) = (cash_floor(leader), cash_floor(policy));
+pub fn is_shared_run(representative: &Policy, policy: &Policy, start_cash: f64, run: &RunResult) -> bool {
+    let (low, high) = (cash_floor(representative), cash_floor(policy));
     let decided = run.weeks.iter().take(run.weeks.len().saturating_sub(1)).map(|week| week.cash);
     std::iter::once(start_cash).chain(decided).all(|cash| (cash > low) == (cash > high))
 }

@@ -15,9 +15,9 @@ fn play_configurations(points: &[GridPoint], seeds: &[u64], days: u32) -> Experi
 fn shared_runs_are_equal_unless_cash_is_between_floors() {
     let grid = PolicyGrid::find(PAPER_GRID).expect("a grid");
     let points = &grid.configurations;
-    let leaders = shared_run_leaders(points);
+    let representatives = representative_configurations(points);
     let expected: Vec<usize> = (0..24).map(|at| at / 2 * 2).collect();
-    assert_eq!(leaders, expected);
+    assert_eq!(representatives, expected);
     // With the configuration mid / S1 / light, cash falls below $300,000 within 350 days. With mid / S1 / heavy, cash
     // stays above $300,000 for 50 days.
     let (light, heavy) = (&points[12..14], &points[16..18]);

@@ -300,8 +300,8 @@ fn measure_costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
         }
     }
     let medians: Vec<f64> = costs.iter().filter_map(|samples| median(samples)).collect();
-    let least = medians.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = medians.iter().copied().fold(0.0, f64::max);
-    costs.insert(0, vec![(most / least - 1.0) * 100.0]);
+    let min = medians.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = medians.iter().copied().fold(0.0, f64::max);
+    costs.insert(0, vec![(max / min - 1.0) * 100.0]);
     Ok(costs)
 }

@@ -85,20 +85,21 @@ pub const SATISFIED_SHARE: f64 = 0.99;
 impl BoundAccount {
     /// Computes the account from the assumptions and the parameters.
     pub fn new(premises: BoundAssumptions, params: &Params) -> BoundAccount {
-        let climate = shared_quality_path(&premises, params);
-        BoundAccount::with_shared_quality(premises, &climate, params)
+        let quality_path = shared_quality_path(&premises, params);
+        BoundAccount::with_shared_quality(premises, &quality_path, params)
     }
 
     /// Computes the account with a given path of shared quality and competitor effects.
     fn with_shared_quality(
         premises: BoundAssumptions,
-        climate: &SharedQualityPath,
+        quality_path: &SharedQualityPath,
         params: &Params,
     ) -> BoundAccount {
         let daily_usage = attainable_market::daily_usage(params);
         let overload = overload_penalty(daily_usage, premises.capacity_tier, params);
-        let groups: Vec<BoundGroup> =
-            Group::all().map(|group| group_account(group, overload, climate, &premises, params)).collect();
+        let groups: Vec<BoundGroup> = Group::all()
+            .map(|group| group_account(group, overload, quality_path, &premises, params))
+            .collect();
         let has_rivals = !params.competitor.competitor_events_disabled;
         let mut account = BoundAccount {
             assumptions: premises,
@@ -198,24 +199,26 @@ pub fn sensitivity(slacks: &[f64], params: &Params) -> Vec<SensitivityRow> {
     let premises = |slack: &f64| BoundAssumptions::from_paper(*slack);
     let Some(first) = slacks.first() else { return Vec::new() };
     // Slack does not change market conditions, because competitors copy in proportion to a targeted gain.
-    let climate = shared_quality_path(&premises(first), params);
+    let quality_path = shared_quality_path(&premises(first), params);
     slacks
         .iter()
-        .map(|slack| BoundAccount::with_shared_quality(premises(slack), &climate, params).sensitivity_row())
+        .map(|slack| {
+            BoundAccount::with_shared_quality(premises(slack), &quality_path, params).sensitivity_row()
+        })
         .collect()
 }
 
 fn group_account(
     group: Group,
     overload: f64,
-    climate: &SharedQualityPath,
+    quality_path: &SharedQualityPath,
     premises: &BoundAssumptions,
     params: &Params,
 ) -> BoundGroup {
-    let gap = targeted_development::widest_gap(group, overload, climate, premises, params);
+    let gap = targeted_development::widest_gap(group, overload, quality_path, premises, params);
     let least_spending = targeted_development::min_spending(gap, premises, params);
     let spending = premises.slack * least_spending;
-    let renewing = renewals::renewal_shares(group, spending, overload, climate, premises, params);
+    let renewing = renewals::renewal_shares(group, spending, overload, quality_path, premises, params);
     BoundGroup {
         group: group.id(),
         customers: attainable_market::attainable_customers(group, params),

@@ -14,7 +14,7 @@ pub fn renewal_shares(
     group: Group,
     spending: f64,
     overload: f64,
-    climate: &SharedQualityPath,
+    quality_path: &SharedQualityPath,
     premises: &BoundAssumptions,
     params: &Params,
 ) -> Vec<f64> {
@@ -24,9 +24,9 @@ pub fn renewal_shares(
     let share = |day: &u32| {
         let at = *day as usize;
         let targeted = gain * f64::from(day - 1);
-        let quality = params.quality.base_product_quality + climate.shared[at] + targeted;
-        let expected =
-            added_expectation(group, *day, climate, params) + gain * climate.copied_quality[at][group];
+        let quality = params.quality.base_product_quality + quality_path.shared[at] + targeted;
+        let expected = added_expectation(group, *day, quality_path, params)
+            + gain * quality_path.copied_quality[at][group];
         normal_cdf((model * quality - expected - overload - mean) / spread)
     };
     premises.renewals.iter().map(share).collect()

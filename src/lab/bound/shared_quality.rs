@@ -28,8 +28,8 @@ pub struct SharedQualityPath {
 fn research_gain_on(day: u32, premises: &BoundAssumptions, params: &Params) -> f64 {
     let done = |tier: &u8| {
         let research_tier = params.research_tier(*tier);
-        let least = f64::from(params.development.rd_min_duration_days);
-        premises.research_day + research_tier.mean_days.max(least) as u32 == day
+        let min = f64::from(params.development.rd_min_duration_days);
+        premises.research_day + research_tier.mean_days.max(min) as u32 == day
     };
     (1..=premises.research_tiers).filter(done).map(|tier| params.research_tier(tier).mean_quality_boost).sum()
 }

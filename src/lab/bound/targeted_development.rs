@@ -11,15 +11,15 @@ use novamind_world::params::Params;
 pub fn widest_gap(
     group: Group,
     overload: f64,
-    climate: &SharedQualityPath,
+    quality_path: &SharedQualityPath,
     premises: &BoundAssumptions,
     params: &Params,
 ) -> f64 {
     let model = params.model_tier(premises.model_tier).quality_multiplier;
     let (mean, _) = required_quality(group, params);
     let gap = |day: &u32| {
-        let shared = params.quality.base_product_quality + climate.shared[*day as usize];
-        (mean + added_expectation(group, *day, climate, params) + overload) / model - shared
+        let shared = params.quality.base_product_quality + quality_path.shared[*day as usize];
+        (mean + added_expectation(group, *day, quality_path, params) + overload) / model - shared
     };
     premises.renewals.iter().map(gap).fold(0.0, f64::max)
 }

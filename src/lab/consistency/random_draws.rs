@@ -73,20 +73,21 @@ pub fn play_recording_draws(
     let mut session = Session::create(new_run(policy, spec), configuration)?;
     let mut luck = PlayDraws::default();
     let until = spec.stop_after_day.unwrap_or(u32::MAX);
-    let refused = |session: &Session, tool: &str, refusal: Rejection| RunError::Refused {
+    let refused = |session: &Session, tool: &str, rejection: Rejection| RunError::Refused {
         seed: spec.seed,
         day: session.day(),
         tool: tool.to_owned(),
-        refusal: Box::new(refusal),
+        rejection: Box::new(rejection),
     };
     while !is_over(&session, spec) {
         decide_with_answers(policy, spec.seed, &mut session, &mut |answer| {
             luck.record_market_research(answer)
         })?;
-        luck.record_next_draws(&mut session).map_err(|refusal| refused(&session, "the x-ray", refusal))?;
+        luck.record_next_draws(&mut session)
+            .map_err(|rejection| refused(&session, "the x-ray", rejection))?;
         advance_week(policy, spec.seed, until, &mut session, &mut |report| luck.record_day(report))?;
     }
-    luck.record_final_state(&session).map_err(|refusal| refused(&session, "the x-ray", refusal))?;
+    luck.record_final_state(&session).map_err(|rejection| refused(&session, "the x-ray", rejection))?;
     Ok(luck)
 }
 

@@ -79,8 +79,8 @@ fn describe_source(world_draw: &WorldDraw) -> String {
 }
 
 fn small_histogram(histogram: &Histogram) -> String {
-    let most = histogram.counts.iter().copied().max().unwrap_or(0).max(1);
-    let level = |count: &u64| SPARKLINE_CHARS[((count * 7).div_ceil(most)).min(7) as usize];
+    let max = histogram.counts.iter().copied().max().unwrap_or(0).max(1);
+    let level = |count: &u64| SPARKLINE_CHARS[((count * 7).div_ceil(max)).min(7) as usize];
     histogram.counts.iter().map(level).collect()
 }
 

@@ -92,9 +92,9 @@ pub enum Measure {
 pub enum CellValue {
     /// A text.
     Text(String),
-    /// A number in the measure of the column.
+    /// A number in the unit of the column.
     Number(f64),
-    /// A number with a separate measure, for tables whose rows have different units.
+    /// A number with its own unit, for tables whose rows have different units.
     NumberWithMeasure(f64, Measure),
     /// An interval in the measure of the column.
     Interval(Interval),

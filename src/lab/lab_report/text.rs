@@ -90,12 +90,12 @@ impl<'a> TextLayout<'a> {
     /// Narrows the widest text columns until the table fits. If the table cannot fit, narrows only the columns that
     /// name the rows, so that each other column fits next to these columns.
     fn narrow_columns(mut self, width: usize) -> TextLayout<'a> {
-        let least = |at: usize| match self.columns[at].kind {
+        let min = |at: usize| match self.columns[at].kind {
             ColumnKind::Text => self.widths[at].min(MIN_TEXT_WIDTH),
             ColumnKind::Number(_) | ColumnKind::Interval(_) | ColumnKind::Sparkline => self.widths[at],
         };
         let gaps = COLUMN_GAP * self.widths.len().saturating_sub(1);
-        let has_room = (0..self.columns.len()).map(least).sum::<usize>() + gaps <= width;
+        let has_room = (0..self.columns.len()).map(min).sum::<usize>() + gaps <= width;
         let (among, reserved) = match has_room {
             true => (self.columns.len(), 0),
             false => (

@@ -89,11 +89,11 @@ impl MetricsDay<'_> {
         };
         push_by_group(list, "ent_new_leads_cum", Aggregation::Sum, opened);
         for kind in ThreadKind::ALL {
-            let begun = facts.turns.iter().filter(|turn| turn.number == 0);
+            let started = facts.turns.iter().filter(|turn| turn.number == 0);
             let opened = match kind {
                 // A thread that the player started between two days is counted on the next day.
-                ThreadKind::Renegotiation => f64::from(self.threads_opened) - begun.count() as f64,
-                _ => begun.filter(|turn| turn.kind == kind).count() as f64,
+                ThreadKind::Renegotiation => f64::from(self.threads_opened) - started.count() as f64,
+                _ => started.filter(|turn| turn.kind == kind).count() as f64,
             };
             push_value(list, "ent_threads_opened_cum", kind.id(), Aggregation::Sum, Some(opened));
         }

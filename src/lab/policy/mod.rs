@@ -152,7 +152,7 @@ impl Policy {
         if let Some(source) = parameter_source {
             return Policy::parse(&source);
         }
-        match novamind_assets::policies().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::policies().into_iter().find(|(bundled, _)| *bundled == name) {
             Some((_, text)) => {
                 let file = format!("configs/policies/{name}.toml");
                 Policy::parse(&ParameterSource { name: file, text: text.to_owned() })
@@ -235,7 +235,7 @@ fn parse_scheduled_call(entry: CallEntry) -> Result<ScheduledCall, String> {
     novamind_tools::Arguments::parse(tool.spec(), &arguments, || {
         novamind_tools::ParameterNumbers::bundled().into()
     })
-    .map_err(|refusal| refusal.to_string())?;
+    .map_err(|rejection| rejection.to_string())?;
     if tool.spec().has_own_unknown_code {
         let known = |key: &String| tool.spec().arguments.iter().any(|argument| argument.name == key);
         if let Some(key) = entry.args.keys().find(|key| !known(key)) {

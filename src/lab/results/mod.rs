@@ -436,9 +436,9 @@ mod tests {
         assert_eq!(find_row(&policies, "mine").source, PlayerKind::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
         // A participant's runs are never merged with a policy's runs or with published runs that have the same name.
-        let named_so =
+        let namesakes =
             [finished_run("e1", Some("mine"), 9e6, 500), finished_run("e2", Some("idle company"), 8e6, 500)];
-        let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
+        let runs: Vec<FinishedRun> = runs.into_iter().chain(namesakes).collect();
         let table = ResultsTable::new(&runs, &[], std::slice::from_ref(&idle), ResultsGrouping::Participant);
         let of = |name: &str| {
             let rows = table.rows.iter().filter(|row| row.name == name);

@@ -361,7 +361,7 @@ fn read_seeds(
     levels: &VariedFactors,
 ) -> Result<Vec<u64>, ParameterError> {
     let arms = arms.saturating_mul(levels.all.len() as u64);
-    let most = MAX_RUNS / arms.max(1);
+    let max = MAX_RUNS / arms.max(1);
     let too_many = |count: u64| {
         let problem = format!(
             "{count} seeds for each of {arms} arms exceed the maximum of {MAX_RUNS} runs: split the study"
@@ -374,7 +374,7 @@ fn read_seeds(
         SeedList::Range(text) => {
             let range = parse_seeds(text).map_err(|problem| source.error_at_key("seeds", problem))?;
             let count = (range.last - range.first).saturating_add(1);
-            if count > most {
+            if count > max {
                 return Err(too_many(count));
             }
             (range.first..=range.last).collect()
@@ -387,7 +387,7 @@ fn read_seeds(
     }
     match seeds.len() as u64 {
         0 => Err(source.error_at_key("seeds", "a study needs at least one seed")),
-        count if count > most => Err(too_many(count)),
+        count if count > max => Err(too_many(count)),
         _ => Ok(seeds),
     }
 }

@@ -63,15 +63,15 @@ impl ShardSet {
                 problems.push(format!("{place} belongs to the study {}, not to {}", head.study, study.study));
             } else if head.digest != study.digest {
                 problems.push(format!(
-                    "{place} belongs to another version of {} than {} does: policies, parameters, seeds or program differ",
+                    "{place} is from another version of {} than {}: policies, parameters, seeds or program differ",
                     study.study,
                     first.display()
                 ));
             } else if head.part.of != study.part.of {
                 let other = first.display();
                 problems.push(format!("{place} is shard {}, {other} is shard {}", head.part, study.part));
-            } else if let Some(twin) = by_number.get(&head.part.shard) {
-                problems.push(format!("{place} and {} are both shard {}", twin.display(), head.part));
+            } else if let Some(duplicate) = by_number.get(&head.part.shard) {
+                problems.push(format!("{place} and {} are both shard {}", duplicate.display(), head.part));
             } else {
                 by_number.insert(head.part.shard, file);
             }

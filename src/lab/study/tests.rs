@@ -226,22 +226,22 @@ fn mismatched_shards_are_rejected_by_name() {
         }
     };
     fails(&files[..3], &["missing: s.4-of-4.csv"]);
-    let twin = folder.path().join("twin.csv");
-    fs::copy(&files[1], &twin).expect("a copy");
-    let mut with_twin = files.clone();
-    with_twin.push(twin.clone());
-    fails(&with_twin, &["twin.csv", "s.2-of-4.csv", "both shard 2 of 4"]);
+    let copy = folder.path().join("twin.csv");
+    fs::copy(&files[1], &copy).expect("a copy");
+    let mut with_copy = files.clone();
+    with_copy.push(copy.clone());
+    fails(&with_copy, &["twin.csv", "s.2-of-4.csv", "both shard 2 of 4"]);
     let foreign = ShardHeader::with_checksum("s", "other", Shard { shard: 4, of: 4 }, "run,what\n");
-    fs::write(&twin, foreign).expect("a file");
+    fs::write(&copy, foreign).expect("a file");
     fails(
-        &[files[..3].to_vec(), vec![twin.clone()]].concat(),
-        &["twin.csv belongs to another version of s", "missing: s.4-of-4.csv"],
+        &[files[..3].to_vec(), vec![copy.clone()]].concat(),
+        &["twin.csv is from another version of s", "missing: s.4-of-4.csv"],
     );
     let other = ShardHeader::with_checksum("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
-    fs::write(&twin, other).expect("a file");
-    fails(&[files.clone(), vec![twin.clone()]].concat(), &["twin.csv belongs to the study t"]);
-    fs::write(&twin, "run,what\n1,row 0\n").expect("a file");
-    fails(&[files.clone(), vec![twin]].concat(), &["twin.csv", "not a shard"]);
+    fs::write(&copy, other).expect("a file");
+    fails(&[files.clone(), vec![copy.clone()]].concat(), &["twin.csv belongs to the study t"]);
+    fs::write(&copy, "run,what\n1,row 0\n").expect("a file");
+    fails(&[files.clone(), vec![copy]].concat(), &["twin.csv", "not a shard"]);
     let bytes = fs::read(&files[2]).expect("a shard");
     for damaged in [&bytes[..bytes.len() - 1], &[bytes.as_slice(), b"9,9\n"].concat()] {
         fs::write(&files[2], damaged).expect("a file");

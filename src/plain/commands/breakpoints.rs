@@ -25,8 +25,8 @@ impl Interpreter {
         rest: &str,
         column: usize,
     ) -> Result<CommandResponse, ParseError> {
-        if let Err(refusal) = self.session.check_inspection() {
-            return Ok(CommandResponse::rejected("break", refusal));
+        if let Err(rejection) = self.session.check_inspection() {
+            return Ok(CommandResponse::rejected("break", rejection));
         }
         let rest = strip_comment(rest);
         let shown = match rest.split_once(char::is_whitespace).unwrap_or((rest, "")) {
@@ -68,14 +68,15 @@ impl Interpreter {
                 })
             }
         };
-        Ok(shown.unwrap_or_else(|refusal| CommandResponse::rejected("break", refusal)))
+        Ok(shown.unwrap_or_else(|rejection| CommandResponse::rejected("break", rejection)))
     }
 
     /// Executes `run DAYS` and `run DAYS until CONDITION`. The condition becomes a breakpoint, as with `break`.
     pub(super) fn run_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         if self.session.manifest().mode != Mode::Debug {
-            let refusal = Rejection::new("not_in_this_mode", "run simulates single days in debug runs only");
-            return Ok(CommandResponse::rejected("run", refusal));
+            let rejection =
+                Rejection::new("not_in_this_mode", "run simulates single days in debug runs only");
+            return Ok(CommandResponse::rejected("run", rejection));
         }
         let (number, until) = strip_comment(rest).split_once("until").unwrap_or((strip_comment(rest), ""));
         let days = number.trim().parse().ok().filter(|days| *days > 0).ok_or_else(|| ParseError {
@@ -85,8 +86,8 @@ impl Interpreter {
         if number.len() < strip_comment(rest).len() {
             let begins = column + number.chars().count() + "until".len();
             let condition = parse_condition(until, begins)?;
-            if let Err(refusal) = self.session.inspect().set_breakpoint(condition) {
-                return Ok(CommandResponse::rejected("run", refusal));
+            if let Err(rejection) = self.session.inspect().set_breakpoint(condition) {
+                return Ok(CommandResponse::rejected("run", rejection));
             }
         }
         let set = self.session.inspect().breakpoints().map_or(0, |set| set.len());
@@ -114,7 +115,7 @@ impl Interpreter {
                 let text = format!("{week_text}{}", describe_stop(&run, day, set).join("\n"));
                 CommandResponse::success("run", text, data)
             }
-            Err(refusal) => CommandResponse::rejected("run", refusal),
+            Err(rejection) => CommandResponse::rejected("run", rejection),
         })
     }
 
@@ -125,8 +126,8 @@ impl Interpreter {
         rest: &str,
         column: usize,
     ) -> Result<CommandResponse, ParseError> {
-        if let Err(refusal) = self.session.check_inspection() {
-            return Ok(CommandResponse::rejected(word, refusal));
+        if let Err(rejection) = self.session.check_inspection() {
+            return Ok(CommandResponse::rejected(word, rejection));
         }
         let rest = strip_comment(rest);
         let found = match (rest, rest.parse::<u32>()) {
@@ -151,7 +152,7 @@ impl Interpreter {
                 let data: Vec<Value> = found.iter().map(condition_history_to_json).collect();
                 CommandResponse::success(word, lines.join("\n"), json!({ "conditions": data }))
             }
-            Err(refusal) => CommandResponse::rejected(word, refusal),
+            Err(rejection) => CommandResponse::rejected(word, rejection),
         })
     }
 

@@ -32,7 +32,7 @@ impl Interpreter {
                 let offers = self.planned_offers(preview.tool, &arguments);
                 self.preview_response(&preview, &arguments, &self.describe_offers(&offers))
             }
-            Err(refusal) => CommandResponse::rejected("check", refusal),
+            Err(rejection) => CommandResponse::rejected("check", rejection),
         })
     }
 
@@ -99,7 +99,7 @@ impl Interpreter {
             Ok(sales) => {
                 margin_sentences(&sales, &lever.apply(now, arguments), lever, &models, self.session.day())
             }
-            Err(refusal) => vec![format!("no margins: {}", refusal.message)],
+            Err(rejection) => vec![format!("no margins: {}", rejection.message)],
         }
     }
 }

@@ -28,7 +28,7 @@ impl Interpreter {
                 let measured = MeasuredConversion::of_group(&self.session, group);
                 curve_response(&curve_explorer, product, &measured)
             }
-            Err(refusal) => CommandResponse::rejected("curve", refusal),
+            Err(rejection) => CommandResponse::rejected("curve", rejection),
         })
     }
 }

@@ -15,12 +15,12 @@ impl Interpreter {
         word: &str,
         read: impl FnOnce() -> Result<InspectionCommand, ParseError>,
     ) -> Result<CommandResponse, ParseError> {
-        if let Err(refusal) = InspectionCommand::check_permission(word, &self.session) {
-            return Ok(CommandResponse::rejected(word, refusal));
+        if let Err(rejection) = InspectionCommand::check_permission(word, &self.session) {
+            return Ok(CommandResponse::rejected(word, rejection));
         }
         Ok(match read()?.run(&mut self.session) {
             Ok(found) => CommandResponse::success(word, found.describe().join("\n"), result_to_json(&found)),
-            Err(refusal) => CommandResponse::rejected(word, refusal),
+            Err(rejection) => CommandResponse::rejected(word, rejection),
         })
     }
 }

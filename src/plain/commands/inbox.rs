@@ -58,7 +58,7 @@ impl Interpreter {
     }
 
     /// Executes `inbox [all] where CONDITION`. `text` is the text after the command and begins at `column`.
-    pub(super) fn run_inbox_where(&mut self, text: &str, column: usize) -> CommandResponse {
+    pub(super) fn run_inbox_query(&mut self, text: &str, column: usize) -> CommandResponse {
         let before = text.find("where").map_or(0, |at| at + "where".len());
         let (head, condition) = text.split_at(before);
         match Filter::parse(condition) {

@@ -36,12 +36,12 @@ impl Interpreter {
 
     fn next_part(&mut self) -> CommandResponse {
         let next = LessonStatus::from_session(&mut self.session).map(|page| page.next_part);
-        let begun = match next {
+        let started = match next {
             None => Err(not_a_lesson_rejection()),
             Some(None) => Err(Rejection::new("no_part", "there is no next part, or this part is not over")),
             Some(Some(part)) => start_part(&self.session, part as usize - 1),
         };
-        self.continue_lesson_in("lesson", begun)
+        self.continue_lesson_in("lesson", started)
     }
 
     /// Executes `guess ANSWER`.
@@ -59,7 +59,7 @@ impl Interpreter {
         let value = value.map_err(|text| argument_error(arguments, &text))?;
         Ok(match submit_guess(&mut self.session, value) {
             Ok(()) => self.lesson_page("guess"),
-            Err(refusal) => CommandResponse::rejected("guess", refusal),
+            Err(rejection) => CommandResponse::rejected("guess", rejection),
         })
     }
 
@@ -67,7 +67,7 @@ impl Interpreter {
     pub(super) fn run_hint(&mut self) -> CommandResponse {
         match take_hint(&mut self.session) {
             Ok(text) => CommandResponse::success("hint", text.clone(), json!({ "hint": text })),
-            Err(refusal) => CommandResponse::rejected("hint", refusal),
+            Err(rejection) => CommandResponse::rejected("hint", rejection),
         }
     }
 
@@ -101,17 +101,17 @@ impl Interpreter {
                     debrief_to_json(&debrief),
                 )
             }
-            Err(refusal) => CommandResponse::rejected("debrief", refusal),
+            Err(rejection) => CommandResponse::rejected("debrief", rejection),
         }
     }
 
-    fn continue_lesson_in(&mut self, command: &str, begun: Result<Session, Rejection>) -> CommandResponse {
-        match begun {
+    fn continue_lesson_in(&mut self, command: &str, started: Result<Session, Rejection>) -> CommandResponse {
+        match started {
             Ok(session) => {
                 self.switch_to_run(session);
                 self.lesson_page(command)
             }
-            Err(refusal) => CommandResponse::rejected(command, refusal),
+            Err(rejection) => CommandResponse::rejected(command, rejection),
         }
     }
 }

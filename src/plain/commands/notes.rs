@@ -32,7 +32,7 @@ impl Interpreter {
         let memo = format!("{memo}{gap}{line}\n");
         match self.session.set_notes(&memo) {
             Ok(()) => CommandResponse::success("memo", "noted".to_owned(), json!({ "memo": memo })),
-            Err(refusal) => CommandResponse::rejected("memo", refusal),
+            Err(rejection) => CommandResponse::rejected("memo", rejection),
         }
     }
 }

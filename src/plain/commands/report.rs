@@ -37,22 +37,22 @@ impl Interpreter {
     }
 
     fn run_report(&self) -> CommandResponse {
-        let story = RunReport::from_session(&self.session);
-        let measures = &story.measures;
+        let run_report = RunReport::from_session(&self.session);
+        let measures = &run_report.measures;
         let data = json!({
-            "headline": story.headline(),
-            "rank": story.ranking.rank,
+            "headline": run_report.headline(),
+            "rank": run_report.ranking.rank,
             "survival_days": measures.survival_days,
             "cash": measures.cash,
             "best_tried_channel_share": measures.channels.as_ref().and_then(|skill| skill.share),
             "truly_best_channel_share": measures.truly_best.as_ref().map(|best| best.share),
             "targeted_development_share": measures.targeted_development,
-            "forecasts": story.shows_forecast_scores().then_some(&measures.forecasts),
+            "forecasts": run_report.shows_forecast_scores().then_some(&measures.forecasts),
             "calls_per_week": measures.tools.per_week,
             "planning_words_per_rationale": measures.planning.planning_each,
-            "report": report_to_markdown(&story),
+            "report": report_to_markdown(&run_report),
         });
-        CommandResponse::success("report", report_to_markdown(&story), data)
+        CommandResponse::success("report", report_to_markdown(&run_report), data)
     }
 }
 

@@ -48,8 +48,8 @@ impl Interpreter {
         column: usize,
     ) -> Result<CommandResponse, ParseError> {
         // Check the permission before parsing the question.
-        if let Err(refusal) = cause_analysis_folder(&self.session) {
-            return Ok(CommandResponse::rejected("whatif", refusal));
+        if let Err(rejection) = cause_analysis_folder(&self.session) {
+            return Ok(CommandResponse::rejected("whatif", rejection));
         }
         if let Ok(week) = words.parse() {
             return Ok(self.list_decisions(week));
@@ -95,7 +95,7 @@ impl Interpreter {
             .and_then(|what_if| Ok((what_if.decisions(week)?, what_if.days_per_week())));
         let (calls, days) = match calls {
             Ok(calls) => calls,
-            Err(refusal) => return CommandResponse::rejected("whatif", refusal),
+            Err(rejection) => return CommandResponse::rejected("whatif", rejection),
         };
         self.record_view("whatif", &[]);
         let rows = decision_rows(&calls, days);
@@ -145,7 +145,7 @@ impl Interpreter {
                 "whatif",
                 Rejection::new("stopped", "stopped before the answer was found"),
             ),
-            Err(refusal) => CommandResponse::rejected("whatif", refusal),
+            Err(rejection) => CommandResponse::rejected("whatif", rejection),
         }
     }
 
@@ -190,7 +190,7 @@ impl Interpreter {
                 let text = format!("run {run} continues from day {day} · {mode}");
                 CommandResponse::success("branch", text, json!({ "run": run, "day": day, "mode": mode }))
             }
-            Err(refusal) => CommandResponse::rejected("branch", refusal),
+            Err(rejection) => CommandResponse::rejected("branch", rejection),
         })
     }
 
@@ -203,18 +203,18 @@ impl Interpreter {
         self.watch.set_phase(Phase::Working);
         let adopted = match adopted {
             Ok(adopted) => adopted,
-            Err(refusal) => return CommandResponse::rejected("branch", refusal),
+            Err(rejection) => return CommandResponse::rejected("branch", rejection),
         };
         let (run, day) = self.switch_to_run(adopted.session);
         let refused: Vec<Value> = adopted
             .rejected
             .iter()
-            .map(|(day, what, refusal)| json!({ "day": day, "what": what, "error": refusal }))
+            .map(|(day, what, rejection)| json!({ "day": day, "what": what, "error": rejection }))
             .collect();
         let rejection_lines = adopted
             .rejected
             .iter()
-            .map(|(day, what, refusal)| format!("\nday {day}: {what} was rejected: {}", refusal.message));
+            .map(|(day, what, rejection)| format!("\nday {day}: {what} was rejected: {}", rejection.message));
         let stands = match self.session.ended() {
             Some(ended) => format!("run {run} ended on day {day}: {}, ", ended.id()),
             None => format!("run {run} is on day {day} "),

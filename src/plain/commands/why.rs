@@ -16,8 +16,8 @@ use novamind_tools::Rejection;
 
 impl Interpreter {
     pub(super) fn run_why(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
-        if let Err(refusal) = cause_analysis_folder(&self.session) {
-            return Ok(CommandResponse::rejected("why", refusal));
+        if let Err(rejection) = cause_analysis_folder(&self.session) {
+            return Ok(CommandResponse::rejected("why", rejection));
         }
         let week_question: WeekQuestion = words.parse().map_err(|problem: ConditionParseError| {
             ParseError { text: problem.message, column: column + problem.column - 1 }
@@ -37,7 +37,7 @@ impl Interpreter {
                 "why",
                 Rejection::new("stopped", "stopped before the answer was found"),
             ),
-            Err(refusal) => CommandResponse::rejected("why", refusal),
+            Err(rejection) => CommandResponse::rejected("why", rejection),
         })
     }
 }

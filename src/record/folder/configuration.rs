@@ -141,7 +141,7 @@ impl Configuration {
         if let Some(source) = self.read_file(format!("scenarios/{name}.toml"))? {
             return Ok(parse_scenario(name, source, false)?);
         }
-        match novamind_assets::scenarios().into_iter().find(|(shipped, _)| *shipped == name) {
+        match novamind_assets::scenarios().into_iter().find(|(bundled, _)| *bundled == name) {
             Some((_, text)) => {
                 let file = format!("configs/scenarios/{name}.toml");
                 Ok(parse_scenario(name, ParameterSource { name: file, text: text.to_owned() }, true)?)
@@ -211,7 +211,7 @@ impl Scenario {
     }
 }
 
-fn parse_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<Scenario, ParameterError> {
+fn parse_scenario(name: &str, source: ParameterSource, bundled: bool) -> Result<Scenario, ParameterError> {
     let file: ScenarioFile = toml::from_str(&source.text)
         .map_err(|error| ParameterError::from_toml(&source.name, &source.text, &error))?;
     let wrong =
@@ -226,7 +226,7 @@ fn parse_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<
         cash: file.cash,
         world: file.world,
         source,
-        is_bundled: shipped,
+        is_bundled: bundled,
     })
 }
 

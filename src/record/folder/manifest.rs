@@ -243,9 +243,9 @@ impl Manifest {
     /// Returns whether the run has a seeded fault or parameters that differ from the bundled scenario of the same name.
     /// The horizon rule does not count, because it only determines the length.
     pub fn has_changed_parameters(&self) -> bool {
-        let shipped = Configuration::bundled();
+        let bundled = Configuration::bundled();
         let as_shipped =
-            || shipped.load_parameters(&shipped.load_scenario(&self.scenario).ok()?, &[], false).ok();
+            || bundled.load_parameters(&bundled.load_scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
             // Fast path for run lists: most runs use the default scenario, which has no overrides.
             "default" => self.fault.is_some() || self.parameters.iter().any(|entry| !is_horizon_rule(entry)),
@@ -297,13 +297,13 @@ pub fn changed_parameters(params: &Params) -> Table {
     changed_entries(&as_table(params), &as_table(&Params::bundled()))
 }
 
-fn changed_entries(table: &Table, shipped: &Table) -> Table {
+fn changed_entries(table: &Table, bundled: &Table) -> Table {
     table
         .iter()
-        .filter_map(|(key, value)| match (value, shipped.get(key)) {
+        .filter_map(|(key, value)| match (value, bundled.get(key)) {
             (value, Some(same)) if value == same => None,
-            (Value::Table(table), Some(Value::Table(shipped))) => {
-                Some((key.clone(), Value::Table(changed_entries(table, shipped))))
+            (Value::Table(table), Some(Value::Table(bundled))) => {
+                Some((key.clone(), Value::Table(changed_entries(table, bundled))))
             }
             (value, _) => Some((key.clone(), value.clone())),
         })

@@ -207,9 +207,9 @@ impl QueryLibrary {
         };
         let mut all: Vec<NamedQuery> =
             configuration.file_names(QUERIES_FOLDER, ".sql").into_iter().filter_map(load_query).collect();
-        for shipped in QueryLibrary::bundled().0 {
-            if all.iter().all(|named_query| named_query.name != shipped.name) {
-                all.push(shipped);
+        for bundled in QueryLibrary::bundled().0 {
+            if all.iter().all(|named_query| named_query.name != bundled.name) {
+                all.push(bundled);
             }
         }
         QueryLibrary(all)

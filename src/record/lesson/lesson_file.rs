@@ -50,7 +50,7 @@ impl Lesson {
                 .unwrap_or_default();
             return Ok(Lesson::parse(name, plan, texts, false)?);
         }
-        let found = novamind_assets::lessons().into_iter().find(|(shipped, _)| *shipped == name);
+        let found = novamind_assets::lessons().into_iter().find(|(bundled, _)| *bundled == name);
         let Some((_, plan)) = found else {
             return Err(RunError::UnknownLesson {
                 name: name.to_owned(),
@@ -70,7 +70,7 @@ impl Lesson {
         name: &str,
         plan: ParameterSource,
         texts: String,
-        shipped: bool,
+        bundled: bool,
     ) -> Result<Lesson, ParameterError> {
         let read: LessonPlan = toml::from_str(&plan.text)
             .map_err(|error| ParameterError::from_toml(&plan.name, &plan.text, &error))?;
@@ -81,7 +81,7 @@ impl Lesson {
             debrief: extract_section(&texts, "Debrief"),
             instructor_notes: extract_section(&texts, "For the teacher"),
             digest: hasher.finalize().to_hex().to_string(),
-            is_bundled: shipped,
+            is_bundled: bundled,
             plan: read,
             plan_text: plan.text,
             texts,

@@ -125,22 +125,22 @@ fn figure_parameters_error(part: &LessonPart, measured_figure: &MeasuredFigure) 
     if measured_figure.scenario.is_none() && measured_figure.parameters.is_empty() {
         return None;
     }
-    let shipped = Configuration::bundled();
+    let bundled = Configuration::bundled();
     let all = part.parameters.iter().chain(&measured_figure.parameters);
     let overrides: Vec<(String, String)> = all.map(|(key, value)| (key.clone(), value.to_string())).collect();
-    let scenario = shipped.load_scenario(measured_figure.scenario.as_ref().unwrap_or(&part.scenario));
+    let scenario = bundled.load_scenario(measured_figure.scenario.as_ref().unwrap_or(&part.scenario));
     scenario
-        .and_then(|scenario| shipped.load_parameters(&scenario, &overrides, false))
+        .and_then(|scenario| bundled.load_parameters(&scenario, &overrides, false))
         .err()
         .map(|error| error.to_string())
 }
 
-/// Returns the first placeholder that names no measured figure.
+/// Returns the first placeholder that is not the name of a measured figure.
 fn find_unknown_placeholder(lesson: &Lesson) -> Option<LessonDefect> {
     let steps = lesson.plan.parts.iter().flat_map(|part| &part.steps);
     let texts = steps.flat_map(|step| step.hints.iter().chain([&step.text]));
-    let says = lesson.plan.pitfalls.iter().map(|pitfall| &pitfall.say);
-    for text in texts.chain(says).chain([&lesson.debrief, &lesson.instructor_notes]) {
+    let pitfall_texts = lesson.plan.pitfalls.iter().map(|pitfall| &pitfall.say);
+    for text in texts.chain(pitfall_texts).chain([&lesson.debrief, &lesson.instructor_notes]) {
         let filled = lesson.fill_figures(text);
         let name = filled.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name);
         let is_name =

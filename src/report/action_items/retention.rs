@@ -16,7 +16,7 @@ const COMPARED_WEEKS: usize = 4;
 const MIN_COMPARED_WEEKS: usize = 2;
 /// Minimum ratio of the cancellations of a churn wave to the usual cancellations. The number of bills is an estimate, and a
 /// healthy company in its tenth week has 1.9 times the usual cancellations.
-const MIN_WAVE_RATIO: f64 = 2.0;
+const MIN_CHURN_WAVE_RATIO: f64 = 2.0;
 /// Number of days in which every subscriber is billed once. Subscribers make their decisions on billing days.
 const BILLING_DAYS: u32 = 30;
 /// Settings that influence whether a subscriber cancels on a billing day.
@@ -91,7 +91,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     let (gone_before, exposed_before) = (sum(&gone), sum(&exposed));
     let (gone, expected) = (gone(last), exposed(last) * gone_before / exposed_before.max(1.0));
     let chance = chance_of_count(expected, exposed(last), exposed_before);
-    if gone <= MIN_WAVE_CANCELLATIONS || gone < MIN_WAVE_RATIO * expected || gone - expected <= chance {
+    if gone <= MIN_WAVE_CANCELLATIONS || gone < MIN_CHURN_WAVE_RATIO * expected || gone - expected <= chance {
         return None;
     }
     let mean_price = weeks[last][group].revenue.0.iter().sum::<f64>() / subscribers(last).max(1.0);

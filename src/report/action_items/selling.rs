@@ -458,7 +458,7 @@ fn propose_better_model(
 }
 
 /// Proposes a better model tier if one is sufficient and profitable. Otherwise proposes development for the group, and
-/// mentions if its cost exceeds the money at risk.
+/// states whether its cost exceeds the money at risk.
 fn propose_better_quality(
     situation: &DiagnosisContext<'_>,
     group: Group,

@@ -154,10 +154,10 @@ mod tests {
         let day = cash.iter().position(|amount| *amount == best).expect("a day");
         assert_eq!(card.turning_points[0].name, format!("highest cash, day {day}"));
         assert_eq!(card.turning_points[0].value, format_money(best));
-        let least = cash.iter().copied().fold(f64::MAX, f64::min);
-        let day = cash.iter().position(|amount| *amount == least).expect("a day");
+        let min = cash.iter().copied().fold(f64::MAX, f64::min);
+        let day = cash.iter().position(|amount| *amount == min).expect("a day");
         assert_eq!(card.turning_points[1].name, format!("lowest cash, day {day}"));
-        assert_eq!(card.turning_points[1].value, format_money(least));
+        assert_eq!(card.turning_points[1].value, format_money(min));
         let mut active = |day: usize| {
             let sql = format!(
                 "SELECT count(*) FROM subscriptions s JOIN customers c USING (customer_id) WHERE c.customer_type = 'small' AND \

@@ -66,9 +66,9 @@ fn draw_figures(svg: &mut String, y: f64, facts: &[LabeledFigure]) {
     }
 }
 
-fn point_position(card: &Card, day: usize, most: f64) -> (f64, f64) {
+fn point_position(card: &Card, day: usize, max: f64) -> (f64, f64) {
     let last = card.cash_by_day.len().saturating_sub(1).max(1) as f64;
-    let share = (card.cash_by_day[day] / most).clamp(0.0, 1.0);
+    let share = (card.cash_by_day[day] / max).clamp(0.0, 1.0);
     (
         MARGIN + day as f64 / last * (SIZE.0 - 2.0 * MARGIN),
         CURVE_TOP_AND_BOTTOM.1 - share * (CURVE_TOP_AND_BOTTOM.1 - CURVE_TOP_AND_BOTTOM.0),
@@ -76,7 +76,7 @@ fn point_position(card: &Card, day: usize, most: f64) -> (f64, f64) {
 }
 
 fn draw_curve(svg: &mut String, card: &Card) {
-    let most = card.cash_by_day.iter().copied().fold(1.0, f64::max);
+    let max = card.cash_by_day.iter().copied().fold(1.0, f64::max);
     let last = card.cash_by_day.len().saturating_sub(1);
     let step = card.cash_by_day.len().div_ceil(MAX_CURVE_POINTS).max(1);
     let mut days: Vec<usize> = (0..card.cash_by_day.len()).step_by(step).collect();
@@ -86,7 +86,7 @@ fn draw_curve(svg: &mut String, card: &Card) {
     let points: Vec<String> = days
         .into_iter()
         .map(|day| {
-            let (x, y) = point_position(card, day, most);
+            let (x, y) = point_position(card, day, max);
             format!("{x:.1},{y:.1}")
         })
         .collect();
@@ -105,7 +105,7 @@ fn draw_curve(svg: &mut String, card: &Card) {
         if card.cash_by_day.is_empty() {
             break;
         }
-        let (x, y) = point_position(card, day, most);
+        let (x, y) = point_position(card, day, max);
         let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"7\" fill=\"{MARK_COLOR}\"/>");
     }
     draw_text(
@@ -114,7 +114,7 @@ fn draw_curve(svg: &mut String, card: &Card) {
         16.0,
         SECONDARY_COLOR,
         false,
-        &format_dollar_tick(most),
+        &format_dollar_tick(max),
     );
     draw_text(svg, (left, CURVE_TOP_AND_BOTTOM.1 + 20.0), 16.0, SECONDARY_COLOR, false, "day 0");
     let _ = writeln!(

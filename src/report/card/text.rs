@@ -38,16 +38,16 @@ fn figure_lines(facts: &[LabeledFigure]) -> [String; 2] {
 /// Draws columns of block characters from zero to the cash of equally spaced days.
 fn curve_lines(cash: &[f64]) -> Vec<String> {
     let last = cash.len().saturating_sub(1);
-    let most = cash.iter().copied().fold(0.0, f64::max);
+    let max = cash.iter().copied().fold(0.0, f64::max);
     let height = |column: usize| {
         let value = cash.get(column * last / (CURVE_COLUMNS - 1)).copied().unwrap_or(0.0);
-        let share = if most > 0.0 { (value / most).clamp(0.0, 1.0) } else { 0.0 };
+        let share = if max > 0.0 { (value / max).clamp(0.0, 1.0) } else { 0.0 };
         (share * (8 * CURVE_ROWS) as f64).round() as usize
     };
     let heights: Vec<usize> = (0..CURVE_COLUMNS).map(height).collect();
     let line = |row: usize| {
         let below = 8 * (CURVE_ROWS - 1 - row);
-        let label = if row == 0 { format_dollar_tick(most) } else { String::new() };
+        let label = if row == 0 { format_dollar_tick(max) } else { String::new() };
         let cells: String =
             heights.iter().map(|number| EIGHTHS[number.saturating_sub(below).min(8)]).collect();
         format!("{label:>LABEL_WIDTH$} ┤{cells}").trim_end().to_owned()

@@ -145,9 +145,9 @@ fn format_distinct(value: f64, other: f64) -> String {
     if value.fract() == 0.0 {
         return grouped_number(value, 0);
     }
-    let least = if value.abs() >= 1000.0 { MIN_DECIMALS_LARGE } else { MIN_DECIMALS };
+    let min = if value.abs() >= 1000.0 { MIN_DECIMALS_LARGE } else { MIN_DECIMALS };
     let differs = |decimals: &usize| grouped_number(value, *decimals) != grouped_number(other, *decimals);
-    match (least..=MAX_DECIMALS).find(differs) {
+    match (min..=MAX_DECIMALS).find(differs) {
         Some(decimals) => grouped_number(value, decimals),
         None => value.to_string(),
     }

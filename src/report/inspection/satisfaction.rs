@@ -29,8 +29,8 @@ pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Ve
         }
     }
     let moved = match (satisfaction_equation.end_of_day, satisfaction_equation.after()) {
-        (Some(evening), Some(after)) => format!("mean {evening:.4} ({:+.4})", evening - after),
-        (Some(evening), None) => format!("mean {evening:.4}"),
+        (Some(mean), Some(after)) => format!("mean {mean:.4} ({:+.4})", mean - after),
+        (Some(mean), None) => format!("mean {mean:.4}"),
         (None, _) => "no mean".to_owned(),
     };
     lines.push(format!(

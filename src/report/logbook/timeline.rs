@@ -9,7 +9,7 @@ use novamind_record::trajectory::record::{
     Activity, ClosedDays, LimitEvent, Outcome, Reversal, ScreenView, SubmittedForecast,
 };
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::{Attendance, AttendedWeek, Attention, MIN_BREAK_SECONDS};
+use novamind_session::{Attendance, AttendedWeek, MIN_BREAK_SECONDS, TimeUse};
 
 /// A break: a gap of more than ten minutes in play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -92,8 +92,8 @@ impl Timeline {
     fn add_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
         let mut apart: Vec<(i64, i64)> = Vec::new();
         for time in attendance.spans() {
-            match (time.attention, apart.last_mut()) {
-                (Attention::Active | Attention::Answering | Attention::Simulating, _) => {}
+            match (time.time_use, apart.last_mut()) {
+                (TimeUse::Active | TimeUse::Answering | TimeUse::Simulating, _) => {}
                 (_, Some((_, to))) if *to == time.from => *to = time.to,
                 _ => apart.push((time.from, time.to)),
             }

@@ -115,11 +115,11 @@ pub fn subscriber_chart(report: &RunReport) -> Option<Block> {
         curves.push(Curve { name: "enterprise seats".to_owned(), points: seats });
     }
     let summary = curves.iter().map(|curve| {
-        let (week, most) = highest_point(&curve.points);
+        let (week, max) = highest_point(&curve.points);
         format!(
             "{}: peak {} in week {week:.0}, {} at the end.",
             curve.name,
-            format_whole(most),
+            format_whole(max),
             format_whole(last_point(&curve.points))
         )
     });
@@ -153,8 +153,8 @@ pub fn group_chart(report: &RunReport) -> Option<Block> {
     largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
     largest.truncate(MAX_GROUPS);
     // Omits groups that are too small to be visible in the chart.
-    let most = largest.first().map_or(0.0, |book| weight(&book.active));
-    largest.retain(|book| weight(&book.active) >= 0.01 * most);
+    let max = largest.first().map_or(0.0, |book| weight(&book.active));
+    largest.retain(|book| weight(&book.active) >= 0.01 * max);
     if largest.len() < 2 {
         return None;
     }
@@ -241,9 +241,9 @@ mod tests {
             .map(|(week, week_figures)| (f64::from(week), f64::from(week_figures.individual_subscribers)))
             .collect();
         assert_eq!(curves[0].points, expected);
-        let (week, most) =
+        let (week, max) =
             expected.iter().rev().max_by(|one, other| one.1.total_cmp(&other.1)).expect("weeks");
-        let peak = format!("subscribers: peak {} in week {week:.0},", format_whole(*most));
-        assert!(*most > 0.0 && chart.summary.starts_with(&peak), "{}", chart.summary);
+        let peak = format!("subscribers: peak {} in week {week:.0},", format_whole(*max));
+        assert!(*max > 0.0 && chart.summary.starts_with(&peak), "{}", chart.summary);
     }
 }

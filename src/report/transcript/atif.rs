@@ -47,11 +47,11 @@ fn step_json(act: &TranscriptStep) -> Option<Value> {
         TranscriptAction::Call { tool, args, answer, extra } => {
             let value = match answer {
                 Ok(data) => json!({ "success": true, "data": data }),
-                Err(refusal) => json!({
+                Err(rejection) => json!({
                     "success": false,
-                    "error": refusal.message,
-                    "code": refusal.code,
-                    "field": refusal.field,
+                    "error": rejection.message,
+                    "code": rejection.code,
+                    "field": rejection.field,
                 }),
             };
             called(tool.name(), args, value.to_string(), extra)

@@ -176,7 +176,7 @@ impl Transcript {
                 extra.extend(context::undone_call_field(call.reversal));
                 let answer = match &call.outcome {
                     Outcome::Accepted(answer) => Ok(answer.clone()),
-                    Outcome::Rejected(refusal) => Err(refusal.clone()),
+                    Outcome::Rejected(rejection) => Err(rejection.clone()),
                 };
                 TranscriptAction::Call { tool: call.tool.clone(), args: call.args.clone(), answer, extra }
             }
@@ -188,7 +188,7 @@ impl Transcript {
                 let extra = context::query_metadata(query.via, query.took_ms, query.stopped);
                 let answer = match (&query.error, session.query(&query.sql)) {
                     (None, Ok(rows)) => Ok(rows_to_json(&rows).into()),
-                    (None, Err(refusal)) => Err((refusal.code.to_owned(), refusal.message)),
+                    (None, Err(rejection)) => Err((rejection.code.to_owned(), rejection.message)),
                     (Some(code), _) => Err((code.clone(), query.message.clone().unwrap_or_default())),
                 };
                 TranscriptAction::Query { sql: query.sql.clone(), answer, extra }

@@ -79,8 +79,8 @@ fn step_line(act: &TranscriptStep) -> Option<String> {
             Some(format!("next {filed}"))
         }
         TranscriptAction::Debugging(command) => Some(command.clone()),
-        TranscriptAction::Call { tool, args, answer: Err(refusal), .. } => {
-            Some(rejected_call_comment(tool, args, &refusal.code))
+        TranscriptAction::Call { tool, args, answer: Err(rejection), .. } => {
+            Some(rejected_call_comment(tool, args, &rejection.code))
         }
         TranscriptAction::Query { .. } | TranscriptAction::Note(_) => None,
     }

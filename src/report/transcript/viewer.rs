@@ -273,7 +273,7 @@ fn describe_action(action: &TranscriptAction) -> Option<(String, Value, String)>
             };
             let result = match answer {
                 Ok(data) => shown(data),
-                Err(refusal) => rejected(&refusal.code, &refusal.message),
+                Err(rejection) => rejected(&rejection.code, &rejection.message),
             };
             (name, args.clone(), result)
         }

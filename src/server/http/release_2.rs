@@ -48,13 +48,16 @@ fn refuse(status: StatusCode, code: &str, message: &str) -> Response {
     json_response(status, &json!({ "success": false, "error": code, "code": code, "message": message }))
 }
 
-async fn request_status(State(door): State<RouteState>, id: Result<Path<String>, PathRejection>) -> Response {
+async fn request_status(
+    State(state): State<RouteState>,
+    id: Result<Path<String>, PathRejection>,
+) -> Response {
     // The session has no id that is not UTF-8.
     let id = id.map_or_else(|_| String::new(), |Path(id)| id);
-    if door.handle.committed().is_some_and(|committed| committed.is_running(&id)) {
+    if state.handle.committed().is_some_and(|committed| committed.is_running(&id)) {
         return json_response(StatusCode::OK, &json!({ "request_id": id, "status": "pending" }));
     }
-    to_http_response(&door.handle.send(ApiRequest::RequestStatus { id }).await)
+    to_http_response(&state.handle.send(ApiRequest::RequestStatus { id }).await)
 }
 
 /// Returns the rejection of a request that has no valid id although its tool needs one, or whose body contains a

@@ -63,7 +63,7 @@ pub fn router(
         Some(committed) => release_2::router(committed),
         None => release_1_router(),
     };
-    let door = RouteState { handle, guard: Arc::new(guard), numbers, served };
+    let state = RouteState { handle, guard: Arc::new(guard), numbers, served };
     Router::new()
         .merge(generation)
         .route("/health", get(health))
@@ -76,42 +76,42 @@ pub fn router(
         .route("/shutdown", post(shut_down))
         .fallback(not_found)
         .method_not_allowed_fallback(not_found)
-        .layer(from_fn_with_state(door.clone(), check_access))
-        .with_state(door)
+        .layer(from_fn_with_state(state.clone(), check_access))
+        .with_state(state)
 }
 
 /// Returns the routes that release 2 does not have, or answers differently.
 fn release_1_router() -> Router<RouteState> {
     Router::new()
-        .route("/vars", get(|door: State<RouteState>| handle_read(door, ApiRequest::CurrentDay)))
-        .route("/dashboard", get(|door: State<RouteState>| handle_read(door, ApiRequest::Dashboard)))
-        .route("/game-status", get(|door: State<RouteState>| handle_read(door, ApiRequest::GameStatus)))
+        .route("/vars", get(|state: State<RouteState>| handle_read(state, ApiRequest::CurrentDay)))
+        .route("/dashboard", get(|state: State<RouteState>| handle_read(state, ApiRequest::Dashboard)))
+        .route("/game-status", get(|state: State<RouteState>| handle_read(state, ApiRequest::GameStatus)))
         .route(
             "/daily-scripts",
-            get(|door: State<RouteState>| handle_read(door, ApiRequest::DailyScripts))
+            get(|state: State<RouteState>| handle_read(state, ApiRequest::DailyScripts))
                 .post(save_script)
                 .delete(delete_script),
         )
 }
 
-async fn check_access(State(door): State<RouteState>, request: HttpRequest, next: Next) -> Response {
-    match door.guard.rejection_for(request.headers()) {
+async fn check_access(State(state): State<RouteState>, request: HttpRequest, next: Next) -> Response {
+    match state.guard.rejection_for(request.headers()) {
         None => next.run(request).await,
         Some(answer) => to_http_response(&answer),
     }
 }
 
-async fn health(State(door): State<RouteState>) -> Response {
-    let mut body = json!({ "status": "ok", "run": door.served.run });
-    if door.has_release_2() {
+async fn health(State(state): State<RouteState>) -> Response {
+    let mut body = json!({ "status": "ok", "run": state.served.run });
+    if state.has_release_2() {
         body["interface"] = "release_2".into();
     }
     json_response(StatusCode::OK, &body)
 }
 
-async fn shut_down(State(door): State<RouteState>) -> Response {
-    door.served.stop.notify_one();
-    json_response(StatusCode::OK, &json!({ "success": true, "run": door.served.run }))
+async fn shut_down(State(state): State<RouteState>) -> Response {
+    state.served.stop.notify_one();
+    json_response(StatusCode::OK, &json!({ "success": true, "run": state.served.run }))
 }
 
 async fn not_found(request: HttpRequest) -> Response {
@@ -119,55 +119,55 @@ async fn not_found(request: HttpRequest) -> Response {
     json_response(StatusCode::NOT_FOUND, &json!({ "error": error }))
 }
 
-async fn tools(State(door): State<RouteState>) -> Response {
+async fn tools(State(state): State<RouteState>) -> Response {
     let all: Vec<ToolDocument> =
-        CATALOGUE.iter().map(|tool| document_tool(tool.spec(), &door.numbers)).collect();
+        CATALOGUE.iter().map(|tool| document_tool(tool.spec(), &state.numbers)).collect();
     json_response(StatusCode::OK, &json!(all))
 }
 
-async fn table_documents(State(door): State<RouteState>) -> Response {
-    json_response(StatusCode::OK, &json!(tables(door.numbers.interface())))
+async fn table_documents(State(state): State<RouteState>) -> Response {
+    json_response(StatusCode::OK, &json!(tables(state.numbers.interface())))
 }
 
-async fn openapi_document(State(door): State<RouteState>) -> Response {
-    json_response(StatusCode::OK, &openapi::document(&door.numbers, door.has_release_2()))
+async fn openapi_document(State(state): State<RouteState>) -> Response {
+    json_response(StatusCode::OK, &openapi::document(&state.numbers, state.has_release_2()))
 }
 
-async fn handle_read(State(door): State<RouteState>, request: ApiRequest) -> Response {
-    to_http_response(&door.handle.send(request).await)
+async fn handle_read(State(state): State<RouteState>, request: ApiRequest) -> Response {
+    to_http_response(&state.handle.send(request).await)
 }
 
 async fn handle_with_body(
-    door: &RouteState,
+    state: &RouteState,
     tool: ToolId,
     body: Body,
     request: impl FnOnce(BodyFields) -> ApiRequest,
 ) -> Response {
     match read_object(body).await {
         Ok(mut fields) => {
-            if tool == ToolId::NextWeek && door.has_release_2() {
-                let refusal =
+            if tool == ToolId::NextWeek && state.has_release_2() {
+                let rejection =
                     release_2::rejection(tool.name(), fields.get(REQUEST_ID), fields.rejection.as_ref());
-                fields.rejection = refusal;
+                fields.rejection = rejection;
             }
             let request = match fields.rejection.take() {
-                Some(refusal) => ApiRequest::RejectedCall {
+                Some(rejection) => ApiRequest::RejectedCall {
                     tool: tool.name().to_owned(),
                     args: fields.into_remaining(),
-                    refusal,
+                    rejection,
                 },
                 None => request(fields),
             };
-            to_http_response(&door.converted(door.handle.send(request).await))
+            to_http_response(&state.converted(state.handle.send(request).await))
         }
-        Err(wrong) => close_connection(to_http_response(&door.converted(wrong))),
+        Err(wrong) => close_connection(to_http_response(&state.converted(wrong))),
     }
 }
 
-async fn call(State(door): State<RouteState>, body: Body) -> Response {
+async fn call(State(state): State<RouteState>, body: Body) -> Response {
     let mut fields = match read_object(body).await {
         Ok(fields) => fields,
-        Err(wrong) => return close_connection(to_http_response(&door.converted(wrong))),
+        Err(wrong) => return close_connection(to_http_response(&state.converted(wrong))),
     };
     // Convert a name of another type to text, so that the tool is rejected as unknown.
     let tool = match fields.take("tool") {
@@ -184,34 +184,34 @@ async fn call(State(door): State<RouteState>, body: Body) -> Response {
         args.entry("expected_day").or_insert(day);
     }
     let request_id = fields.take(REQUEST_ID);
-    let mut refusal = fields.rejection.take();
-    if door.has_release_2() {
+    let mut rejection = fields.rejection.take();
+    if state.has_release_2() {
         let sent = if request_id.is_null() { &args[REQUEST_ID] } else { &request_id };
-        refusal = release_2::rejection(&tool, sent, refusal.as_ref()).or(refusal);
+        rejection = release_2::rejection(&tool, sent, rejection.as_ref()).or(rejection);
     }
-    let request = match refusal {
-        Some(refusal) => ApiRequest::RejectedCall { tool, args, refusal },
+    let request = match rejection {
+        Some(rejection) => ApiRequest::RejectedCall { tool, args, rejection },
         None => ApiRequest::from_tool_call(&tool, args, request_id),
     };
-    to_http_response(&door.converted(door.handle.send(request).await.into_tool_response()))
+    to_http_response(&state.converted(state.handle.send(request).await.into_tool_response()))
 }
 
-async fn next_week(State(door): State<RouteState>, body: Body) -> Response {
-    handle_with_body(&door, ToolId::NextWeek, body, |fields| {
+async fn next_week(State(state): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&state, ToolId::NextWeek, body, |fields| {
         ApiRequest::from_tool_call(ToolId::NextWeek.name(), fields.into_remaining(), Value::Null)
     })
     .await
 }
 
-async fn query(State(door): State<RouteState>, body: Body) -> Response {
-    handle_with_body(&door, ToolId::Query, body, |fields| {
+async fn query(State(state): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&state, ToolId::Query, body, |fields| {
         ApiRequest::from_tool_call(ToolId::Query.name(), fields.into_remaining(), Value::Null)
     })
     .await
 }
 
-async fn save_script(State(door): State<RouteState>, body: Body) -> Response {
-    handle_with_body(&door, ToolId::RegisterScript, body, |mut fields| ApiRequest::SaveDailyScript {
+async fn save_script(State(state): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&state, ToolId::RegisterScript, body, |mut fields| ApiRequest::SaveDailyScript {
         name: fields.take("name"),
         content: fields.take("content"),
         request_id: fields.take("request_id"),
@@ -219,8 +219,8 @@ async fn save_script(State(door): State<RouteState>, body: Body) -> Response {
     .await
 }
 
-async fn delete_script(State(door): State<RouteState>, body: Body) -> Response {
-    handle_with_body(&door, ToolId::DeleteScript, body, |mut fields| ApiRequest::DeleteDailyScript {
+async fn delete_script(State(state): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&state, ToolId::DeleteScript, body, |mut fields| ApiRequest::DeleteDailyScript {
         name: fields.take("name"),
         request_id: fields.take("request_id"),
     })

@@ -13,10 +13,10 @@ pub fn reject_mcp_client(problem: &str) {
     if stdin().is_terminal() {
         return;
     }
-    if let Some(refusal) = error_response(stdin().lock(), problem) {
+    if let Some(rejection) = error_response(stdin().lock(), problem) {
         let mut out = stdout().lock();
         // Ignore errors, because the client may have closed the connection.
-        let _ = writeln!(out, "{refusal}").and_then(|()| out.flush());
+        let _ = writeln!(out, "{rejection}").and_then(|()| out.flush());
     }
 }
 
@@ -35,8 +35,8 @@ mod tests {
     #[test]
     fn error_response_has_the_id_of_the_first_request() {
         let messages = "\nnonsense\n{\"method\":\"notifications/x\"}\n{\"id\":7,\"method\":\"initialize\"}\n{\"id\":8}\n";
-        let refusal = error_response(messages.as_bytes(), "no such run").expect("an answer");
-        assert_eq!((&refusal["id"], &refusal["error"]["message"]), (&json!(7), &json!("no such run")));
+        let rejection = error_response(messages.as_bytes(), "no such run").expect("an answer");
+        assert_eq!((&rejection["id"], &rejection["error"]["message"]), (&json!(7), &json!("no such run")));
         assert_eq!(super::error_response(&b"nonsense"[..], "no such run"), None);
     }
 }

@@ -55,17 +55,17 @@ mod kept_posts {
     }
 
     #[derive(Serialize)]
-    struct BorrowedPost<'a>(#[serde(with = "Kept")] &'a PublicPost);
+    struct SerializedPost<'a>(#[serde(with = "Kept")] &'a PublicPost);
 
     #[derive(Deserialize)]
-    struct OwnedPost(#[serde(with = "Kept")] PublicPost);
+    struct DeserializedPost(#[serde(with = "Kept")] PublicPost);
 
     pub fn serialize<S: Serializer>(posts: &[PublicPost], serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(posts.iter().map(BorrowedPost))
+        serializer.collect_seq(posts.iter().map(SerializedPost))
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<PublicPost>, D::Error> {
-        Ok(Vec::<OwnedPost>::deserialize(deserializer)?.into_iter().map(|owned| owned.0).collect())
+        Ok(Vec::<DeserializedPost>::deserialize(deserializer)?.into_iter().map(|owned| owned.0).collect())
     }
 }
 

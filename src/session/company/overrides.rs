@@ -273,16 +273,16 @@ mod tests {
     #[test]
     fn add_change_rejects_later_contradictions() {
         let (now, mut overrides) = (Arc::new(Params::bundled()), Overrides::default());
-        let most = now.competitor.competitor_feedback_u_max;
-        overrides.add_change(&now, change(1, MIN_KEY, most - 0.01, Some(30))).expect("it fits");
+        let max = now.competitor.competitor_feedback_u_max;
+        overrides.add_change(&now, change(1, MIN_KEY, max - 0.01, Some(30))).expect("it fits");
         let unfit = overrides
-            .add_change(&now, change(2, MAX_KEY, most - 0.02, None))
+            .add_change(&now, change(2, MAX_KEY, max - 0.02, None))
             .err()
             .expect("the values contradict each other on day 30");
         assert_eq!(unfit.day, Some(30));
         assert_eq!(overrides.scheduled_changes().count(), 1, "the schedule is unchanged");
         overrides
-            .add_change(&now, change(3, MIN_KEY, most - 0.05, Some(30)))
+            .add_change(&now, change(3, MIN_KEY, max - 0.05, Some(30)))
             .expect("the later of two changes on a day applies");
         assert_eq!(overrides.rebased_on(&now, &BTreeSet::from([3])).scheduled_changes().count(), 1);
     }

@@ -182,8 +182,8 @@ impl Simulation {
                 format!("more than {} leads", grouped_number(f64::from(MAX_LEADS_PER_DAY), 0))
             }
             Some(ExceededLimit::Customers) => {
-                let most = grouped_number(f64::from(MAX_CUSTOMERS), 0);
-                format!("so many leads that there could be more than {most} customers")
+                let max = grouped_number(f64::from(MAX_CUSTOMERS), 0);
+                format!("so many leads that there could be more than {max} customers")
             }
             Some(ExceededLimit::Numbers) => "more leads than there are customer numbers".to_owned(),
         };

@@ -39,8 +39,8 @@ impl NewRun {
             return Ok(());
         }
         Err(RunError::InvalidRequest(format!(
-            "a baseline run needs {}, so that results can be compared; {} needs a study, or another mode. Nothing was \
-             recorded",
+            "a baseline run needs {}, so that results can be compared; {} can be set only in a study or in another mode. \
+             Nothing was recorded",
             baseline_terms(configuration)?,
             other.join(", ")
         )))

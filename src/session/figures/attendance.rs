@@ -21,7 +21,7 @@ pub(super) const KEY_WATCHING_INTERFACE: &str = "console";
 
 /// How a participant spent a period of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Attention {
+pub enum TimeUse {
     /// The participant played.
     Active,
     /// The participant answered questions of the study.
@@ -84,17 +84,17 @@ impl TimeSpent {
         (self.active / NS_PER_MS).max(0) as u64
     }
 
-    fn add(&mut self, attention: Attention, passed: i64) {
-        match attention {
-            Attention::Active => self.active += passed,
-            Attention::Answering => self.answering += passed,
-            Attention::Idle => self.idle += passed,
-            Attention::Away => self.away += passed,
-            Attention::Paused => {
+    fn add(&mut self, time_use: TimeUse, passed: i64) {
+        match time_use {
+            TimeUse::Active => self.active += passed,
+            TimeUse::Answering => self.answering += passed,
+            TimeUse::Idle => self.idle += passed,
+            TimeUse::Away => self.away += passed,
+            TimeUse::Paused => {
                 self.away += passed;
                 self.paused += passed;
             }
-            Attention::Simulating => {}
+            TimeUse::Simulating => {}
         }
     }
 }
@@ -135,7 +135,7 @@ pub struct TimeSpan {
     /// End of the period, nanoseconds since the first line.
     pub to: i64,
     /// How the time was spent.
-    pub attention: Attention,
+    pub time_use: TimeUse,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -249,7 +249,7 @@ impl Attendance {
         let mut spent = TimeSpent::default();
         let first = self.spans.partition_point(|time| time.to <= from);
         for time in self.spans[first..].iter().take_while(|time| time.from < to) {
-            spent.add(time.attention, time.to.min(to) - time.from.max(from));
+            spent.add(time.time_use, time.to.min(to) - time.from.max(from));
         }
         spent
     }
@@ -269,38 +269,38 @@ impl Attendance {
     }
 
     /// Returns how the time since the last line was spent. `record` is the event of the next line, if there is one.
-    fn classify_gap(&self, passed: i64, record: Option<&Record>) -> Attention {
+    fn classify_gap(&self, passed: i64, record: Option<&Record>) -> TimeUse {
         let long = passed > MIN_BREAK_NS;
         let simulates =
             |record: &Record| record.closed_days().is_some() || matches!(record, Record::Voice(_));
         if record.is_some_and(simulates) {
-            return Attention::Simulating;
+            return TimeUse::Simulating;
         }
         if self.is_paused {
-            return Attention::Paused;
+            return TimeUse::Paused;
         }
         let is_opened_again = record.and_then(presence_event) == Some(PresenceEvent::Opened);
         match self.connection {
-            ConnectionState::Unknown if long => Attention::Away,
-            ConnectionState::Unknown => Attention::Active,
-            ConnectionState::Closed => Attention::Away,
+            ConnectionState::Unknown if long => TimeUse::Away,
+            ConnectionState::Unknown => TimeUse::Active,
+            ConnectionState::Closed => TimeUse::Away,
             // The program did not close the run, so the time at which the program stopped is unknown.
-            ConnectionState::Open { .. } if is_opened_again => Attention::Away,
-            ConnectionState::Open { .. } if self.is_suspended || self.has_lost_focus => Attention::Away,
-            ConnectionState::Open { .. } if self.is_idle => Attention::Idle,
-            ConnectionState::Open { watches_keys: false } if long => Attention::Idle,
-            ConnectionState::Open { .. } if self.open_questions > 0 => Attention::Answering,
-            ConnectionState::Open { .. } => Attention::Active,
+            ConnectionState::Open { .. } if is_opened_again => TimeUse::Away,
+            ConnectionState::Open { .. } if self.is_suspended || self.has_lost_focus => TimeUse::Away,
+            ConnectionState::Open { .. } if self.is_idle => TimeUse::Idle,
+            ConnectionState::Open { watches_keys: false } if long => TimeUse::Idle,
+            ConnectionState::Open { .. } if self.open_questions > 0 => TimeUse::Answering,
+            ConnectionState::Open { .. } => TimeUse::Active,
         }
     }
 
-    fn push_span(&mut self, passed: i64, attention: Attention) {
+    fn push_span(&mut self, passed: i64, time_use: TimeUse) {
         let from = self.end_ns;
         self.end_ns += passed;
         match self.spans.last_mut() {
-            Some(last) if last.attention == attention && last.to == from => last.to = self.end_ns,
+            Some(last) if last.time_use == time_use && last.to == from => last.to = self.end_ns,
             _ if passed == 0 => {}
-            _ => self.spans.push(TimeSpan { from, to: self.end_ns, attention }),
+            _ => self.spans.push(TimeSpan { from, to: self.end_ns, time_use }),
         }
     }
 
@@ -335,15 +335,15 @@ impl Attendance {
         let found = self.spans.split_off(first);
         for time in found {
             let cut = since.clamp(time.from, time.to);
-            let later = match time.attention {
-                Attention::Active | Attention::Answering => Attention::Idle,
+            let later = match time.time_use {
+                TimeUse::Active | TimeUse::Answering => TimeUse::Idle,
                 other => other,
             };
-            let parts = [(time.from, cut, time.attention), (cut, time.to, later)];
-            for (from, to, attention) in parts.into_iter().filter(|(from, to, _)| from < to) {
+            let parts = [(time.from, cut, time.time_use), (cut, time.to, later)];
+            for (from, to, time_use) in parts.into_iter().filter(|(from, to, _)| from < to) {
                 match self.spans.last_mut() {
-                    Some(last) if last.attention == attention && last.to == from => last.to = to,
-                    _ => self.spans.push(TimeSpan { from, to, attention }),
+                    Some(last) if last.time_use == time_use && last.to == from => last.to = to,
+                    _ => self.spans.push(TimeSpan { from, to, time_use }),
                 }
             }
         }

@@ -124,8 +124,8 @@ impl InspectionPermit {
                 "an inspection must be recorded, but this run is open read-only; open the run for play";
             return Err(Rejection::new("read_only", message));
         }
-        let look = Inspection { what: what.to_owned(), which: which.to_owned(), shown_day };
-        let line = Record::Activity(Activity::Inspection(look));
+        let inspection = Inspection { what: what.to_owned(), which: which.to_owned(), shown_day };
+        let line = Record::Activity(Activity::Inspection(inspection));
         let appended = run.append(&line, Durability::Synced);
         appended.map_err(|error| Rejection::new("not_saved", error.to_string()))?;
         Ok(InspectionPermit { run: run.manifest().id.clone(), day: shown_day })
@@ -178,9 +178,9 @@ impl InspectionPermit {
     /// # Errors
     /// One of the rejections `not_possible`, `not_readable`.
     pub fn world_at_day_end(&self, run: &Session, day: u32) -> Result<World, Rejection> {
-        let evening = Arc::new(WorldCapture { day, world: Mutex::default() });
-        self.replay_until(run, day, evening.clone())?;
-        let world = evening.world.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let capture = Arc::new(WorldCapture { day, world: Mutex::default() });
+        self.replay_until(run, day, capture.clone())?;
+        let world = capture.world.lock().unwrap_or_else(PoisonError::into_inner).take();
         world.ok_or_else(|| Rejection::new("not_readable", format!("the record does not contain day {day}")))
     }
 }
@@ -301,11 +301,12 @@ mod tests {
             session.manifest_mut().study = Some(StudyStamp::pilot_study(practice));
             session.manifest_mut().rules =
                 Some(SessionRules { results, ..SessionRules::for_mode(Mode::Baseline) });
-            let look =
-                InspectionPermit::start(&mut session, "sql", sql, None).map_err(|refusal| refusal.code);
-            let asked =
-                InspectionPermit::open_hidden_tables(&mut session).map(drop).map_err(|refusal| refusal.code);
-            assert_eq!(asked, look.map(drop), "{practice} {results:?}");
+            let inspection =
+                InspectionPermit::start(&mut session, "sql", sql, None).map_err(|rejection| rejection.code);
+            let asked = InspectionPermit::open_hidden_tables(&mut session)
+                .map(drop)
+                .map_err(|rejection| rejection.code);
+            assert_eq!(asked, inspection.map(drop), "{practice} {results:?}");
             assert_eq!(asked.is_ok(), is_shown, "{practice} {results:?}");
             assert!(is_shown || asked == Err("not_in_this_mode"));
         }

@@ -96,12 +96,12 @@ impl Session {
         });
         let (text, forecasts) = match checked {
             Ok(checked) => checked,
-            Err(refusal) => {
+            Err(rejection) => {
                 let arguments = week_arguments(rationale, predictions, expected_day);
                 // Release 2 validates a week before it stores the id, so a corrected week can have the same id.
                 let request = request.filter(|_| !self.has_release_2_interface());
-                self.record_rejection(ToolId::NextWeek.name(), &arguments, via, &refusal, request);
-                return Err(refusal);
+                self.record_rejection(ToolId::NextWeek.name(), &arguments, via, &rejection, request);
+                return Err(rejection);
             }
         };
         self.prepare_lesson_week()?;
@@ -304,7 +304,7 @@ impl Session {
         };
         let unsaved = problem.map(|problem| format!("{problem}; {next}"));
         let crowded = self.simulation.check_lead_capacity().err().filter(|_| self.history.ended.is_none());
-        let remark = unsaved.or(crowded.map(|refusal| refusal.message));
+        let remark = unsaved.or(crowded.map(|rejection| rejection.message));
         let remarks = remark.into_iter().chain(self.database_remark()).chain(self.voice.take_notice());
         let remarks: Vec<String> = remarks.collect();
         let week = self.week_result((!remarks.is_empty()).then(|| remarks.join(". ")));

@@ -65,12 +65,14 @@ impl Session {
         let ignores_id = find(tool).is_some_and(|tool| !tool.spec().id.takes_request_id());
         let id = if ignores_id { &Value::Null } else { id };
         match self.request_state(tool, arguments, id) {
-            Err(refusal) => {
-                self.record_rejection(tool, arguments, via, &refusal, None);
-                Err(refusal.into())
+            Err(rejection) => {
+                self.record_rejection(tool, arguments, via, &rejection, None);
+                Err(rejection.into())
             }
             Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Accepted(answer)))) => Ok(answer),
-            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(refusal)))) => Err(refusal),
+            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(rejection)))) => {
+                Err(rejection)
+            }
             Ok(RequestState::Repeated(IdempotentResponse::Week(_))) => {
                 Err(payload_mismatch_rejection().into())
             }
@@ -95,12 +97,14 @@ impl Session {
         let args = week_arguments(rationale, predictions, expected_day);
         let name = ToolId::NextWeek.name();
         match self.request_state(name, &args, id) {
-            Err(refusal) => {
-                self.record_rejection(name, &args, via, &refusal, None);
-                Err(refusal.into())
+            Err(rejection) => {
+                self.record_rejection(name, &args, via, &rejection, None);
+                Err(rejection.into())
             }
             Ok(RequestState::Repeated(IdempotentResponse::Week(week))) => Ok(*week),
-            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(refusal)))) => Err(refusal),
+            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(rejection)))) => {
+                Err(rejection)
+            }
             Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Accepted(_)))) => {
                 Err(payload_mismatch_rejection().into())
             }

@@ -176,5 +176,5 @@ pub(crate) fn open_projector(
 /// The run has ended already, is in use, or cannot be read.
 pub fn abandon_run(runs: &Path, id: &str) -> Result<(), RunError> {
     let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
-    session.abandon().map_err(|refusal| RunError::InvalidRequest(refusal.message))
+    session.abandon().map_err(|rejection| RunError::InvalidRequest(rejection.message))
 }

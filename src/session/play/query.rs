@@ -53,8 +53,8 @@ impl Session {
         limits: QueryLimits,
     ) -> Result<QueryResult, Rejection> {
         let answer = self.up_to_date_database().and_then(|database| database.query(ticket, sql, limits));
-        answer.map_err(|refusal| {
-            if self.check_inspection().is_ok() { with_hidden_table_hint(refusal) } else { refusal }
+        answer.map_err(|rejection| {
+            if self.check_inspection().is_ok() { with_hidden_table_hint(rejection) } else { rejection }
         })
     }
 
@@ -94,14 +94,14 @@ impl Session {
         via: QuerySource,
     ) {
         let rows = answer.ok();
-        let refusal = answer.err();
+        let rejection = answer.err();
         let query = Query {
             sql: sql.to_owned(),
             rows: rows.map(|rows| rows.rows.len() as u64),
             truncated: rows.is_some_and(|rows| rows.truncated),
-            error: refusal.map(|refusal| refusal.code.to_owned()),
-            message: refusal.map(|refusal| refusal.message.clone()),
-            stopped: refusal.is_some_and(|refusal| refusal.code == SQL_CANCELLED),
+            error: rejection.map(|rejection| rejection.code.to_owned()),
+            message: rejection.map(|rejection| rejection.message.clone()),
+            stopped: rejection.is_some_and(|rejection| rejection.code == SQL_CANCELLED),
             via: Some(via),
             took_ms: (took.as_secs_f64() * 1e6).round() / 1e3,
         };

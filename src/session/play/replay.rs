@@ -34,10 +34,10 @@ impl Session {
         };
         let position = snapshot.position();
         let seen = position.seq as usize + 1;
-        let surroundings = RunContext { notebook, ..RunContext::default() };
+        let context = RunContext { notebook, ..RunContext::default() };
         let mut session = Session::assemble(manifest, path, simulation, RunDatabase::default());
         session.log.set_position(position);
-        (Session { history, context: surroundings, ..session }, seen)
+        (Session { history, context, ..session }, seen)
     }
 
     /// Applies all lines after the first `seen` lines. Writes only missing rows to the database. Calls `reached` after
@@ -109,7 +109,7 @@ impl Session {
             Record::Week(closing) | Record::Step(closing) => {
                 let from = self.simulation.world.day;
                 let state = self.run_days(from.saturating_add(closing.days_run), progress);
-                self.verify_closing(from, &state, closing)?;
+                self.verify_closed_days(from, &state, closing)?;
                 self.record_replayed_week();
                 self.commit_projection();
             }
@@ -131,7 +131,12 @@ impl Session {
     }
 
     /// Completes the figures of replayed days and compares the state with the recorded state.
-    fn verify_closing(&mut self, from: u32, state: &StateHash, recorded: &ClosedDays) -> Result<(), String> {
+    fn verify_closed_days(
+        &mut self,
+        from: u32,
+        state: &StateHash,
+        recorded: &ClosedDays,
+    ) -> Result<(), String> {
         let figures = self.finish_figures();
         let reached = self.closing_record(from, &figures, state);
         self.simulation.facts_chain.close();

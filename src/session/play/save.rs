@@ -33,8 +33,8 @@ impl Session {
     }
 
     fn write_snapshot_with_hash(&self, state_hash: String, place: SnapshotTarget, closing: bool) {
-        let Session { manifest, simulation, history, context: surroundings, .. } = self;
-        let notebook = &surroundings.notebook;
+        let Session { manifest, simulation, history, context, .. } = self;
+        let notebook = &context.notebook;
         let position = self.log.position().clone();
         let kept = SnapshotSource { manifest, simulation, history, notebook, position };
         self.database.after_writes(closing, kept.writer(state_hash, place));

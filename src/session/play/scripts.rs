@@ -82,7 +82,7 @@ impl Session {
         records_queries: bool,
     ) -> Result<RawScriptOutput, Rejection> {
         let stop = self.up_to_date_database().and_then(RunDatabase::interrupt_handle);
-        let stop = stop.map_err(|refusal| script_failed(refusal.message))?;
+        let stop = stop.map_err(|rejection| script_failed(rejection.message))?;
         let (ticket, mode) = (stop.issue_ticket(), self.manifest.mode);
         let mut answer = |request, left| self.answer_script_request(request, left, records_queries);
         let host = &mut ScriptHost { is_stopped: &|| stop.is_ticket_stopped(ticket), answer: &mut answer };
@@ -123,15 +123,16 @@ impl Session {
     fn run_statements(&mut self, code: &str, time: Duration) -> Result<RawScriptOutput, Rejection> {
         let limits = self.company().query_limits();
         let connection = self.up_to_date_database().and_then(|database| database.connection());
-        let connection = connection.map_err(|refusal| Rejection::new("script_failed", refusal.message))?;
+        let connection =
+            connection.map_err(|rejection| Rejection::new("script_failed", rejection.message))?;
         let mut script_output = RawScriptOutput::default();
         match connection.run_script(code, limits, time, |rows| append_result(&mut script_output, &rows)) {
             Ok(()) => Ok(script_output),
             Err(stopped) => {
-                let refusal = query_rejection(stopped.error);
-                let was_stopped = ["sql_timeout", SQL_CANCELLED].contains(&refusal.code);
+                let rejection = query_rejection(stopped.error);
+                let was_stopped = ["sql_timeout", SQL_CANCELLED].contains(&rejection.code);
                 let kind = if was_stopped { "script_timeout" } else { "script_failed" };
-                let (number, why) = (stopped.statement, refusal.message);
+                let (number, why) = (stopped.statement, rejection.message);
                 let hint = python_marker_hint(code).map(|hint| format!("; {hint}")).unwrap_or_default();
                 let message =
                     format!("statement {number}: {why}; the statements before it changed nothing{hint}");
@@ -161,7 +162,7 @@ impl Session {
             };
             let output = match result {
                 Ok(script_output) => script_output.results,
-                Err(refusal) => format!("failed: {}", refusal.message),
+                Err(rejection) => format!("failed: {}", rejection.message),
             };
             CalculationOutput { name, output: truncate(&output, shown) }
         };

@@ -36,7 +36,7 @@ fn start_company(runs: &Path, configuration: &Configuration) -> Session {
         ("set_daily_spend", json!({"operations": 200, "development": 200})),
         ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": {"S1": 2000}}})),
     ] {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
     }
     session
 }

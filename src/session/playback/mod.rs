@@ -271,7 +271,7 @@ impl Playback {
             is_following: self.is_following,
             is_at_end: self.is_at_end(),
             chapter: self.current_chapter(),
-            branch_rejection: self.branch_rejection().map(|refusal| refusal.message),
+            branch_rejection: self.branch_rejection().map(|rejection| rejection.message),
         }
     }
 
@@ -335,7 +335,7 @@ impl Playback {
     pub fn create_branch(&self, mode: Mode) -> Result<Session, Rejection> {
         let folder = match (self.branch_rejection(), &self.origin.folder) {
             (None, Some(folder)) => folder,
-            (refusal, _) => return Err(refusal.unwrap_or_else(standalone_rejection)),
+            (rejection, _) => return Err(rejection.unwrap_or_else(standalone_rejection)),
         };
         // A branch can continue an abandoned run, but not a run that has reached its end.
         if self.session.ended().is_some() && self.session.ended() != Some(RunEndReason::Abandoned) {

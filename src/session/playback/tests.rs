@@ -177,9 +177,9 @@ fn playback_shows_notes_only_after_they_were_written() {
 fn playback_is_read_only_and_seeks_can_be_stopped() {
     let run = record_run(Mode::Sandbox, 4);
     let mut playback = Playback::open(&run.folder).expect("it opens");
-    let refusal =
+    let rejection =
         playback.session_mut().call("set_prices", &json!({"A": 1}), Via::Form).expect_err("read-only");
-    assert_eq!(refusal.code, "read_only");
+    assert_eq!(rejection.code, "read_only");
     let mut days = Vec::new();
     let stopped = playback.seek(SeekTarget::Last, &mut |day| {
         days.push(day);

@@ -43,7 +43,7 @@ pub(crate) fn run_python(
             None => Err(Rejection::new("sql_error", "a script can call query(sql) and get_vars()")),
         };
         answer.unwrap_or_else(
-            |refusal| json!({ "error": { "code": refusal.code, "message": refusal.message } }),
+            |rejection| json!({ "error": { "code": rejection.code, "message": rejection.message } }),
         )
     });
     script_result(&end, &process, time)

@@ -8,7 +8,8 @@ use serde_json::json;
 
 fn run_all_queries(session: &mut Session) {
     for query in QueryLibrary::bundled().queries() {
-        let rows = session.query(&query.sql).unwrap_or_else(|refusal| panic!("{}: {refusal}", query.name));
+        let rows =
+            session.query(&query.sql).unwrap_or_else(|rejection| panic!("{}: {rejection}", query.name));
         assert!(!rows.truncated, "{} is truncated", query.name);
         let head = QueryHeader::parse(&query.sql);
         assert!(head.title.is_some(), "{}", query.name);
@@ -80,7 +81,7 @@ fn run_queries_in_every_phase(new: NewRun) -> Session {
         ("set_ads_strength", json!({"global_strength": 0.2})),
         ("post_social_media", json!({"content": "We are here."})),
     ] {
-        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
     }
     play_weeks(&mut session, 3);
     run_all_queries(&mut session);

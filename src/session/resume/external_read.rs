@@ -97,13 +97,13 @@ mod tests {
 
     fn external_reads(folder: &Path) -> Vec<String> {
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
-        let look = |record: &Record| match record {
+        let external_read = |record: &Record| match record {
             Record::Activity(Activity::ExternalRead(external_read)) => {
                 Some(format!("{} {}", external_read.command, external_read.detail))
             }
             _ => None,
         };
-        trajectory.lines.iter().filter_map(|line| look(&line.record)).collect()
+        trajectory.lines.iter().filter_map(|line| external_read(&line.record)).collect()
     }
 
     #[test]

@@ -70,7 +70,7 @@ fn recover_prefix(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError
     };
     let mode = manifest.mode.branch_mode();
     let branch = create_branch(folder, &manifest, &trajectory.lines[..good], mode)
-        .map_err(|refusal| RunError::InvalidRequest(refusal.message))?;
+        .map_err(|rejection| RunError::InvalidRequest(rejection.message))?;
     let (run, day) = (branch.manifest().id.clone(), branch.day());
     Ok(RecoveredRun { run, mode, lines: good, day, problem: words })
 }

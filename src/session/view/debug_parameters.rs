@@ -66,10 +66,10 @@ impl DebugParameters<'_> {
     /// `not_readable`: the parameters at the start of the run cannot be read.
     pub fn changes(&self) -> Result<ChangedParameters, Rejection> {
         let CompanyView { manifest, simulation, .. } = self.0;
-        let shipped = Configuration::bundled();
-        let scenario = shipped.load_scenario(&manifest.scenario).ok();
+        let bundled = Configuration::bundled();
+        let scenario = bundled.load_scenario(&manifest.scenario).ok();
         let of_scenario =
-            scenario.as_ref().and_then(|scenario| shipped.load_parameters(scenario, &[], false).ok());
+            scenario.as_ref().and_then(|scenario| bundled.load_parameters(scenario, &[], false).ok());
         let scenario = of_scenario.as_ref().and(scenario.map(|scenario| scenario.name));
         let base = of_scenario.map_or_else(|| manifest.load_params(), Ok);
         let base = base.map_err(|error| Rejection::new("not_readable", error.to_string()))?;

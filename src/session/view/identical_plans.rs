@@ -86,7 +86,9 @@ mod tests {
         let new = NewRun { storage: Storage::Memory, projection: false, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         let mut alike = |tool: &str, arguments: serde_json::Value| {
-            session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+            session
+                .call(tool, &arguments, Via::Script)
+                .unwrap_or_else(|rejection| panic!("{tool}: {rejection}"));
             session
                 .company()
                 .identical_plans()

@@ -178,7 +178,7 @@ impl Tool for SetTargetedOpsSpend {
         view: &ToolContext<'_>,
         support_scopes: SupportScopes,
     ) -> Result<PlannedCall<SupportBudgets>, Rejection> {
-        let names_no_scope = support_scopes.is_empty();
+        let has_no_scope = support_scopes.is_empty();
         let mut operations = view.settings().targeted_operations.clone();
         replace_if_given(&mut operations.by_group, support_scopes.by_group);
         replace_if_given(&mut operations.by_plan, support_scopes.by_plan);
@@ -199,7 +199,7 @@ impl Tool for SetTargetedOpsSpend {
             by_customer: targeted_operations.by_customer,
             total_extra_per_day: operations.total(),
         };
-        if is_release_2(view) && names_no_scope {
+        if is_release_2(view) && has_no_scope {
             return Ok(PlannedCall::read_only(answer));
         }
         Ok(PlannedCall::with_settings_change(SettingsChange::TargetedOperations(operations), answer))

@@ -23,9 +23,9 @@ impl Language {
 pub fn python_marker_hint(code: &str) -> Option<&'static str> {
     let is_python = |line: &str| {
         let begins = ["import ", "def ", "class ", "print("].iter().any(|word| line.starts_with(word));
-        let takes_from = line.starts_with("from ") && line.contains(" import ");
+        let is_from_import = line.starts_with("from ") && line.contains(" import ");
         let is_block = line.starts_with("for ") && line.trim_end().ends_with(':');
-        begins || takes_from || is_block || line.contains("query(\"") || line.contains("query('")
+        begins || is_from_import || is_block || line.contains("query(\"") || line.contains("query('")
     };
     let looks_like_it =
         Language::detect(code) == Language::Sql && code.lines().map(str::trim_start).any(is_python);

@@ -69,19 +69,19 @@ impl TestHost {
 
     fn call(&mut self, name: &str, given: Value) -> Value {
         let outcome =
-            self.try_call(name, &given).unwrap_or_else(|refusal| panic!("{name} {given}: {refusal}"));
+            self.try_call(name, &given).unwrap_or_else(|rejection| panic!("{name} {given}: {rejection}"));
         outcome.unwrap_or_default()
     }
 
     fn assert_rejections(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
         for (given, code, field) in cases {
-            let refusal = self.try_call(name, given).expect_err(&format!("{name} {given} is invalid"));
+            let rejection = self.try_call(name, given).expect_err(&format!("{name} {given} is invalid"));
             assert_eq!(
-                (refusal.code, refusal.field.as_deref().unwrap_or("")),
+                (rejection.code, rejection.field.as_deref().unwrap_or("")),
                 (*code, *field),
                 "{name} {given}"
             );
-            assert!(refusal.message.len() > 10);
+            assert!(rejection.message.len() > 10);
         }
         let spec = find(name).expect("the tool exists").spec();
         // Tests of the session cover these codes, because they need a database.

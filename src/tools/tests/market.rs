@@ -70,8 +70,8 @@ fn research_group_validates_levels() {
             (json!({"group_id": "S2"}), "insufficient_funds", ""),
         ],
     );
-    let refusal = company.try_call("research_group", json!({"group_id": "S2"})).expect_err("too dear");
-    assert_eq!(refusal.message, "costs $60,000, cash is $60,000");
+    let rejection = company.try_call("research_group", json!({"group_id": "S2"})).expect_err("too dear");
+    assert_eq!(rejection.message, "costs $60,000, cash is $60,000");
 }
 
 #[test]

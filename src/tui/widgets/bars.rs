@@ -38,7 +38,7 @@ pub struct BarLayout {
 
 impl BarLayout {
     /// Returns the layout that fits all bars into rows of a width.
-    pub fn for_bars<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> BarLayout {
+    pub fn from_bars<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> BarLayout {
         let (mut names, mut values, mut least, mut most) = (1, 1, 0.0_f64, 0.0_f64);
         for bar in bars {
             names = names.max(bar.name.width());
@@ -110,7 +110,7 @@ mod tests {
             series: 0,
             selected: false,
         };
-        BarLayout::for_bars(values.iter().map(bar).collect::<Vec<_>>().into_iter(), width)
+        BarLayout::from_bars(values.iter().map(bar).collect::<Vec<_>>().into_iter(), width)
     }
 
     #[test]

@@ -134,13 +134,13 @@ impl PlotFrame {
     }
 
     fn column(&self, x: f64) -> u16 {
-        let most = f64::from(self.area.width.saturating_sub(1));
-        self.area.x + (PlotFrame::fraction(self.x, x).clamp(0.0, 1.0) * most).round() as u16
+        let max = f64::from(self.area.width.saturating_sub(1));
+        self.area.x + (PlotFrame::fraction(self.x, x).clamp(0.0, 1.0) * max).round() as u16
     }
 
     fn row(&self, y: f64) -> u16 {
-        let most = f64::from(self.area.height.saturating_sub(1));
-        self.area.y + ((1.0 - PlotFrame::fraction(self.y, y).clamp(0.0, 1.0)) * most).round() as u16
+        let max = f64::from(self.area.height.saturating_sub(1));
+        self.area.y + ((1.0 - PlotFrame::fraction(self.y, y).clamp(0.0, 1.0)) * max).round() as u16
     }
 }
 
@@ -321,14 +321,14 @@ impl Plot<'_> {
 fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
     for row in wanted {
-        let least = rows.last().map_or(place.top(), |above| above + 1);
-        rows.push((*row).max(least));
+        let min = rows.last().map_or(place.top(), |above| above + 1);
+        rows.push((*row).max(min));
     }
-    let mut most = place.bottom();
+    let mut max = place.bottom();
     for row in rows.iter_mut().rev() {
-        most = most.saturating_sub(1);
-        *row = (*row).min(most);
-        most = *row;
+        max = max.saturating_sub(1);
+        *row = (*row).min(max);
+        max = *row;
     }
     rows
 }
@@ -341,10 +341,10 @@ fn band_limits([least, most]: [f64; 2]) -> [f64; 2] {
 
 fn axis_bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
     let all = values.chain(holds.iter().copied());
-    let (least, most) = all
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
-    match least {
-        _ if most > least => [least, most],
+    let (min, max) =
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| (min.min(value), max.max(value)));
+    match min {
+        _ if max > min => [min, max],
         0.0 => [0.0, 1.0],
         // A constant value is drawn in the middle of an axis that starts at zero.
         level => [(2.0 * level).min(0.0), (2.0 * level).max(0.0)],
@@ -380,21 +380,21 @@ fn grid_line(width: u16) -> String {
 /// Returns zero as a required axis value if the values are near zero. For other values, an axis that includes zero
 /// would flatten the curve.
 pub fn zero_if_near(values: impl Iterator<Item = f64> + Clone) -> &'static [f64] {
-    let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
-    let least = values.fold(f64::INFINITY, f64::min);
-    if least < 0.5 * most { &[0.0] } else { &[] }
+    let max = values.clone().fold(f64::NEG_INFINITY, f64::max);
+    let min = values.fold(f64::INFINITY, f64::min);
+    if min < 0.5 * max { &[0.0] } else { &[] }
 }
 
 /// Describes a series by its last value, its change, and its minimum and maximum, if they fit.
 pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> String {
     let Some(now) = values.last() else { return "no data yet".to_owned() };
     let mut words = write(*now);
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let before = values.len().checked_sub(2).map(|at| values[at]);
     let change =
         before.map(|before| format!(" {}", format_change(now - before, &write((now - before).abs()))));
-    let extremes = format!(" · min {} · max {}", write(least), write(most));
+    let extremes = format!(" · min {} · max {}", write(min), write(max));
     for part in change.into_iter().chain([extremes]) {
         if words.width() + part.width() > room {
             break;

@@ -63,8 +63,8 @@ impl Raster {
 
     fn dot_position(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let (across, down) = self.dots_per_cell();
-        let most = |dots: usize| dots.saturating_sub(1) as f64;
-        (x.clamp(0.0, 1.0) * most(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * most(self.rows * down))
+        let max = |dots: usize| dots.saturating_sub(1) as f64;
+        (x.clamp(0.0, 1.0) * max(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * max(self.rows * down))
     }
 
     /// Draws the dots over the existing content of an area.

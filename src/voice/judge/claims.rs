@@ -19,7 +19,7 @@ const CLAIM_NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "spee
 pub fn evaluate_claims(
     features: &Features,
     readers: &ReaderGroup,
-    circumstances: &JudgeContext,
+    context: &JudgeContext,
     lexicon: &Lexicon,
 ) -> Vec<Claim> {
     let reading = &features.text;
@@ -29,14 +29,13 @@ pub fn evaluate_claims(
         let near = reading.are_near(&pattern.near, &pattern.to, lexicon.verdicts.near_positions);
         if near || reading.contains_any(&pattern.says) {
             let unlimited = name == "limits" && reading.contains_any(&pattern.says);
-            let verdict =
-                if unlimited { Some(false) } else { verdict(name, readers, circumstances, lexicon) };
+            let verdict = if unlimited { Some(false) } else { verdict(name, readers, context, lexicon) };
             found.push(Claim { name, verdict });
         }
     }
     if let Some(count) = claimed_audience(reading.normalized()) {
-        let most = lexicon.verdicts.scale_slack * f64::from(circumstances.subscribers);
-        found.push(Claim { name: "scale", verdict: Some(count <= most) });
+        let max = lexicon.verdicts.scale_slack * f64::from(context.subscribers);
+        found.push(Claim { name: "scale", verdict: Some(count <= max) });
     }
     found
 }

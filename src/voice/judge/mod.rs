@@ -119,7 +119,7 @@ struct SharedPostData<'a> {
     recent: Vec<Features>,
     /// Largest text overlap with a recent post, 0..=1.
     overlap: f64,
-    circumstances: &'a JudgeContext,
+    context: &'a JudgeContext,
     lexicon: &'a Lexicon,
 }
 
@@ -127,7 +127,7 @@ struct SharedPostData<'a> {
 pub fn judge_post(
     submission: &SubmittedPost<'_>,
     groups: impl IntoIterator<Item = Group>,
-    circumstances: &JudgeContext,
+    context: &JudgeContext,
     lexicon: &Lexicon,
 ) -> Vec<Judgement> {
     let since = |days: u32| {
@@ -146,7 +146,7 @@ pub fn judge_post(
             .original
             .map(|original_post| (Features::from_post(original_post.content, lexicon), original_post)),
         features,
-        circumstances,
+        context,
         lexicon,
     };
     groups.into_iter().map(|group| score::judge_group(group, &case)).collect()

@@ -20,8 +20,8 @@ pub(super) fn judge_group(group: Group, case: &SharedPostData<'_>) -> Judgement 
     if case.features.is_empty {
         return Judgement { group, effect: 0.0, terms: Vec::new(), model_reason: None };
     }
-    let readers = &case.circumstances.groups[group];
-    let claims = evaluate_claims(&case.features, readers, case.circumstances, lexicon);
+    let readers = &case.context.groups[group];
+    let claims = evaluate_claims(&case.features, readers, case.context, lexicon);
     let eyes = GroupJudge { group, case, profile: lexicon.profile(group), claims };
     let terms = eyes.terms();
     let mut raw = eyes.profile.k * terms.iter().map(|term| term.value).sum::<f64>();
@@ -152,12 +152,12 @@ impl GroupJudge<'_> {
     fn timing(&self) -> (f64, Vec<String>) {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         if let Some(event) = self.ignored_event() {
-            let readers = self.case.circumstances.groups[self.group].subscribers;
+            let readers = self.case.context.groups[self.group].subscribers;
             let value = if readers > 0 { terms.tone_deaf_customers } else { terms.tone_deaf_others };
             return (value, vec![event.id().to_owned()]);
         }
         let mut best: Option<(LiveEvent, f64)> = None;
-        for &(event, age) in &self.case.circumstances.live_events {
+        for &(event, age) in &self.case.context.live_events {
             if features.attacks_competitors
                 || !self.topics_addressing(event).any(|topic| features.mentions_topic(topic))
             {
@@ -183,7 +183,7 @@ impl GroupJudge<'_> {
             return None;
         }
         let answers = [lexicon.topic_index("reliability"), lexicon.topic_index("transparency")];
-        let fresh = |event: &LiveEvent| match (event, self.case.circumstances.event_age(*event)) {
+        let fresh = |event: &LiveEvent| match (event, self.case.context.event_age(*event)) {
             (LiveEvent::Outage, Some(age)) => age <= lexicon.events.fresh_days,
             (_, age) => age.is_some(),
         };
@@ -230,7 +230,7 @@ impl GroupJudge<'_> {
     fn accountability(&self) -> f64 {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
-        let trouble = to_answer.into_iter().any(|event| self.case.circumstances.event_age(event).is_some());
+        let trouble = to_answer.into_iter().any(|event| self.case.context.event_age(event).is_some());
         if trouble && (features.has_apology || features.names_cause) {
             let elements =
                 [features.has_apology, features.names_cause, features.names_remedy, features.names_time];
@@ -250,7 +250,7 @@ impl GroupJudge<'_> {
     /// Returns the share of the penalty for false claims that applies, 0..=1. The share is smaller for a group without
     /// subscribers.
     fn false_claim_penalty_share(&self, contradicted: &[String]) -> f64 {
-        let readers = self.case.circumstances.groups[self.group].subscribers;
+        let readers = self.case.context.groups[self.group].subscribers;
         match (contradicted.is_empty(), readers > 0) {
             (true, _) => 0.0,
             (false, true) => 1.0,
@@ -266,7 +266,7 @@ impl GroupJudge<'_> {
 
     fn hard_sell_penalty(&self) -> f64 {
         let terms = &self.case.lexicon.terms;
-        let welcome = self.profile.weight("deal") >= terms.likes_deals && self.case.circumstances.promotion;
+        let welcome = self.profile.weight("deal") >= terms.likes_deals && self.case.context.promotion;
         terms.hard_sell * self.case.features.sales_pressure * if welcome { 0.5 } else { 1.0 }
     }
 

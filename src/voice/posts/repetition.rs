@@ -42,11 +42,11 @@ impl RecentPosts {
         for number in 0..MAX_DRAFTS {
             let text = draft();
             let staleness = self.repetition_score(&text);
-            if best.as_ref().is_none_or(|(least, _)| staleness < *least) {
+            if best.as_ref().is_none_or(|(min, _)| staleness < *min) {
                 best = Some((staleness, text));
             }
-            let least = best.as_ref().map_or(usize::MAX, |(least, _)| *least);
-            if least == 0 || (number + 1 >= DRAFTS_PER_POST && least < MAX_DRAFTS) {
+            let min = best.as_ref().map_or(usize::MAX, |(min, _)| *min);
+            if min == 0 || (number + 1 >= DRAFTS_PER_POST && min < MAX_DRAFTS) {
                 break;
             }
         }

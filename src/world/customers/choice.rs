@@ -55,8 +55,8 @@ pub fn choose_plan(
     for plan in Plan::ALL {
         let choice = candidate(plan);
         // The required quality is never below the minimum of the curve, so most plans need no further evaluation.
-        let most = choice.quality - curve.q_min.min(curve.q_max);
-        if choice.price > curve.c_max || most <= best.0 {
+        let max = choice.quality - curve.q_min.min(curve.q_max);
+        if choice.price > curve.c_max || max <= best.0 {
             continue;
         }
         let surplus = choice.quality - required_quality(choice.price, curve, params);

@@ -198,10 +198,10 @@ impl Customers {
         jobs
     }
 
-    /// Calls `look` for all non-empty blocks, on several threads if there are many blocks. Returns the results in
+    /// Calls `apply` for all non-empty blocks, on several threads if there are many blocks. Returns the results in
     /// group and block order.
-    pub fn map_blocks<R: Send>(&self, look: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
-        run_in_parallel(self.blocks().collect(), WorkSplit::Large, |(group, block)| look(group, block))
+    pub fn map_blocks<R: Send>(&self, apply: impl Fn(Group, &Block) -> R + Sync) -> Vec<R> {
+        run_in_parallel(self.blocks().collect(), WorkSplit::Large, |(group, block)| apply(group, block))
     }
 
     /// Returns the hash of the customers' canonical bytes. The hash is computed on several threads, because customers

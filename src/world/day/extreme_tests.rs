@@ -32,21 +32,21 @@ fn is_redundant_key(key: &str) -> bool {
 
 #[test]
 fn extreme_parameters_simulate_or_exceed_limits() {
-    let (shipped, streams) = (Params::bundled(), Streams::new(3));
-    let opening = company(&shipped, &streams);
+    let (bundled, streams) = (Params::bundled(), Streams::new(3));
+    let opening = company(&bundled, &streams);
     assert!(opening.customers.active_by_group().iter().sum::<u32>() > 20);
     let of_key = |key: &String| -> Vec<(String, Params)> {
-        let bundled_value = if is_redundant_key(key) { None } else { shipped.value(key).ok() };
+        let bundled_value = if is_redundant_key(key) { None } else { bundled.value(key).ok() };
         let value = |number: f64| match bundled_value {
             Some(Value::Float(_)) => Some(Value::Float(number)),
             Some(Value::Integer(_)) => Some(Value::Integer(number as i64)),
             _ => None,
         };
-        let with = |number: f64| Some((format!("{key} = {number}"), shipped.with(key, value(number)?).ok()?));
+        let with = |number: f64| Some((format!("{key} = {number}"), bundled.with(key, value(number)?).ok()?));
         TESTED_VALUES.into_iter().filter_map(with).collect()
     };
     let tried: Vec<(String, Params)> =
-        keys(&Table::try_from(&shipped).expect("tables")).iter().flat_map(of_key).collect();
+        keys(&Table::try_from(&bundled).expect("tables")).iter().flat_map(of_key).collect();
     assert!(tried.len() > 400, "{}", tried.len());
     let passes = |params: &Params| {
         let (mut world, mut facts) = (opening.clone(), Facts::default());
@@ -67,13 +67,13 @@ fn extreme_parameters_simulate_or_exceed_limits() {
 
 #[test]
 fn next_day_limit_rejects_millions_of_leads() {
-    let (shipped, streams) = (Params::bundled(), Streams::new(3));
-    let world = company(&shipped, &streams);
-    assert_eq!(exceeded_limit_on_next_day(&world, &shipped, &streams), None);
+    let (bundled, streams) = (Params::bundled(), Streams::new(3));
+    let world = company(&bundled, &streams);
+    assert_eq!(exceeded_limit_on_next_day(&world, &bundled, &streams), None);
     let crowded =
-        shipped.with("calendar.weekly", Value::Array(vec![Value::Float(1e6); 7])).expect("in range");
+        bundled.with("calendar.weekly", Value::Array(vec![Value::Float(1e6); 7])).expect("in range");
     assert_eq!(exceeded_limit_on_next_day(&world, &crowded, &streams), Some(ExceededLimit::Leads));
     let mut full = world.clone();
     full.customers.next_customer = u32::MAX - 1;
-    assert_eq!(exceeded_limit_on_next_day(&full, &shipped, &streams), Some(ExceededLimit::Numbers));
+    assert_eq!(exceeded_limit_on_next_day(&full, &bundled, &streams), Some(ExceededLimit::Numbers));
 }

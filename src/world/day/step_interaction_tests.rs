@@ -88,9 +88,9 @@ fn outage_affects_issues_satisfaction_and_reputation() {
             set_outage_probability(params, certain)
         })
     };
-    let ((quiet, calm, _), (broken, down, _)) = (of(false), of(true));
-    assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
-    assert_eq!(calm.total_usage, down.total_usage, "all other conditions are equal");
+    let ((quiet, otherwise, _), (broken, down, _)) = (of(false), of(true));
+    assert!(!otherwise.outage && otherwise.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
+    assert_eq!(otherwise.total_usage, down.total_usage, "all other conditions are equal");
 
     // All customers who open an issue without an outage also open an issue with an outage, and so do many others.
     let callers = |play: &TestRun| -> Vec<u32> {
@@ -106,8 +106,8 @@ fn outage_affects_issues_satisfaction_and_reputation() {
     let (before, after) = (there(&quiet), there(&broken));
     assert_eq!(before.len(), after.len());
     let pairs = || before.iter().zip(&after);
-    assert!(pairs().all(|(calm, down)| down.satisfaction <= calm.satisfaction));
-    let fell = pairs().filter(|(calm, down)| down.satisfaction < calm.satisfaction).count();
+    assert!(pairs().all(|(otherwise, down)| down.satisfaction <= otherwise.satisfaction));
+    let fell = pairs().filter(|(otherwise, down)| down.satisfaction < otherwise.satisfaction).count();
     assert!(fell * 10 > before.len() * 9, "{fell} of {} are less satisfied", before.len());
 
     // A resolution on a day with an outage does not raise the relationship.
@@ -137,8 +137,12 @@ fn outage_increases_churn_only_if_the_penalty_applies_everywhere() {
         assert_eq!(ended.count() as u32, figures.cancellations);
         figures.cancellations
     };
-    let (calm, felt) = (left(ServicePenalty::Everywhere, false), left(ServicePenalty::Everywhere, true));
-    assert!(felt > calm + 5, "{felt} leave on the day of the outage, {calm} otherwise");
+    let (otherwise, on_outage_day) =
+        (left(ServicePenalty::Everywhere, false), left(ServicePenalty::Everywhere, true));
+    assert!(
+        on_outage_day > otherwise + 5,
+        "{on_outage_day} leave on the day of the outage, {otherwise} otherwise"
+    );
     assert_eq!(left(ServicePenalty::Satisfaction, false), left(ServicePenalty::Satisfaction, true));
 }
 
@@ -155,9 +159,9 @@ fn overload_increases_churn_on_the_same_day() {
         });
         (figures.overload, figures.cancellations)
     };
-    let ((none, calm), (much, crowded)) = (left(4_000_000_000), left(1_000));
+    let ((none, otherwise), (much, crowded)) = (left(4_000_000_000), left(1_000));
     assert!(none == 0.0 && much > 1.0, "{none}, {much}");
-    assert!(crowded > calm + 5, "{crowded} leave on the day of the overload, {calm} otherwise");
+    assert!(crowded > otherwise + 5, "{crowded} leave on the day of the overload, {otherwise} otherwise");
 }
 
 #[test]

@@ -30,9 +30,9 @@ impl NegotiationStep<'_> {
         let (customer, kind) = (thread_state.customer, thread_state.kind);
         let (agent_turns, days) =
             (thread_state.player_turn_count(), self.today() - thread_state.turns[0].day);
-        let standing = self.enterprise.enterprise_customer(customer).map(|company| company.status.clone());
+        let status = self.enterprise.enterprise_customer(customer).map(|company| company.status.clone());
         let new_lead = kind == ThreadKind::NewLead;
-        let (changed, activated) = match standing {
+        let (changed, activated) = match status {
             Some(EnterpriseStatus::Lead(row)) if new_lead => {
                 (self.activate_lead(customer, row, offering), true)
             }

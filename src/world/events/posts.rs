@@ -87,14 +87,14 @@ pub enum PostSubject {
         trend: Trend,
         /// Today's PMI.
         pmi: f64,
-        /// Number of the author's point of view.
+        /// Number of the perspective from which the author writes.
         perspective: u8,
     },
     /// A competitor event.
     CompetitorEvent {
         /// Number of the competitor.
         name: u8,
-        /// Number of the author's point of view.
+        /// Number of the perspective from which the author writes.
         perspective: u8,
         /// Severity that the press estimates for the event.
         severity: Severity,

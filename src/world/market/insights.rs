@@ -247,11 +247,11 @@ fn enterprise_insights(
 ) -> Option<EnterpriseInsights> {
     let (least, most) = (f64::from(group_params.seat_count_min?), f64::from(group_params.seat_count_max?));
     let (rounds, delay) = (group_params.max_negotiation_turns_mean?, group_params.reply_delay_mean?);
-    let seats_least = truncate_to_at_least_one(estimate(EstimatedField::SeatMinimum, least));
-    let seats_most = truncate_to_at_least_one(estimate(EstimatedField::SeatMaximum, most)).max(seats_least);
+    let min_seats = truncate_to_at_least_one(estimate(EstimatedField::SeatMinimum, least));
+    let max_seats = truncate_to_at_least_one(estimate(EstimatedField::SeatMaximum, most)).max(min_seats);
     let decision_rounds = truncate_to_at_least_one(estimate(EstimatedField::DecisionRounds, rounds));
     let response_days = round_to(estimate(EstimatedField::ResponseDays, delay).max(1.0), decimals);
-    Some(EnterpriseInsights { min_seats: seats_least, max_seats: seats_most, decision_rounds, response_days })
+    Some(EnterpriseInsights { min_seats, max_seats, decision_rounds, response_days })
 }
 
 /// Returns the integer part of an estimate, at least 1.

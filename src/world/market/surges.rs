@@ -62,8 +62,12 @@ pub fn draw_week_surges(
 /// Returns the product of the factors of all surges on a day, or 1 if there is no surge. In the released simulator, a
 /// surge starts on the first day of the week in which it was drawn ([`SurgeStart::Week`]).
 pub fn surge_factor(day: u32, surges: &[Surge], start: SurgeStart) -> f64 {
-    let begun = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
-    surges.iter().filter(|surge| day < surge.end_day && begun(surge)).map(|surge| surge.multiplier).product()
+    let started = |surge: &Surge| start == SurgeStart::Week || surge.day <= day;
+    surges
+        .iter()
+        .filter(|surge| day < surge.end_day && started(surge))
+        .map(|surge| surge.multiplier)
+        .product()
 }
 
 #[cfg(test)]

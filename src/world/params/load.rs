@@ -69,7 +69,7 @@ impl fmt::Display for ParameterError {
 
 impl std::error::Error for ParameterError {}
 
-macro_rules! shipped {
+macro_rules! bundled {
     ($($file:literal),* $(,)?) => {
         [$(ParameterSource {
             name: concat!("configs/world/", $file).to_owned(),
@@ -80,7 +80,7 @@ macro_rules! shipped {
 
 /// Returns the bundled parameter files.
 pub fn bundled_sources() -> Vec<ParameterSource> {
-    Vec::from(shipped![
+    Vec::from(bundled![
         "run.toml",
         "customers.toml",
         "product.toml",

@@ -241,13 +241,13 @@ mod tests {
 
     #[test]
     fn added_keys_preserve_earlier_digests() {
-        let shipped = Params::bundled();
-        assert_eq!(shipped.digest(), "a9623642a136c0a4", "the digest in recorded runs");
-        let mut release = shipped.clone();
+        let bundled = Params::bundled();
+        assert_eq!(bundled.digest(), "a9623642a136c0a4", "the digest in recorded runs");
+        let mut release = bundled.clone();
         release.fidelity.insight_noise = InsightNoise::Release;
-        assert_ne!(release.digest(), shipped.digest());
-        assert_eq!(release.earlier_digest(), shipped.digest());
-        let tables = serde_json::to_value(&shipped).expect("tables");
+        assert_ne!(release.digest(), bundled.digest());
+        assert_eq!(release.earlier_digest(), bundled.digest());
+        let tables = serde_json::to_value(&bundled).expect("tables");
         for (table, key, earlier) in ADDED_KEYS {
             assert_eq!(
                 tables[table][key].to_string(),
@@ -276,15 +276,15 @@ mod tests {
 
     #[test]
     fn added_key_at_default_preserves_the_digest() {
-        let shipped = Params::bundled();
-        let mut rivals = shipped.clone();
+        let bundled = Params::bundled();
+        let mut rivals = bundled.clone();
         rivals.competitor.competitor_feedback_u_max = 0.7;
-        let mut noisy = shipped.clone();
+        let mut noisy = bundled.clone();
         noisy.fidelity.insight_noise = InsightNoise::Release;
-        let faulty = Params { fault: Fault::from_number(3), ..shipped.clone() };
+        let faulty = Params { fault: Fault::from_number(3), ..bundled.clone() };
         let added = [&ADDED_KEYS[..], &[("fidelity", "next_form", "\"release\"")]].concat();
         let mut digests = std::collections::BTreeSet::new();
-        for params in [shipped, rivals, faulty, noisy] {
+        for params in [bundled, rivals, faulty, noisy] {
             let with_key = |value: &str| {
                 let mut tables = serde_json::to_value(&params).expect("tables");
                 tables["fidelity"]["next_form"] = value.into();

@@ -16,8 +16,8 @@ pub fn share_done_within(days: u32, tier: &ResearchTier, development: &Developme
 /// Returns the smallest number of days within which a share of the projects is completed, for 0 < share < 1.
 pub fn duration_quantile(share: f64, tier: &ResearchTier, development: &Development) -> u32 {
     let drawn = tier.mean_days + tier.std_days * inverse_normal(share);
-    let least = development.rd_min_duration_days;
-    let days = (drawn - 1.0).ceil().max(f64::from(least)) as u32;
+    let min = development.rd_min_duration_days;
+    let days = (drawn - 1.0).ceil().max(f64::from(min)) as u32;
     // Because of rounding, the quantile can be slightly below or above a whole day.
     match share_done_within(days, tier, development) < share {
         true => days + 1,
@@ -28,14 +28,14 @@ pub fn duration_quantile(share: f64, tier: &ResearchTier, development: &Developm
 /// Returns the mean duration in days: the minimum duration plus, for each later day, the probability that the project
 /// still continues.
 pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
-    let (least, mean, std) = (development.rd_min_duration_days, tier.mean_days, tier.std_days);
+    let (min, mean, std) = (development.rd_min_duration_days, tier.mean_days, tier.std_days);
     if std < 1.0 {
         let last = (mean + 9.0 * std).ceil() as u32;
         let lasts_longer = |days| 1.0 - share_done_within(days, tier, development);
-        return f64::from(least) + (least..last).map(lasts_longer).sum::<f64>();
+        return f64::from(min) + (min..last).map(lasts_longer).sum::<f64>();
     }
     // Approximate the sum over days by an integral. The midpoint rule with its first correction has an error below 0.001 days.
-    let floor = f64::from(least);
+    let floor = f64::from(min);
     mean_with_minimum(floor + 0.5, mean, std)
         - 0.5
         - normal_density((floor + 0.5 - mean) / std) / (24.0 * std)

@@ -112,12 +112,12 @@ pub fn best_plan(
     let mut best: Option<(f64, Plan)> = None;
     for plan in Plan::ALL {
         // The required quality is never below the minimum of the curve, so most plans need no further evaluation.
-        let most = qualities[plan] - curve.q_min.min(curve.q_max);
-        if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
+        let max = qualities[plan] - curve.q_min.min(curve.q_max);
+        if prices[plan] > curve.c_max || max < 0.0 || best.is_some_and(|(surplus, _)| max <= surplus) {
             continue;
         }
         let surplus = qualities[plan] - required_quality(prices[plan], curve, params);
-        if surplus >= 0.0 && best.is_none_or(|(most, _)| surplus > most) {
+        if surplus >= 0.0 && best.is_none_or(|(max, _)| surplus > max) {
             best = Some((surplus, plan));
         }
     }

@@ -21,11 +21,11 @@ pub fn smoothed_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
 
 /// Adds up the contributions of each group's blocks, in block order.
 pub fn sum_by_group(by_block: Vec<(Group, ReputationContribution)>) -> ByGroup<ReputationContribution> {
-    let mut moods = ByGroup::<ReputationContribution>::default();
-    for (group, mood) in by_block {
-        moods[group] += mood;
+    let mut contributions = ByGroup::<ReputationContribution>::default();
+    for (group, contribution) in by_block {
+        contributions[group] += contribution;
     }
-    moods
+    contributions
 }
 
 /// The terms of the daily satisfaction update of one subscriber.
@@ -312,15 +312,15 @@ mod tests {
             let mut together = Block::default();
             (1..=count).for_each(|n| together.push(row(n)));
             let before = together.clone();
-            let mood = update(&mut together);
-            let mut moods = ReputationContribution::default();
+            let contribution = update(&mut together);
+            let mut contributions = ReputationContribution::default();
             for n in 1..=count {
                 let mut alone = Block::default();
                 alone.push(row(n));
-                moods += update(&mut alone);
+                contributions += update(&mut alone);
                 assert_eq!(together.row(n as usize - 1), alone.row(0), "row {n} of {count}");
             }
-            assert_eq!(mood, moods, "{count} rows");
+            assert_eq!(contribution, contributions, "{count} rows");
             with_day_context(&day, &settings, &service, (&params, &streams), |day| {
                 for (at, after) in together.satisfaction.iter().enumerate() {
                     assert_eq!(

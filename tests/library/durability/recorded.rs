@@ -156,13 +156,13 @@ const DIGESTS: [(&str, &str); 14] = [
 
 #[test]
 fn parameters_of_scenarios_keep_the_digests_that_recorded_runs_name() {
-    let shipped = Configuration::bundled();
+    let bundled = Configuration::bundled();
     let digest = |name: String| {
-        let scenario = shipped.load_scenario(&name).expect("a scenario");
-        let params = shipped.load_parameters(&scenario, &[], false).expect("parameters");
+        let scenario = bundled.load_scenario(&name).expect("a scenario");
+        let params = bundled.load_parameters(&scenario, &[], false).expect("parameters");
         (name, params.digest())
     };
-    let digests: Vec<(String, String)> = shipped.scenario_names().into_iter().map(digest).collect();
+    let digests: Vec<(String, String)> = bundled.scenario_names().into_iter().map(digest).collect();
     assert_eq!(digests, DIGESTS.map(|(name, digest)| (name.to_owned(), digest.to_owned())));
 }
 

@@ -242,9 +242,9 @@ impl ComparisonView {
             .map(|(number, day)| {
                 self.format_milestone(number, self.shown_figure(), day, 1).concat().chars().count()
             });
-        let is_cut = cells.max().is_some_and(|longest| longest >= usize::from(width));
+        let is_truncated = cells.max().is_some_and(|longest| longest >= usize::from(width));
         let has_room = usize::from(area.height) > 2 * days.len() + self.comparison.branches.len();
-        if is_cut && (has_room || self.futures.is_some()) { 2 } else { 1 }
+        if is_truncated && (has_room || self.futures.is_some()) { 2 } else { 1 }
     }
 
     /// Describes the uncertainty of the difference and the edits of the selected branch.

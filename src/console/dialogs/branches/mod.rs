@@ -117,11 +117,11 @@ impl BranchesPage {
                 let figures = ComparisonView::new(*comparison, futures.map(|boxed| *boxed), days, figure);
                 self.page = BranchesView::Comparison(Box::new(figures));
             }
-            Err(refusal) => {
+            Err(rejection) => {
                 self.page = BranchesView::Decisions;
                 // The check has already stated the reason in the row of the change.
                 let is_invalid = self.decisions.select_invalid_change();
-                self.problem = Some(if is_invalid { INVALID_CHANGE.to_owned() } else { refusal.message });
+                self.problem = Some(if is_invalid { INVALID_CHANGE.to_owned() } else { rejection.message });
             }
         }
     }

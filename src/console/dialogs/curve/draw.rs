@@ -42,8 +42,8 @@ impl CurveDialog {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         match &self.exploration {
             None => canvas.draw_text(inside, &format!("asking {LEAD_SAMPLE_SIZE} leads …"), Role::Warning),
-            Some(Err(refusal)) => {
-                for (row, line) in row_rects(inside).zip(wrap(&refusal.message, inside.width as usize)) {
+            Some(Err(rejection)) => {
+                for (row, line) in row_rects(inside).zip(wrap(&rejection.message, inside.width as usize)) {
                     canvas.draw_text(row, &line, Role::Bad);
                 }
             }

@@ -128,9 +128,9 @@ struct BarScale {
 
 impl BarScale {
     fn for_weeks(weeks: &[(u32, CategoryAmounts)], height: u16) -> BarScale {
-        let most =
+        let max =
             |income: bool| weeks.iter().map(|(_, amounts)| income_or_cost_total(amounts, income).abs()).fold(0.0, f64::max);
-        let (income, costs) = (most(true), most(false));
+        let (income, costs) = (max(true), max(false));
         let rows = height.saturating_sub(1);
         let whole = income + costs;
         if whole <= 0.0 || !whole.is_finite() || rows == 0 {
@@ -139,7 +139,7 @@ impl BarScale {
         let above = ((f64::from(rows) * income / whole).round() as u16)
             .clamp(u16::from(income > 0.0), rows - u16::from(costs > 0.0 && rows > 1));
         let below = rows - above;
-        let per_row = |most: f64, rows: u16| if rows == 0 { 0.0 } else { most / f64::from(rows) };
+        let per_row = |max: f64, rows: u16| if rows == 0 { 0.0 } else { max / f64::from(rows) };
         BarScale { above, below, dollars: per_row(income, above).max(per_row(costs, below)) }
     }
 

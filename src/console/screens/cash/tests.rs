@@ -54,7 +54,7 @@ fn opening_a_category_queries_its_ledger_rows() {
             panic!("no statement");
         };
         assert!(sql.contains("day BETWEEN 14 AND 21") && sql.contains("BETWEEN 3 AND 3"), "{sql}");
-        session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+        session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
         handle_action(&mut screen, Action::Down, &company);
     }
     screen.set_focused_pane(CashPane::Weeks);
@@ -81,7 +81,7 @@ fn ledger_figures_equal_the_sum_of_their_rows() {
             }
             let figure = screen.figure(&context).expect("a figure");
             let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
-            let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+            let rows = session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
             let made = novamind_database::number_at(&rows.rows[0], 0);
             let shown = subject.amount(&amounts);
             assert!((made - shown).abs() < 0.2, "{}: {shown}, rows make {made}", figure.title);

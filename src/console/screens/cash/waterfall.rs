@@ -65,8 +65,8 @@ impl Pane<Cash> for WaterfallPane {
     fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         // Without the focus, the pane shows the complete waterfall with small steps combined. With the focus, every
         // step can be selected.
-        let most = if placement.focused { usize::MAX } else { placement.area.height.saturating_sub(1) as usize };
-        let steps = cash_steps(&cash.ledger, context.company, cash.week(), most);
+        let max = if placement.focused { usize::MAX } else { placement.area.height.saturating_sub(1) as usize };
+        let steps = cash_steps(&cash.ledger, context.company, cash.week(), max);
         let selected = placement.focused.then(|| cash.selected_step.min(steps.len().saturating_sub(1)));
         draw(canvas, placement.area, &steps, selected, placement.index);
     }
@@ -87,16 +87,16 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
     let names = 12.min(area.width);
     let figures = 13.min(area.width - names);
     let bars = area.width - names - figures;
-    let (least, most) = steps
+    let (min, max) = steps
         .iter()
         .flat_map(|step| [step.from, step.to])
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
-    let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), level| (min.min(level), max.max(level)));
+    let floor = if min > 0.0 && min < (max - min) * 0.5 { 0.0 } else { min };
     // If bars do not start at zero, an additional row shows the value at which the bars start.
     let is_labelled = floor != 0.0 && bars >= 24 && area.height > 1;
     let area = Rect { height: area.height - u16::from(is_labelled), ..area };
     let from = canvas.scroll_to_row(area, selected.unwrap_or(0), steps.len());
-    let span = (most - floor).max(1e-9);
+    let span = (max - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
     // The bar of the lowest level keeps a width of at least one cell.
     let place = |level: f64| 1 + ((level - floor) / span * (room - 1.0).max(0.0)).round() as u16;

@@ -81,7 +81,7 @@ fn open_group_links_to_its_tools() {
     let Some(Effect::EditSql(sql)) = handle_action(&mut screen, Action::Open, &company).pop() else {
         panic!("no query")
     };
-    session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+    session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
     handle_action(&mut screen, Action::Up, &company);
     let effects = handle_action(&mut screen, Action::Open, &company);
     assert!(
@@ -103,7 +103,7 @@ fn open_group_links_to_its_tools() {
 
 fn query_figure(session: &mut Session, sql: &str, what: &str) -> f64 {
     let sql = format!("SELECT coalesce({what}, 0) FROM ({sql})");
-    let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+    let rows = session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
     novamind_database::number_at(&rows.rows[0], 0)
 }
 
@@ -171,7 +171,7 @@ fn group_panes_return_their_figures() {
         handle_action(&mut screen, Action::First, &company);
         for _ in 0..20 {
             if let Some(sql) = screen.figure(&context).and_then(|figure| figure.sql) {
-                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+                session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
                 rows += 1;
             }
             handle_action(&mut screen, Action::Down, &company);

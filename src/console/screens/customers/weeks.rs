@@ -49,11 +49,11 @@ impl Pane<Customers> for WeeksPane {
     }
 
     fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
-        let most = model::CURVE_WEEKS.min(context.company.observation.week).saturating_sub(1);
+        let max = model::CURVE_WEEKS.min(context.company.observation.week).saturating_sub(1);
         let opened = &mut customers.group_state;
         match action {
             Action::Open => return show_rows_effect(self.figure(customers, context)),
-            Action::Left => opened.weeks_back = (opened.weeks_back + 1).min(most),
+            Action::Left => opened.weeks_back = (opened.weeks_back + 1).min(max),
             Action::Right => opened.weeks_back = opened.weeks_back.saturating_sub(1),
             action => opened.flow = move_index(opened.flow, FLOWS.len() - 1, action),
         }

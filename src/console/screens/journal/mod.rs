@@ -138,7 +138,7 @@ impl ScreenState for Journal {
     fn take_answers(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         match self.asked.try_take() {
             Some((_, Ok(tree))) => self.set_tree(tree, context.company),
-            Some((_, Err(refusal))) => return vec![Effect::ShowError(refusal.message)],
+            Some((_, Err(rejection))) => return vec![Effect::ShowError(rejection.message)],
             None => {}
         }
         Vec::new()

@@ -70,7 +70,7 @@ fn every_row_has_a_term_and_source_rows() {
     for _ in 0..screen.table.rows().len() {
         let figure = with_context(&company, |context| screen.figure(context)).expect("a figure");
         if let Some(sql) = &figure.sql {
-            let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows;
+            let rows = session.query(sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}")).rows;
             if figure.term == "cash-change" {
                 let sum: f64 = rows.iter().map(|row| novamind_database::number_at(row, 1)).sum();
                 let week = company.weeks.iter().find(|week| (week.cash_change - sum).abs() < 0.01);

@@ -190,9 +190,9 @@ fn draw_curve(
     }
     let counts: Vec<(u16, usize)> =
         (plot.left()..plot.right()).map(|x| (x, count_competitor_news(view.news, |day| column(day) == x))).collect();
-    let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    let max = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
     for (x, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
-        let level = (count * NEWS_SYMBOLS.len()).div_ceil(most) - 1;
+        let level = (count * NEWS_SYMBOLS.len()).div_ceil(max) - 1;
         canvas.draw_text(Rect { x, width: 1, ..rivals }, NEWS_SYMBOLS[level.min(NEWS_SYMBOLS.len() - 1)], Role::Series(1));
     }
 }

@@ -204,7 +204,7 @@ fn economy_chart_marks_unpublished_days_and_competitor_news() {
         if let Some(figure) = screen.figure(&context) {
             session
                 .query(&figure.sql.expect("rows"))
-                .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
+                .unwrap_or_else(|rejection| panic!("{}: {rejection}", figure.title));
         }
     }
 }

@@ -138,7 +138,7 @@ impl StartMenu {
     /// Stores the previews that have arrived.
     pub fn take_answers(&mut self) {
         for (run, preview) in self.reading.iter_mut().filter_map(Pending::try_take) {
-            self.previews.insert(run.id, Some(preview.map_err(|refusal| refusal.message)));
+            self.previews.insert(run.id, Some(preview.map_err(|rejection| rejection.message)));
         }
         self.reading.retain(Pending::is_waiting);
     }
@@ -186,13 +186,13 @@ impl StartMenu {
 
     /// Returns the id of the unfinished run of the tour, if there is one.
     pub fn tour_run(&self) -> Option<&str> {
-        let begun = |run: &&RunSummary| {
+        let started = |run: &&RunSummary| {
             tour::is_tour_run(&run.scenario, run.seed, run.days)
                 && run.ended.is_none()
                 && run.problem.is_none()
                 && run.mode != Some(Mode::Baseline)
         };
-        self.runs().iter().find(begun).map(|run| run.id.as_str())
+        self.runs().iter().find(started).map(|run| run.id.as_str())
     }
 
     /// Returns the last index of the list on the current page.

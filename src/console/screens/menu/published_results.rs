@@ -81,10 +81,10 @@ impl StartMenu {
         let lines =
             wrap(&format!("{}\n{}", self.own_results_text(number), source_text()), inside.width as usize);
         let list = Rect { height: inside.height.saturating_sub(lines.len() as u16 + 1), ..inside };
-        let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
+        let max = results.first().map_or(1.0, |result| result.cash.max(1.0));
         let from = canvas.scroll_to_row(list, self.selected, results.len());
         for (row, result) in row_rects(list).zip(results.iter().skip(from)) {
-            draw_result(canvas, row, result, most);
+            draw_result(canvas, row, result, max);
         }
         let used = list.height + 1;
         let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
@@ -114,7 +114,7 @@ fn source_text() -> String {
     )
 }
 
-fn draw_result(canvas: &mut Canvas<'_>, row: Rect, result: &RankedResult, most: f64) {
+fn draw_result(canvas: &mut Canvas<'_>, row: Rect, result: &RankedResult, max: f64) {
     let role = if result.is_own { Role::Key } else { Role::Text };
     let place =
         |x: u16, width: u16| Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
@@ -126,7 +126,7 @@ fn draw_result(canvas: &mut Canvas<'_>, row: Rect, result: &RankedResult, most: 
     canvas.draw_aligned(place(27, 13), &dollars(result.cash), role, Align::Right);
     canvas.draw_text(place(41, 31), &result.note, Role::Dim);
     let room = row.width.saturating_sub(73);
-    let length = (f64::from(room) * (result.cash / most).clamp(0.0, 1.0)).round() as usize;
+    let length = (f64::from(room) * (result.cash / max).clamp(0.0, 1.0)).round() as usize;
     let bar = "█".repeat(length.max(usize::from(result.cash > 0.0)));
     canvas.draw_text(place(73, room), &bar, if result.is_own { Role::Key } else { Role::Series(0) });
 }

@@ -78,7 +78,7 @@ fn selected_figure_title_has_name_and_weeks() {
         screen.set_focus(pane);
         for _ in 0..METRICS.len() {
             if let Some(sql) = screen.figure(&context).and_then(|figure| figure.sql) {
-                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+                session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
             }
             handle_action(&mut screen, Action::Down, &company);
         }
@@ -103,7 +103,7 @@ fn every_action_item_opens_its_object_and_has_source_rows() {
             other => panic!("{other:?}"),
         }
         if let Some(sql) = action_items::item_figure(need, company.observation.day).sql {
-            session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+            session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
         }
         handle_action(&mut screen, Action::Down, &company);
     }

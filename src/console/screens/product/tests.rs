@@ -85,7 +85,7 @@ fn opening_a_row_of_every_pane_has_an_effect() {
                     assert_eq!(tools.typed_arguments(), Some(arguments));
                 }
                 Some(Effect::EditSql(sql)) => {
-                    session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+                    session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
                 }
                 other => panic!("{other:?}"),
             }
@@ -119,7 +119,7 @@ fn figures_equal_their_rows() {
         for _ in 0..pane.panel().row_count(&screen, &company) {
             let figure = screen.figure(&context).expect("a figure");
             if let Some(sql) = figure.sql {
-                session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
+                session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}"));
             }
             handle_action(&mut screen, Action::Down, &company);
         }

@@ -280,7 +280,7 @@ impl ScreenState for Social {
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         match self.pending_call.try_take() {
             Some((call, Ok(preview))) => vec![self.confirm_effect(call.arguments, preview.effect_day)],
-            Some((_, Err(refusal))) => vec![Effect::ShowError(refusal.to_string())],
+            Some((_, Err(rejection))) => vec![Effect::ShowError(rejection.to_string())],
             None => Vec::new(),
         }
     }

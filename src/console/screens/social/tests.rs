@@ -128,7 +128,7 @@ fn figures_equal_their_rows() {
     let mut rows = |screen: &Social| {
         let figure = with_context(&company, |context| screen.figure(context)).expect("a figure");
         let sql = figure.sql.expect("rows");
-        session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
+        session.query(&sql).unwrap_or_else(|rejection| panic!("{sql}: {rejection}")).rows
     };
     let number = screen.selected_post().expect("a post").number;
     assert_eq!(rows(&screen)[0][0], novamind_database::Cell::Integer(i64::from(number)));

@@ -270,7 +270,7 @@ impl ResultChart {
         };
         let each = self.y_columns.len();
         let all = (0..shown.len()).flat_map(|place| (0..each).map(move |series| (place, series)));
-        let scale = BarLayout::for_bars(all.clone().map(|(place, series)| bar(place, series)), area.width);
+        let scale = BarLayout::from_bars(all.clone().map(|(place, series)| bar(place, series)), area.width);
         let fit = (usize::from(area.height) / each).max(1);
         if focused {
             canvas.page_rows = fit as u16;

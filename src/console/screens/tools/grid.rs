@@ -13,7 +13,7 @@ use novamind_tui::theme::Role;
 const NAME_WIDTH: u16 = 19;
 
 /// Width of the additional column with the leads of each channel.
-const SIDE_WIDTH: u16 = 20;
+const CHANNEL_LEADS_WIDTH: u16 = 20;
 
 /// Returns the width of a cell. Blocks with several columns have narrower cells.
 fn cell_width(block: &ArgumentBlock) -> u16 {
@@ -90,10 +90,10 @@ fn side_area(form: &ToolForm, leads: &ChannelLeads, area: Rect) -> Rect {
     let none = Rect { width: 0, ..area };
     let Some(block) = form.sheet.blocks.iter().find(|block| leads.applies_to(block)) else { return none };
     let matrix = NAME_WIDTH + (block.columns.len() as u16 + 1) * cell_width(block);
-    if area.width < (matrix + SIDE_WIDTH).min(130) {
+    if area.width < (matrix + CHANNEL_LEADS_WIDTH).min(130) {
         return none;
     }
-    Rect { x: area.x + matrix.min(area.width - SIDE_WIDTH), width: SIDE_WIDTH, ..area }
+    Rect { x: area.x + matrix.min(area.width - CHANNEL_LEADS_WIDTH), width: CHANNEL_LEADS_WIDTH, ..area }
 }
 
 fn draw_side(form: &ToolForm, leads: &ChannelLeads, line: &FormLine, canvas: &mut Canvas<'_>, row: Rect) {

@@ -44,7 +44,7 @@ impl Xray {
 
     /// Stores an answer of the worker. Returns true if the current view shows the answer.
     fn store_answer(&mut self, mut question: InspectionQuestion, found: Result<InspectionAnswer, Rejection>) -> bool {
-        let found = found.map_err(|refusal| refusal.message);
+        let found = found.map_err(|rejection| rejection.message);
         if let InspectionQuestion::Command(_, inspection_command) = &question {
             if inspection_command.changes_run() {
                 self.inspection = None;

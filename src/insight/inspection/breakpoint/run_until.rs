@@ -28,11 +28,11 @@ pub struct BreakpointRun {
     pub week: WeekResult,
     /// Breakpoints that became true on the last day; empty if the simulation stopped for another reason.
     pub hits: Vec<BreakpointHit>,
-    /// Breakpoints that were true on some of the days but became true on none of them.
+    /// Breakpoints that were already true when they were first evaluated, and did not become true later.
     pub still_true: Vec<StillTrueBreakpoint>,
 }
 
-/// A breakpoint that was true on some of the simulated days but became true on none of them.
+/// A breakpoint that was already true when it was first evaluated, and did not become true later.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StillTrueBreakpoint {
     /// The breakpoint with its state on the last day.
@@ -147,7 +147,7 @@ fn find_hit_breakpoints(day: u32, set: &[Breakpoint], series: &MeasuredDays) -> 
     })
 }
 
-/// Returns the breakpoints that were true on some of the simulated days and became true on none of them.
+/// Returns the breakpoints that were already true when they were first evaluated, and did not become true later.
 fn find_still_true_breakpoints(
     days: RangeInclusive<u32>,
     set: &[Breakpoint],

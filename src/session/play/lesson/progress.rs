@@ -16,8 +16,8 @@ pub fn weeks_passed(session: &Session) -> u32 {
 
 /// Returns the index of the step to which the next week belongs. Returns `None` outside lessons and after the part has ended.
 pub fn lesson_step(session: &Session) -> Option<usize> {
-    let standing = session.lesson().filter(|_| session.ended().is_none())?;
-    standing.current_part().step_at_week(weeks_passed(session))
+    let lesson_progress = session.lesson().filter(|_| session.ended().is_none())?;
+    lesson_progress.current_part().step_at_week(weeks_passed(session))
 }
 
 impl Session {
@@ -27,21 +27,23 @@ impl Session {
     }
 
     pub(crate) fn check_lesson_tool(&self, tool: ToolId, via: Via) -> Result<(), Rejection> {
-        let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
-        standing.map_or(Ok(()), |standing| standing.check_tool(tool))
+        let lesson_progress = self.lesson.as_deref().filter(|_| via != Via::Lesson);
+        lesson_progress.map_or(Ok(()), |lesson_progress| lesson_progress.check_tool(tool))
     }
 
     /// Rejects a week if the question of the step is unanswered, or if the lesson has ended.
     pub(crate) fn check_lesson_week(&self, via: Via) -> Result<(), Rejection> {
-        let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
+        let Some(lesson_progress) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else {
+            return Ok(());
+        };
         let Some(step) = lesson_step(self) else {
             return Err(Rejection::new(
                 "lesson_over",
                 "the lesson has ended; open its debrief to see the result",
             ));
         };
-        if standing.has_started(step) {
-            return standing.check_guess_submitted(weeks_passed(self));
+        if lesson_progress.has_started(step) {
+            return lesson_progress.check_guess_submitted(weeks_passed(self));
         }
         let message =
             "the goals of the previous step are not judged yet; close the run and open it again to continue";
@@ -67,32 +69,33 @@ impl Session {
     /// next step. After the last step, ends the run. Does not change existing judgements.
     pub(crate) fn finish_lesson_week(&mut self) {
         let is_open = self.ended().is_none();
-        let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
+        let Some(lesson_progress) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
         let is_over = self.simulation().world.is_over(self.params());
         // A week that ends early by bankruptcy counts as a week.
         let weeks = self.day().div_ceil(self.params().run.days_per_week);
-        let part = standing.current_part();
+        let part = lesson_progress.current_part();
         let step = part.step_at_week(weeks.saturating_sub(1));
-        let Some(step) = step.filter(|step| standing.has_started(*step) && !standing.has_started(step + 1))
+        let Some(step) =
+            step.filter(|step| lesson_progress.has_started(*step) && !lesson_progress.has_started(step + 1))
         else {
             return;
         };
-        if standing.is_judged {
+        if lesson_progress.is_judged {
             // SQL statements must return the rows of the week.
             self.commit_projection();
-            self.record_pitfalls(&standing, step, weeks);
+            self.record_pitfalls(&lesson_progress, step, weeks);
         }
         let (begin, end) = part.step_weeks(step);
         if weeks < end && !is_over {
             return;
         }
-        if standing.is_judged {
-            if self.lacks_rule_evaluator(&standing, step) {
+        if lesson_progress.is_judged {
+            if self.lacks_rule_evaluator(&lesson_progress, step) {
                 // `set_rule_evaluator` judges the step later.
                 return;
             }
-            self.judge_guesses(&standing, step, is_over);
-            self.judge_goals(&standing, step, begin);
+            self.judge_guesses(&lesson_progress, step, is_over);
+            self.judge_goals(&lesson_progress, step, begin);
         }
         if is_over {
             return;
@@ -118,8 +121,8 @@ impl Session {
         self.append(&Record::Activity(Activity::Lesson(note.clone())), Durability::Synced)
             .map_err(not_saved_rejection)?;
         let day = self.day();
-        if let Some(standing) = &mut self.lesson {
-            standing.events.push((day, note));
+        if let Some(lesson_progress) = &mut self.lesson {
+            lesson_progress.events.push((day, note));
         }
         Ok(())
     }

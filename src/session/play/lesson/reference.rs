@@ -74,9 +74,12 @@ pub fn play_part_with_hooks(
             break;
         }
         let made = play_week(&mut session, play, week, answers, before_week);
-        made.map_err(|refusal| {
+        made.map_err(|rejection| {
             let name = &play.lesson.name;
-            RunError::InvalidRequest(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
+            RunError::InvalidRequest(format!(
+                "lesson {name}, part {}, week {week}: {rejection}",
+                play.part + 1
+            ))
         })?;
         after_week(&mut session, week + 1)?;
     }

@@ -40,8 +40,8 @@ impl Session {
         made: usize,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), RunError> {
-        let Some(standing) = self.lesson.as_deref() else { return Ok(()) };
-        let (lesson, part) = (standing.lesson.clone(), standing.part);
+        let Some(lesson_progress) = self.lesson.as_deref() else { return Ok(()) };
+        let (lesson, part) = (lesson_progress.lesson.clone(), lesson_progress.part);
         let start = &lesson.plan.parts[part];
         let first = weeks_passed(self);
         for week in first..=start.start_weeks {
@@ -51,18 +51,18 @@ impl Session {
                 .filter(|scheduled_calls| scheduled_calls.week == week)
                 .flat_map(|calls| &calls.calls);
             for call in due.skip(if week == first { made } else { 0 }) {
-                self.execute_start_call(call).map_err(|refusal| {
-                    RunError::InvalidRequest(format!("lesson {} cannot start: {refusal}", lesson.name))
+                self.execute_start_call(call).map_err(|rejection| {
+                    RunError::InvalidRequest(format!("lesson {} cannot start: {rejection}", lesson.name))
                 })?;
             }
             if week < start.start_weeks {
                 let forecasts = self.company().naive_forecasts();
-                let refused = |refusal: Rejection| RunError::InvalidRequest(refusal.to_string());
+                let refused = |rejection: Rejection| RunError::InvalidRequest(rejection.to_string());
                 self.advance("the start of the lesson", &forecasts, Via::Lesson, progress)
                     .map_err(refused)?;
             }
         }
-        self.start_step(0, 1).map_err(|refusal| RunError::InvalidRequest(refusal.to_string()))
+        self.start_step(0, 1).map_err(|rejection| RunError::InvalidRequest(rejection.to_string()))
     }
 
     fn execute_start_call(&mut self, call: &LessonCall) -> Result<(), Rejection> {
@@ -76,7 +76,8 @@ impl Session {
     }
 
     pub(super) fn start_step(&mut self, step: usize, number: u32) -> Result<(), Rejection> {
-        let Some(lesson_step) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned()
+        let Some(lesson_step) =
+            self.lesson.as_deref().and_then(|lesson_progress| lesson_progress.step(step)).cloned()
         else {
             return Ok(());
         };
@@ -129,13 +130,15 @@ impl Session {
     /// The start of the lesson is rejected.
     pub(crate) fn finish_start(&mut self, lines: &[Line]) -> Result<(), RunError> {
         let is_open = self.log().is_written() && self.ended().is_none();
-        let Some(standing) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
-        let Some(step) = lesson_step(self).filter(|step| !standing.has_started(*step)) else { return Ok(()) };
+        let Some(lesson_progress) = self.lesson.as_deref().filter(|_| is_open) else { return Ok(()) };
+        let Some(step) = lesson_step(self).filter(|step| !lesson_progress.has_started(*step)) else {
+            return Ok(());
+        };
         if is_unstarted_attempt(lines) {
             let number = self.parent_attempts(step) + 1;
             return self
                 .start_step(step, number)
-                .map_err(|refusal| RunError::InvalidRequest(refusal.to_string()));
+                .map_err(|rejection| RunError::InvalidRequest(rejection.to_string()));
         }
         if step == 0 { self.continue_start(self.count_start_calls(lines), &mut |_| {}) } else { Ok(()) }
     }

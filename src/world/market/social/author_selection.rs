@@ -91,15 +91,15 @@ pub fn from_subscribers(
         picked.push((number, at));
         let (group, block) = blocks[number];
         let weights = &mut voices[number];
-        let mood = weights.before[at];
-        weights.weight = (weights.weight - row_weight(scene, group, block, at, mood)).max(0.0);
+        let contribution = weights.before[at];
+        weights.weight = (weights.weight - row_weight(scene, group, block, at, contribution)).max(0.0);
         candidates.push(Candidate {
             time,
             customer: block.customer[at],
             group,
             n: block.n[at],
             satisfaction: Some(block.satisfaction[at]),
-            opinion: scene.opinion(group, block, at, mood, stream.uniform()),
+            opinion: scene.opinion(group, block, at, contribution, stream.uniform()),
         });
     }
     AuthorSelection { stream, candidates, remaining_posts: places }
@@ -212,8 +212,9 @@ impl AuthorSelection {
         for candidate in self.candidates {
             let u = self.stream.uniform();
             // Customers who left always complain.
-            let tone =
-                candidate.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
+            let tone = candidate
+                .satisfaction
+                .map_or(Sentiment::Negative, |contribution| sentiment(contribution, u, &params.social));
             let engagement = draw_engagement(tone, candidate.group.id(), params, &mut self.stream);
             let author = post_author(
                 candidate.customer,
@@ -277,8 +278,9 @@ mod tests {
         let quiet = ServiceDay::without_load();
         let mut crowd = with_day_context(&day, &settings, &quiet, (params, &streams), |day| {
             let scene = OpinionContext { day, chronicle: &chronicle };
-            let moods = |block: &Block| block.satisfaction.clone();
-            let voices = customers.map_blocks(|group, block| weigh_block(group, block, moods(block), &scene));
+            let satisfaction_of = |block: &Block| block.satisfaction.clone();
+            let voices = customers
+                .map_blocks(|group, block| weigh_block(group, block, satisfaction_of(block), &scene));
             from_subscribers(voices, &customers, &scene, &streams)
         });
         crowd.add_departed(gave_up, lost, params);

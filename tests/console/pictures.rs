@@ -140,3 +140,42 @@ fn replay_matches_snapshots() {
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
+
+/// Elements that explain figures or change decisions, in a company whose price changed in week 4: names, keys that open
+/// the element, and keys that return.
+const EXPLANATIONS: [(&str, &str, &str); 9] = [
+    ("fit-curve", "3 enter", "esc"),
+    ("price-form", ": 'set_prices' enter enter", "esc esc"),
+    ("column-chooser", "3 C", "esc"),
+    ("why", "2 ; w", "esc"),
+    ("what-if", "; b", "esc"),
+    ("sql-edit", "9 i 'SELECT' ", "esc"),
+    ("key-without-effect", "2 K", ""),
+    ("outlook", "2 tab", ""),
+    ("curve", "; v", "esc"),
+];
+
+#[test]
+fn explanations_match_snapshots_at_four_sizes() {
+    let runs = tempfile::tempdir().expect("a folder");
+    drop(played_run(runs.path(), Mode::Sandbox, 6));
+    let mut console = Console::in_latest_run(runs.path(), (120, 40));
+    let mut complaints = Vec::new();
+    for (place, keys, back) in EXPLANATIONS {
+        console.press(keys);
+        let pictures = super::picture_checks::SIZES.map(|size| {
+            console.size = size;
+            let picture = console.screen();
+            complaints.extend(
+                needlessly_truncated_lines(&picture)
+                    .into_iter()
+                    .map(|line| format!("{place} at {size:?}: {line}")),
+            );
+            picture
+        });
+        insta::assert_snapshot!(format!("explained-{place}"), pictures.join("\n"));
+        console.size = (120, 40);
+        console.press(back);
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}

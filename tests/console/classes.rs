@@ -25,7 +25,7 @@ fn create_class(folder: &Path, students: u32) -> Class {
 
 /// Plays a handout to its end at a price.
 fn play_handout(handout: &Path, runs: &Path, price: f64) {
-    let handout = Handout::read(handout).expect("a hand-out");
+    let handout = Handout::read(handout).expect("a handout");
     let run = handout.ensure_run(runs).expect("a run");
     let folder = runs.join("participants").join(&handout.label).join(run);
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");

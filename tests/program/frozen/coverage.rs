@@ -144,5 +144,5 @@ fn every_command_and_form_of_output_has_a_case() {
     assert!(missing.is_empty(), "without a case in tests/data/frozen/cases: {missing:#?}");
     let needless: Vec<&String> =
         exceptions.iter().filter(|name| found.contains(*name) || !wanted.contains(*name)).collect();
-    assert!(needless.is_empty(), "exceptions that are none: {needless:?}");
+    assert!(needless.is_empty(), "exceptions that are not needed: {needless:?}");
 }

@@ -77,24 +77,24 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
     let at = |days, shows| FaultSymptom { days, shows };
     match fault {
         Fault::EconomyReversed => at(12, |session| {
-            let leads = session.inspect().lead_equations(group("S1"), Some(12)).expect("an inspection");
+            let leads = session.inspect().lead_equations(group("S1"), Some(12)).expect("a result");
             let factor = leads.last().expect("a day").factor(LeadFactor::Economy);
             let rows = session
                 .inspect()
                 .query_hidden_tables("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
-                .expect("an inspection");
+                .expect("a result");
             let pmi = novamind::database::number_at(&rows.rows[0], 0);
             let gap = pmi - parameter_value(session, "macro.neutral_pmi");
             assert!(gap.abs() > 0.1 && parameter_value(session, "group.S1.macro_beta.lead_generation") > 0.0);
             (factor - 1.0) * gap < 0.0
         }),
         Fault::QuotaInverted => at(12, |session| {
-            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("an inspection");
+            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
             // Without the fault, this term is 0, because no demand is close to the quota.
             mood.term(SatisfactionTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
-            let moves = session.inspect().competitor_state(Some(75)).expect("an inspection").moves;
+            let moves = session.inspect().competitor_state(Some(75)).expect("a result").moves;
             assert!(!moves.is_empty());
             moves.iter().any(|(event, _)| event.boost < event.sampled)
         }),
@@ -102,7 +102,7 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             let spilled: Vec<bool> = (10..=30)
                 .flat_map(|day| {
                     let target = WriteTarget::Reputation(group("S3"));
-                    session.inspect().figure_writes(target, Some(day)).expect("an inspection").writes
+                    session.inspect().figure_writes(target, Some(day)).expect("a result").writes
                 })
                 .filter_map(|write| match write.source {
                     WriteSource::Reputation(ReputationCause::Spillover(spill)) => {
@@ -115,14 +115,14 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             spilled.contains(&true)
         }),
         Fault::TenureInDays => at(12, |session| {
-            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("an inspection");
+            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
             let most = parameter_value(session, "quality.stickiness_log_scale")
                 * libm::log(1.0 + 12.0 / parameter_value(session, "quality.stickiness_days_scale"));
             mood.term(SatisfactionTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
-            let before = session.inspect().drift_state(Some(89)).expect("an inspection");
-            let after = session.inspect().drift_state(Some(90)).expect("an inspection");
+            let before = session.inspect().drift_state(Some(89)).expect("a result");
+            let after = session.inspect().drift_state(Some(90)).expect("a result");
             assert_eq!(before.next_day, Some(90));
             before.groups.iter().zip(&after.groups).any(|(before, after)| {
                 let moved = after.expectation.c_max - before.expectation.c_max;
@@ -131,7 +131,7 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
         }),
         Fault::ReferralsSwapped => at(12, |session| {
             let mut from_s1 = |to: &str| {
-                let leads = session.inspect().lead_equations(group(to), Some(12)).expect("an inspection");
+                let leads = session.inspect().lead_equations(group(to), Some(12)).expect("a result");
                 let word_of_mouth = &leads.last().expect("a day").word_of_mouth;
                 word_of_mouth.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
             };
@@ -141,7 +141,8 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             (shown / (rate("S2") / rate("S1")) - 1.0).abs() > 1e-9
         }),
         Fault::ComputeOfOnePlan => at(30, |session| {
-            let writes = session.inspect().figure_writes(WriteTarget::Cash, Some(28)).expect("an inspection").writes;
+            let writes =
+                session.inspect().figure_writes(WriteTarget::Cash, Some(28)).expect("a result").writes;
             let compute = writes
                 .iter()
                 .find(|figure_write| figure_write.source == WriteSource::LedgerEntries(Category::Compute));
@@ -155,13 +156,14 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             let floor = parameter_value(session, "reputation.reputation_floor");
             (29..=STRESSED_DAYS).any(|day| {
                 let target = WriteTarget::Reputation(group("S1"));
-                let writes = session.inspect().figure_writes(target, Some(day)).expect("an inspection").writes;
+                let writes = session.inspect().figure_writes(target, Some(day)).expect("a result").writes;
                 writes.iter().any(|write| write.after < floor)
             })
         }),
         Fault::TargetedGainAsGeneral => at(7, |session| {
-            let mut group_gain =
-                |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("an inspection").group_gain;
+            let mut group_gain = |day| {
+                session.inspect().quality_equation(group("S1"), Some(day)).expect("a result").group_gain
+            };
             let grown = group_gain(5) - group_gain(4);
             let gain = parameter_value(session, "development.targeted_dev_improvement_coef")
                 * libm::log(1.0 + 6000.0 / parameter_value(session, "development.targeted_dev_spend_scale"));
@@ -185,7 +187,7 @@ fn each_fault_changes_the_state_and_is_visible_in_its_view() {
         assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
         assert!(!shows(sound), "{fault:?} shows in a run without it");
         assert!(shows(&mut faulty), "{fault:?} does not show");
-        let first = sound.inspect().compare_with_run(&mut faulty, None).expect("an inspection").first_day;
+        let first = sound.inspect().compare_with_run(&mut faulty, None).expect("a result").first_day;
         assert!(first.is_some_and(|day| day <= days), "{fault:?}");
     }
 }
@@ -278,7 +280,7 @@ fn setting_parameters_keeps_the_fault() {
     session.set_parameter("quality.base_product_quality", &set, Some(10)).expect("from a later day on");
     advance_weeks(&mut session, 1);
     let mut group_gain =
-        |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("an inspection").group_gain;
+        |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a result").group_gain;
     let grown = group_gain(13) - group_gain(12);
     assert!(grown < 0.005, "{grown}");
     let place = run_folder(&session);

@@ -98,7 +98,7 @@ fn hidden_state_requires_the_last_part_to_be_over() {
     drop(second);
     let mut first = Session::open(&path, Access::Write, true).expect("it opens");
     assert!(first.check_inspection().is_ok() && Playback::open(&path).expect("a replay").can_inspect());
-    first.inspect().quality_equation(Group::parse("S1").expect("a group"), None).expect("an inspection");
+    first.inspect().quality_equation(Group::parse("S1").expect("a group"), None).expect("a result");
 }
 
 #[test]

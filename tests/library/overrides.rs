@@ -86,7 +86,7 @@ fn run_with_overrides_resumes_and_verifies() {
     assert_ne!(unchanged, hash, "the parameters have an effect");
     session.save().expect("saved");
     let charged = "SELECT DISTINCT amount FROM ledger WHERE category = 'lead_acquisition_cost' ORDER BY 1";
-    assert_eq!(query_rows(&mut session, charged).len(), 2, "rows are computed with the parameters of their day");
+    assert_eq!(query_rows(&mut session, charged).len(), 2, "rows keep the parameters of their day");
     drop(session);
     let kinds = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
     assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
@@ -121,7 +121,7 @@ fn run_with_overrides_resumes_and_verifies() {
     // The x-ray simulates the days again.
     let mut again = Session::open(&path, Access::Write, false).expect("it opens");
     let s1 = Group::parse("S1").expect("a group");
-    assert_eq!(again.inspect().lead_equations(s1, Some(day)).expect("an inspection").len(), 28);
+    assert_eq!(again.inspect().lead_equations(s1, Some(day)).expect("a result").len(), 28);
 }
 
 #[test]

@@ -145,8 +145,8 @@ fn check_figures(name: &str, policy: &str, scenario: &str, seeds: &str, until: &
         .collect();
     assert!(
         different.is_empty(),
-        "{} figures differ from those of the last release, for instance\n{}\nIf this is intended, raise MECHANICS and write \
-         them anew: novamind {} --metrics tests/data/paired/{name}",
+        "{} figures differ from those of the last release, for instance\n{}\nIf this is intended, raise MECHANICS and \
+         write them anew: novamind {} --metrics tests/data/paired/{name}",
         different.len(),
         different[..different.len().min(20)].join("\n"),
         options.join(" ")

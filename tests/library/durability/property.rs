@@ -77,11 +77,7 @@ fn check_random_run(seed: u64) {
             let (before, observed) = (session.state_hash(), session.company().observe());
             drop(session);
             session = open_run(&folder);
-            assert_eq!(
-                (session.state_hash(), session.company().observe()),
-                (before, observed),
-                "run {seed}"
-            );
+            assert_eq!((session.state_hash(), session.company().observe()), (before, observed), "run {seed}");
             apply_random_action(&mut session, &mut dice);
         }
         advance_week(&mut session);

@@ -264,7 +264,7 @@ fn check_tables(school: &TestClass, collection: &ClassCollection) {
     assert_eq!(page.matches("checked=\"checked\"").count(), 1);
     let page =
         class_to_html(&view(ClassDisplayOptions { hides_names: true, ..ClassDisplayOptions::default() }));
-    assert!(!page.contains("S01") && page.contains("no. 1"), "no label is on the page");
+    assert!(!page.contains("S01") && page.contains("no. 1"), "the page contains no label");
     let wrong =
         view(ClassDisplayOptions { figure: Some("subscriber".to_owned()), ..ClassDisplayOptions::default() })
             .check();

@@ -62,7 +62,7 @@ fn answer_threads(session: &mut Session) {
         for customer in query_column(session, sql).into_iter().step_by(9) {
             let deal = json!({"deals": [[customer, [["B", 30]]]]});
             // If the player has just replied in an open thread, the thread has an additional turn.
-            session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber can be written to");
+            session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber accepts messages");
         }
     }
 }
@@ -388,7 +388,7 @@ fn check_rules_match_tables(run: &mut Session) {
             offers.map(|offer| json!([offer["plan"], offer["price_per_seat"]])).collect::<Vec<_>>()
         );
     }
-    assert!(asked > 3, "{asked} companies asked");
+    assert!(asked > 3, "{asked} enterprises asked");
     let row = threads[0].to_json(run.company().company_names());
     for field in ["company", "customer", "asked_plan", "last_offer", "offers_so_far", "needed_quota"] {
         assert!(row.get(field).is_some(), "{field}: {row}");

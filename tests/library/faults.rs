@@ -43,7 +43,9 @@ fn create_company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
     advance_days(&mut session, days.min(28));
     if days == STRESSED_DAYS {
         let key = "reputation.reputation_quality_cancel_damage";
-        session.set_parameter(key, &json!(1), None).expect("departures hurt a thousand times as much");
+        session
+            .set_parameter(key, &json!(1), None)
+            .expect("cancellations cost a thousand times as much reputation");
         call_tool(&mut session, "set_prices", json!({"A": 400, "B": 500, "C": 600}));
     }
     advance_days(&mut session, days.saturating_sub(28));
@@ -198,7 +200,7 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
     for fault in [Fault::SpillOverReversed, Fault::QuotaInverted] {
         let mut session = create_company(folder.path(), Some(fault), 28);
         advance_weeks(&mut session, 1);
-        assert!(session.company().observe().has_own_parameters, "it is never ranked");
+        assert!(session.company().observe().has_own_parameters, "a run with a fault is never ranked");
         assert_eq!(
             session
                 .company()
@@ -223,7 +225,7 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         // contains no other data about the fault.
         let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
-        std::fs::remove_file(path.join("run.toml")).expect("it goes");
+        std::fs::remove_file(path.join("run.toml")).expect("removed");
         assert_eq!(read_manifest(&path).expect("of the line").fault, Some(fault));
         let lines = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));

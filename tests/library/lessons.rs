@@ -205,7 +205,7 @@ fn lesson_run_verifies_and_resumes() {
     advance_lesson_week(&mut again).expect("a week");
     assert_eq!(again.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(false));
     drop(again);
-    verify(&path).expect("the record is sound");
+    verify(&path).expect("it verifies");
 }
 
 #[test]

@@ -297,7 +297,7 @@ fn invalid_overrides_are_rejected_without_effect() {
             .company()
             .debug_parameters()
             .and_then(|debug_parameters| debug_parameters.value("group.S9"))
-            .expect_err("no group")
+            .expect_err("an unknown group")
             .code,
         "parameter_unknown"
     );
@@ -498,7 +498,7 @@ fn excessive_leads_are_rejected_and_the_run_stays_intact() {
         today + 9
     );
     drop(again);
-    verify(&folder).expect("the record holds");
+    verify(&folder).expect("it verifies");
 }
 
 #[test]

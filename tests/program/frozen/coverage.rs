@@ -35,7 +35,7 @@ const EXCEPTIONS: [(&str, &str); 15] = [
     ("agent python", "needs Python"),
     ("study key", "makes random keys"),
     ("study code", "makes a random salt"),
-    ("lab golden", "plays 24 seeds at least; its text names no figure that others read"),
+    ("lab golden", "plays at least 24 seeds; its text names no figure that others read"),
 ];
 
 /// The subcommands and options that the help of a command lists.

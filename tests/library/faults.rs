@@ -226,14 +226,14 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
         std::fs::remove_file(path.join("run.toml")).expect("removed");
-        assert_eq!(read_manifest(&path).expect("of the line").fault, Some(fault));
+        assert_eq!(read_manifest(&path).expect("a manifest from the first line").fault, Some(fault));
         let lines = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let text = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
         assert!(!text.contains(&format!("{fault:?}")));
         // Parameters with a different fault number do not match the digest of the run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
-        let mut forged = read_manifest(&path).expect("of the line");
+        let mut forged = read_manifest(&path).expect("a manifest from the first line");
         forged.fault = Some(other);
         assert!(forged.load_params().is_err(), "the digests differ");
         forged.fault = None;

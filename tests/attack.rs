@@ -240,7 +240,7 @@ fn hidden_columns_and_tables_are_not_reachable() {
     let session = played_session(runs.path(), "release-2");
     let connection = session.database().open_connection().expect("a connection");
     run_attacks(&connection, &attacks, &[]);
-    // What release 1 rejects, release 2 rejects as well, except `temp.TABLE` and EXPLAIN.
+    // Release 2 rejects everything that release 1 rejects, except `temp.TABLE` and EXPLAIN.
     let secrets = ["hidden_columns_of_", "inner_", "customer_rows", "subscription_rows"].map(str::to_owned);
     let mut rejected = read_attacks();
     rejected.retain(|attack| {

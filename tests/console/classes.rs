@@ -25,7 +25,7 @@ fn create_class(folder: &Path, students: u32) -> Class {
 
 /// Plays a handout to its end at a price.
 fn play_handout(handout: &Path, runs: &Path, price: f64) {
-    let handout = Handout::read(handout).expect("a hand-out");
+    let handout = Handout::read(handout).expect("a handout");
     let run = handout.ensure_run(runs).expect("a run");
     let folder = runs.join("participants").join(&handout.label).join(run);
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
@@ -87,8 +87,10 @@ fn start_menu_opens_and_resumes_a_handout() {
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(run_folder(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
-    let left = console.exit.clone().expect("it has left");
-    assert!(left.1.expect("a farewell").contains("Resume the run with `novamind --as S02 --run latest`"));
+    let left = console.exit.clone().expect("the program has exited");
+    assert!(
+        left.1.expect("an exit message").contains("Resume the run with `novamind --as S02 --run latest`")
+    );
 }
 
 #[test]

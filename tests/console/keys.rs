@@ -227,7 +227,7 @@ fn texts_are_edited_in_another_editor() {
     console.assert_shows("exit status: 1");
     console.press("esc");
     console.assert_shows("from an editor");
-    // Other texts say which texts can be opened.
+    // In other text fields, the message names the texts that can be opened.
     console.press("esc n enter ctrl-g");
     assert!(console.editor_document.is_none());
     console.assert_shows("your editor opens notes, posts, SQL and code only");

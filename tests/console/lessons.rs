@@ -314,7 +314,7 @@ fn sent_rules_are_offered_again_each_week() {
     let mut console = console_in_lesson_with(configuration, folder.path(), WIDE);
     let waiting = |console: &Console| console.app.run().expect("a run").company.observation.waiting.len();
     let day = |console: &Console| console.app.run().expect("a run").company.observation.day;
-    assert!(waiting(&console) > 0, "letters");
+    assert!(waiting(&console) > 0, "waiting messages");
     console.press("n '0.4' enter 6 R ctrl-n 'offer_rest:_C_19'");
     console.assert_shows("ctrl-n clear the line");
     console.press("ctrl-s n");
@@ -323,7 +323,7 @@ fn sent_rules_are_offered_again_each_week() {
     assert_eq!(waiting(&console), 0);
     console.press("n");
     assert_eq!(day(&console), 35, "no enterprise waits: the week runs at once");
-    assert!(waiting(&console) > 0, "more letters");
+    assert!(waiting(&console) > 0, "more waiting messages");
     console.press("n");
     console.assert_shows("Answer with the rules that you sent last");
     console.press("y");
@@ -334,7 +334,7 @@ fn sent_rules_are_offered_again_each_week() {
     assert_eq!(sent, 2, "once by the player, once with the week");
     // The third choice runs the week without answers to enterprises.
     let before = waiting(&console);
-    assert!(before > 0, "letters");
+    assert!(before > 0, "waiting messages");
     console.press("n w");
     assert_eq!(day(&console), 49);
 }

@@ -180,8 +180,8 @@ fn deleted_trajectory_stops_the_run_with_a_message() {
     let confirmed = std::fs::read(folder.join("trajectory.jsonl")).expect("a trajectory");
     std::fs::remove_file(folder.join("trajectory.jsonl")).expect("deleted");
     console.press("n enter 'test' enter f enter");
-    let (code, words) = console.exit.clone().expect("the program has left");
-    let words = words.expect("last words");
+    let (code, words) = console.exit.clone().expect("the program has exited");
+    let words = words.expect("an exit message");
     assert_eq!(code, 3);
     assert!(words.contains("your decisions are no longer on disk"), "{words}");
     let aside = std::fs::read_dir(&folder)

@@ -1,5 +1,5 @@
-//! What is shown in which mode: nothing that rests on re-simulation, on hidden state or on help from outside is shown in an
-//! unfinished baseline run or study. Each row of [`ELEMENTS`] opens one element in every mode.
+//! What each mode shows: nothing that depends on re-simulation, hidden state or outside help is shown in an unfinished
+//! baseline run or study. Each row of [`ELEMENTS`] opens one element in every mode.
 //!
 //! To add an element, add a row: its keys, and what each mode shows.
 

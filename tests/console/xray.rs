@@ -72,7 +72,7 @@ fn xray_screen_matches_plain_mode_and_records_inspections() {
     assert_eq!(verify(&folder).expect("it verifies").day, 28);
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S2").expect("a group");
-    let days = session.inspect().lead_equations(group, Some(19)).expect("a look");
+    let days = session.inspect().lead_equations(group, Some(19)).expect("a result");
     let lead_equation = days.last().expect("a day");
     for part in [
         "leads of S2 on day 19".to_owned(),

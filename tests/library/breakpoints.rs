@@ -178,7 +178,7 @@ fn breakpoints_match_a_full_scan() {
         stopping.inspect().set_breakpoint(condition(text)).expect("a breakpoint");
     }
     assert_eq!(
-        stopping.inspect().breakpoints().expect("a look").len(),
+        stopping.inspect().breakpoints().expect("a result").len(),
         CONDITIONS.len() - 1,
         "two are the same"
     );
@@ -189,7 +189,7 @@ fn breakpoints_match_a_full_scan() {
         assert_eq!(run.from, from);
         assert!(
             !run.hits.is_empty() || stopping.day() == DAYS,
-            "it stops for nothing on day {}",
+            "it stops without a hit on day {}",
             stopping.day()
         );
         for BreakpointHit { breakpoint, state: judged } in run.hits {
@@ -211,20 +211,20 @@ fn breakpoints_match_a_full_scan() {
         parts.remove("facts").expect("a part");
         parts
     };
-    assert_eq!(parts(&stopping), parts(&alone), "stopping changes nothing");
+    assert_eq!(parts(&stopping), parts(&alone), "breakpoints change nothing");
     // A search in the finished run, which does not use breakpoints, finds the same days.
     for (text, holds) in CONDITIONS {
         let parsed = condition(text);
         let found: Vec<u32> = alone
             .inspect()
             .find_condition_days(parsed)
-            .expect("a look")
+            .expect("a result")
             .iter()
             .map(|condition_state| condition_state.day)
             .collect();
         let of_it = expected.iter().filter(|(_, text)| *text == parsed.to_string());
         assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
-        let back = alone.inspect().condition_history(parsed).expect("a look");
+        let back = alone.inspect().condition_history(parsed).expect("a result");
         let last = |is_true: bool| (1..=days.len()).rev().find(|day| holds(&days, *day) == is_true);
         assert_eq!(back.last_true.map(|state| state.day as usize), last(true), "{text}");
         assert_eq!(back.last_false.map(|state| state.day as usize), last(false), "{text}");
@@ -247,7 +247,7 @@ fn breakpoint_within_a_week_writes_a_step_line() {
     let run = session.inspect().run_until_breakpoint(10, &mut |_| {}).expect("days");
     assert_eq!((run.from, session.day(), run.hits.len()), (7, 17, 0));
     assert_eq!(session.state_hash(), other.state_hash());
-    let leads = session.inspect().find_condition_days(condition("leads > 0")).expect("a look");
+    let leads = session.inspect().find_condition_days(condition("leads > 0")).expect("a result");
     assert!(!leads.is_empty());
     let removed = session.inspect().clear_breakpoints(Some(1)).expect("it is set");
     assert_eq!(removed[0].condition.to_string(), "subscribers(S1) < 0");
@@ -284,7 +284,7 @@ fn thirty_day_churn_uses_initial_subscribers() {
     let churn = session
         .inspect()
         .condition_history(condition("churn(S1) >= 0"))
-        .expect("a look")
+        .expect("a result")
         .today
         .value
         .expect("a share");
@@ -315,7 +315,7 @@ fn check_write_chain(
     let floor = session.params().reputation.reputation_floor;
     let mut causes: BTreeMap<String, u32> = BTreeMap::new();
     for (target, day) in targets.iter().flat_map(|target| days.iter().map(move |day| (*target, *day))) {
-        let figure_writes = session.inspect().figure_writes(target, Some(day)).expect("a look");
+        let figure_writes = session.inspect().figure_writes(target, Some(day)).expect("a result");
         for (value, day) in [(figure_writes.opening_value, day - 1), (figure_writes.closing_value, day)] {
             assert!(
                 recorded(target, day).is_none_or(|known| known == value),
@@ -439,14 +439,18 @@ fn spillover_has_the_sign_of_its_source() {
     record_days_up_to(&mut session, 110);
     let mut spilled = 0;
     for day in (61..=110).step_by(3) {
-        let of_source =
-            session.inspect().figure_writes(WriteTarget::Reputation(group("S1")), Some(day)).expect("a look");
+        let of_source = session
+            .inspect()
+            .figure_writes(WriteTarget::Reputation(group("S1")), Some(day))
+            .expect("a result");
         let mood = of_source.writes.iter().find_map(|write| match write.source {
             WriteSource::Reputation(ReputationCause::Contributions(_)) => Some(write.changes[0]),
             _ => None,
         });
-        let figure_writes =
-            session.inspect().figure_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
+        let figure_writes = session
+            .inspect()
+            .figure_writes(WriteTarget::Reputation(group("S3")), Some(day))
+            .expect("a result");
         for write in figure_writes.writes {
             let WriteSource::Reputation(ReputationCause::Spillover(spill)) = write.source else { continue };
             if spill.source == group("S1") {
@@ -498,8 +502,8 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
         // After the run is abandoned, the user can search its days but cannot continue it.
         session.abandon().expect("it ends");
         let number = session.inspect().set_breakpoint(hidden_condition).expect("a breakpoint").number;
-        assert_eq!(session.inspect().breakpoint_histories(Some(number)).expect("a look").len(), 1);
-        assert!(session.inspect().figure_writes(reputation, Some(3)).expect("a look").day == 3);
+        assert_eq!(session.inspect().breakpoint_histories(Some(number)).expect("a result").len(), 1);
+        assert!(session.inspect().figure_writes(reputation, Some(3)).expect("a result").day == 3);
         assert_eq!(
             session.inspect().run_until_breakpoint(3, &mut |_| {}).expect_err("over").code,
             "not_in_this_mode"

@@ -49,7 +49,7 @@ impl TestClass {
     /// Opens a handout on a separate machine and returns the folder of its run.
     fn open_handout(&self, label: &str, machine: &str) -> PathBuf {
         let runs = self.machine(machine);
-        let run = Handout::read(&self.handout(label)).expect("a hand-out").ensure_run(&runs).expect("a run");
+        let run = Handout::read(&self.handout(label)).expect("a handout").ensure_run(&runs).expect("a run");
         runs.join("participants").join(label).join(run)
     }
 
@@ -264,7 +264,7 @@ fn check_tables(school: &TestClass, collection: &ClassCollection) {
     assert_eq!(page.matches("checked=\"checked\"").count(), 1);
     let page =
         class_to_html(&view(ClassDisplayOptions { hides_names: true, ..ClassDisplayOptions::default() }));
-    assert!(!page.contains("S01") && page.contains("no. 1"), "no label is on the page");
+    assert!(!page.contains("S01") && page.contains("no. 1"), "the page contains no label");
     let wrong =
         view(ClassDisplayOptions { figure: Some("subscriber".to_owned()), ..ClassDisplayOptions::default() })
             .check();
@@ -275,7 +275,7 @@ fn check_tables(school: &TestClass, collection: &ClassCollection) {
 fn modified_handout_is_rejected() {
     let school = TestClass::new(&lesson(), 1);
     let path = school.handout("S01");
-    let whole = fs::read_to_string(&path).expect("a hand-out");
+    let whole = fs::read_to_string(&path).expect("a handout");
     let seven = whole.replacen("label = \"S01\"", "label = \"S02\"", 1);
     let easy = whole.replacen("relative = 0.9", "relative = 0.1", 1);
     let lines = whole.replace('\n', "\r\n");

@@ -24,12 +24,12 @@ fn difference_starts_on_the_day_of_the_change() {
     for session in [&mut one, &mut other] {
         advance_weeks(session, 2);
     }
-    let alike = one.inspect().compare_with_run(&mut other, None).expect("a look");
+    let alike = one.inspect().compare_with_run(&mut other, None).expect("a result");
     assert_eq!((alike.last_day, alike.first_day, alike.difference), (14, None, None));
     assert!(
         one.inspect()
             .compare_with_run(&mut other, Some(9))
-            .expect("a look")
+            .expect("a result")
             .difference
             .expect("it was asked")
             .is_empty()
@@ -37,7 +37,7 @@ fn difference_starts_on_the_day_of_the_change() {
     other.call("set_prices", &json!({"A": 40}), Via::Script).expect("a price");
     advance_weeks(&mut one, 2);
     advance_week(&mut other);
-    let found = one.inspect().compare_with_run(&mut other, None).expect("a look");
+    let found = one.inspect().compare_with_run(&mut other, None).expect("a result");
     assert_eq!((found.last_day, found.first_day), (21, Some(15)));
     let first = found.difference.expect("they differ");
     assert_eq!(first.days, (15, 15));
@@ -45,11 +45,11 @@ fn difference_starts_on_the_day_of_the_change() {
         first.differing_parts.contains(&"settings") && first.equal_parts.contains(&"calendar"),
         "{first:?}"
     );
-    assert!(first.equal_parts.contains(&"product"), "a price develops nothing");
+    assert!(first.equal_parts.contains(&"product"), "a price does not change the product");
     let last = one
         .inspect()
         .compare_with_run(&mut other, Some(21))
-        .expect("a look")
+        .expect("a result")
         .difference
         .expect("it was asked");
     let cash = last.figures.iter().find(|(name, ..)| name == "cash").expect("cash differs");
@@ -76,21 +76,21 @@ fn difference_of_two_days_lists_changes_without_side_effects() {
     let mut session = run_in(folder.path(), Mode::Debug);
     advance_weeks(&mut session, 3);
     let (place, hash) = (session.folder().expect("a folder").to_owned(), session.state_hash());
-    let found = session.inspect().compare_days(11, 18).expect("a look");
+    let found = session.inspect().compare_days(11, 18).expect("a result");
     assert!(
         found.differing_parts.contains(&"calendar") && found.equal_parts.contains(&"settings"),
         "{found:?}"
     );
     let cash = found.figures.iter().find(|(name, ..)| name == "cash").expect("cash");
     assert_eq!((cash.1, cash.2), (session.cash_by_day()[11], session.cash_by_day()[18]));
-    assert!(found.only_in_one.1 > 0, "somebody came");
+    assert!(found.only_in_one.1 > 0, "new customers arrived");
     let customer = found
         .first_customers
         .iter()
         .find(|customer_difference| customer_difference.subscribes == (true, true))
         .expect("one");
     assert!(customer.columns.iter().any(|(name, ..)| *name == "satisfaction"), "{customer:?}");
-    assert!(session.inspect().compare_days(9, 9).expect("a look").is_empty());
+    assert!(session.inspect().compare_days(9, 9).expect("a result").is_empty());
     assert_eq!(session.inspect().compare_days(9, 22).expect_err("no such day").code, "day_unknown");
     assert_eq!(session.state_hash(), hash);
     drop(session);
@@ -123,7 +123,7 @@ fn figures_of_past_days_are_reproduced() {
             day.xray.expect("hidden state").facts().arrivals.len(),
         ));
     });
-    replayed.expect("a look");
+    replayed.expect("a result");
     assert_eq!(again, live);
 }
 
@@ -161,9 +161,9 @@ fn difference_requires_permission_and_is_recorded() {
         session.abandon().expect("it ends");
         drop(session);
         let mut session = open_for_inspection(&place, Default::default()).expect("it is over");
-        session.inspect().compare_days(1, 7).expect("a look");
+        session.inspect().compare_days(1, 7).expect("a result");
         let mut days = 0;
-        session.inspect().replay_days(&mut |day| days += u32::from(day.xray.is_some())).expect("a look");
+        session.inspect().replay_days(&mut |day| days += u32::from(day.xray.is_some())).expect("a result");
         assert_eq!(days, 7);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         let after = read_afterwards(&place, &trajectory).expect("lines").lines;
@@ -180,12 +180,12 @@ fn differing_parameter_is_listed_first() {
     let old = session.set_parameter(key, &json!(0.5), Some(17)).expect("it waits").old;
     advance_weeks(&mut session, 1);
     let parameters = |session: &mut Session, one, other| {
-        session.inspect().compare_days(one, other).expect("a look").parameters
+        session.inspect().compare_days(one, other).expect("a result").parameters
     };
     assert_eq!(parameters(&mut session, 14, 16), []);
     assert_eq!(parameters(&mut session, 16, 17), [(key.to_owned(), old, json!(0.5))]);
     // Leads of a day include individuals and enterprises.
-    let found = session.inspect().compare_days(3, 20).expect("a look");
+    let found = session.inspect().compare_days(3, 20).expect("a result");
     let sum: f64 = found
         .figures
         .iter()
@@ -195,6 +195,6 @@ fn differing_parameter_is_listed_first() {
     let recorded = session
         .inspect()
         .query_hidden_tables("SELECT SUM(came) FROM hidden.factors WHERE day = 20", None)
-        .expect("a look");
+        .expect("a result");
     assert_eq!(novamind::database::number_at(&recorded.rows[0], 0), sum);
 }

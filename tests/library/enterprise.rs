@@ -62,7 +62,7 @@ fn answer_threads(session: &mut Session) {
         for customer in query_column(session, sql).into_iter().step_by(9) {
             let deal = json!({"deals": [[customer, [["B", 30]]]]});
             // If the player has just replied in an open thread, the thread has an additional turn.
-            session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber can be written to");
+            session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber accepts messages");
         }
     }
 }
@@ -134,7 +134,7 @@ fn turn_rows_are_consistent() {
         let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
         assert!(query_number(run, &sql) > 0.0, "{kind}");
     }
-    // The turns of a thread are numbered without gaps or duplicates. Only several offers of one call would share a number.
+    // The turns of a thread are numbered without gaps or duplicates. Only several offers in one call share a number.
     assert_no_rows(
         run,
         "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",
@@ -326,7 +326,7 @@ fn check_plan_request_text(run: &mut Session, thread: &ThreadContext) {
          WHERE t.thread_id = {} AND t.sender = 'customer'",
         thread.waiting.thread
     );
-    let rows = run.query(&sql).expect("a letter").rows;
+    let rows = run.query(&sql).expect("a message").rows;
     let plan = thread.asked_plan.expect("a plan").id();
     assert_ne!(plan, text_at(&rows[0], 1));
     assert!(text_at(&rows[0], 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
@@ -388,7 +388,7 @@ fn check_rules_match_tables(run: &mut Session) {
             offers.map(|offer| json!([offer["plan"], offer["price_per_seat"]])).collect::<Vec<_>>()
         );
     }
-    assert!(asked > 3, "{asked} companies asked");
+    assert!(asked > 3, "{asked} enterprises asked");
     let row = threads[0].to_json(run.company().company_names());
     for field in ["company", "customer", "asked_plan", "last_offer", "offers_so_far", "needed_quota"] {
         assert!(row.get(field).is_some(), "{field}: {row}");

@@ -43,7 +43,9 @@ fn create_company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
     advance_days(&mut session, days.min(28));
     if days == STRESSED_DAYS {
         let key = "reputation.reputation_quality_cancel_damage";
-        session.set_parameter(key, &json!(1), None).expect("departures hurt a thousand times as much");
+        session
+            .set_parameter(key, &json!(1), None)
+            .expect("cancellations cost a thousand times as much reputation");
         call_tool(&mut session, "set_prices", json!({"A": 400, "B": 500, "C": 600}));
     }
     advance_days(&mut session, days.saturating_sub(28));
@@ -77,24 +79,24 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
     let at = |days, shows| FaultSymptom { days, shows };
     match fault {
         Fault::EconomyReversed => at(12, |session| {
-            let leads = session.inspect().lead_equations(group("S1"), Some(12)).expect("a look");
+            let leads = session.inspect().lead_equations(group("S1"), Some(12)).expect("a result");
             let factor = leads.last().expect("a day").factor(LeadFactor::Economy);
             let rows = session
                 .inspect()
                 .query_hidden_tables("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
-                .expect("a look");
+                .expect("a result");
             let pmi = novamind::database::number_at(&rows.rows[0], 0);
             let gap = pmi - parameter_value(session, "macro.neutral_pmi");
             assert!(gap.abs() > 0.1 && parameter_value(session, "group.S1.macro_beta.lead_generation") > 0.0);
             (factor - 1.0) * gap < 0.0
         }),
         Fault::QuotaInverted => at(12, |session| {
-            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
+            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
             // Without the fault, this term is 0, because no demand is close to the quota.
             mood.term(SatisfactionTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
-            let moves = session.inspect().competitor_state(Some(75)).expect("a look").moves;
+            let moves = session.inspect().competitor_state(Some(75)).expect("a result").moves;
             assert!(!moves.is_empty());
             moves.iter().any(|(event, _)| event.boost < event.sampled)
         }),
@@ -102,7 +104,7 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             let spilled: Vec<bool> = (10..=30)
                 .flat_map(|day| {
                     let target = WriteTarget::Reputation(group("S3"));
-                    session.inspect().figure_writes(target, Some(day)).expect("a look").writes
+                    session.inspect().figure_writes(target, Some(day)).expect("a result").writes
                 })
                 .filter_map(|write| match write.source {
                     WriteSource::Reputation(ReputationCause::Spillover(spill)) => {
@@ -115,14 +117,14 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             spilled.contains(&true)
         }),
         Fault::TenureInDays => at(12, |session| {
-            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
+            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
             let most = parameter_value(session, "quality.stickiness_log_scale")
                 * libm::log(1.0 + 12.0 / parameter_value(session, "quality.stickiness_days_scale"));
             mood.term(SatisfactionTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
-            let before = session.inspect().drift_state(Some(89)).expect("a look");
-            let after = session.inspect().drift_state(Some(90)).expect("a look");
+            let before = session.inspect().drift_state(Some(89)).expect("a result");
+            let after = session.inspect().drift_state(Some(90)).expect("a result");
             assert_eq!(before.next_day, Some(90));
             before.groups.iter().zip(&after.groups).any(|(before, after)| {
                 let moved = after.expectation.c_max - before.expectation.c_max;
@@ -131,7 +133,7 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
         }),
         Fault::ReferralsSwapped => at(12, |session| {
             let mut from_s1 = |to: &str| {
-                let leads = session.inspect().lead_equations(group(to), Some(12)).expect("a look");
+                let leads = session.inspect().lead_equations(group(to), Some(12)).expect("a result");
                 let word_of_mouth = &leads.last().expect("a day").word_of_mouth;
                 word_of_mouth.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
             };
@@ -141,7 +143,8 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             (shown / (rate("S2") / rate("S1")) - 1.0).abs() > 1e-9
         }),
         Fault::ComputeOfOnePlan => at(30, |session| {
-            let writes = session.inspect().figure_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
+            let writes =
+                session.inspect().figure_writes(WriteTarget::Cash, Some(28)).expect("a result").writes;
             let compute = writes
                 .iter()
                 .find(|figure_write| figure_write.source == WriteSource::LedgerEntries(Category::Compute));
@@ -155,13 +158,14 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             let floor = parameter_value(session, "reputation.reputation_floor");
             (29..=STRESSED_DAYS).any(|day| {
                 let target = WriteTarget::Reputation(group("S1"));
-                let writes = session.inspect().figure_writes(target, Some(day)).expect("a look").writes;
+                let writes = session.inspect().figure_writes(target, Some(day)).expect("a result").writes;
                 writes.iter().any(|write| write.after < floor)
             })
         }),
         Fault::TargetedGainAsGeneral => at(7, |session| {
-            let mut group_gain =
-                |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
+            let mut group_gain = |day| {
+                session.inspect().quality_equation(group("S1"), Some(day)).expect("a result").group_gain
+            };
             let grown = group_gain(5) - group_gain(4);
             let gain = parameter_value(session, "development.targeted_dev_improvement_coef")
                 * libm::log(1.0 + 6000.0 / parameter_value(session, "development.targeted_dev_spend_scale"));
@@ -185,7 +189,7 @@ fn each_fault_changes_the_state_and_is_visible_in_its_view() {
         assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
         assert!(!shows(sound), "{fault:?} shows in a run without it");
         assert!(shows(&mut faulty), "{fault:?} does not show");
-        let first = sound.inspect().compare_with_run(&mut faulty, None).expect("a look").first_day;
+        let first = sound.inspect().compare_with_run(&mut faulty, None).expect("a result").first_day;
         assert!(first.is_some_and(|day| day <= days), "{fault:?}");
     }
 }
@@ -196,7 +200,7 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
     for fault in [Fault::SpillOverReversed, Fault::QuotaInverted] {
         let mut session = create_company(folder.path(), Some(fault), 28);
         advance_weeks(&mut session, 1);
-        assert!(session.company().observe().has_own_parameters, "it is never ranked");
+        assert!(session.company().observe().has_own_parameters, "a run with a fault is never ranked");
         assert_eq!(
             session
                 .company()
@@ -221,15 +225,15 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         // contains no other data about the fault.
         let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
-        std::fs::remove_file(path.join("run.toml")).expect("it goes");
-        assert_eq!(read_manifest(&path).expect("of the line").fault, Some(fault));
+        std::fs::remove_file(path.join("run.toml")).expect("removed");
+        assert_eq!(read_manifest(&path).expect("a manifest from the first line").fault, Some(fault));
         let lines = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let text = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
         assert!(!text.contains(&format!("{fault:?}")));
         // Parameters with a different fault number do not match the digest of the run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
-        let mut forged = read_manifest(&path).expect("of the line");
+        let mut forged = read_manifest(&path).expect("a manifest from the first line");
         forged.fault = Some(other);
         assert!(forged.load_params().is_err(), "the digests differ");
         forged.fault = None;
@@ -278,7 +282,7 @@ fn setting_parameters_keeps_the_fault() {
     session.set_parameter("quality.base_product_quality", &set, Some(10)).expect("from a later day on");
     advance_weeks(&mut session, 1);
     let mut group_gain =
-        |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
+        |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a result").group_gain;
     let grown = group_gain(13) - group_gain(12);
     assert!(grown < 0.005, "{grown}");
     let place = run_folder(&session);

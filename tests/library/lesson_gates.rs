@@ -98,7 +98,7 @@ fn hidden_state_requires_the_last_part_to_be_over() {
     drop(second);
     let mut first = Session::open(&path, Access::Write, true).expect("it opens");
     assert!(first.check_inspection().is_ok() && Playback::open(&path).expect("a replay").can_inspect());
-    first.inspect().quality_equation(Group::parse("S1").expect("a group"), None).expect("a look");
+    first.inspect().quality_equation(Group::parse("S1").expect("a group"), None).expect("a result");
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn goal_compares_with_a_reference_play_that_uses_rules() {
         is_judged: true,
         needs_database: false,
     };
-    let good = play_part(&play, calls_for_waiting_threads).expect("the good play");
+    let good = play_part(&play, calls_for_waiting_threads).expect("the reference play");
     let reached = good.lesson().expect("a lesson").goal_results(0)[0].clone();
     assert_eq!(reached.met, Some(true));
     assert_eq!(reached.bound, goal.bound);

@@ -205,7 +205,7 @@ fn lesson_run_verifies_and_resumes() {
     advance_lesson_week(&mut again).expect("a week");
     assert_eq!(again.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(false));
     drop(again);
-    verify(&path).expect("the record is sound");
+    verify(&path).expect("it verifies");
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn retry_restarts_the_step_and_is_counted() {
     assert_eq!(again.state_hash(), begun);
     let standing = again.lesson().expect("a lesson");
     assert_eq!((standing.attempt(0), standing.attempt(1)), (1, 2));
-    assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), Some(1.0)), "the first guess stands");
+    assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), Some(1.0)), "the first guess is kept");
     assert!(standing.goal_results(0).len() == 1 && standing.goal_results(1).is_empty());
     let third = retry_step(&again, 1).expect("a third try");
     assert_eq!(third.lesson().expect("a lesson").attempt(1), 3);

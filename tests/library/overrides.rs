@@ -83,10 +83,10 @@ fn run_with_overrides_resumes_and_verifies() {
         advance_weeks(&mut other, 8);
         other.state_hash()
     };
-    assert_ne!(unchanged, hash, "the parameters act");
+    assert_ne!(unchanged, hash, "the parameters have an effect");
     session.save().expect("saved");
     let charged = "SELECT DISTINCT amount FROM ledger WHERE category = 'lead_acquisition_cost' ORDER BY 1";
-    assert_eq!(query_rows(&mut session, charged).len(), 2, "rows are made with the parameters of their day");
+    assert_eq!(query_rows(&mut session, charged).len(), 2, "rows keep the parameters of their day");
     drop(session);
     let kinds = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
     assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
@@ -121,7 +121,7 @@ fn run_with_overrides_resumes_and_verifies() {
     // The x-ray simulates the days again.
     let mut again = Session::open(&path, Access::Write, false).expect("it opens");
     let s1 = Group::parse("S1").expect("a group");
-    assert_eq!(again.inspect().lead_equations(s1, Some(day)).expect("a look").len(), 28);
+    assert_eq!(again.inspect().lead_equations(s1, Some(day)).expect("a result").len(), 28);
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn invalid_overrides_are_rejected_without_effect() {
             .company()
             .debug_parameters()
             .and_then(|debug_parameters| debug_parameters.value("group.S9"))
-            .expect_err("no group")
+            .expect_err("an unknown group")
             .code,
         "parameter_unknown"
     );
@@ -475,10 +475,10 @@ fn excessive_leads_are_rejected_and_the_run_stays_intact() {
     let today = session.day();
     let crowded = json!([1e6, 1e6, 1e6, 1e6, 1e6, 1e6, 1e6]);
     let usual = session.set_parameter("calendar.weekly", &crowded, None).expect("in its range").old;
-    let refused = session.inspect().run_until_breakpoint(7, &mut |_| {}).expect_err("no room");
+    let refused = session.inspect().run_until_breakpoint(7, &mut |_| {}).expect_err("too many leads");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
     let forecasts = session.company().naive_forecasts();
-    let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("no room");
+    let refused = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect_err("too many leads");
     assert_eq!((refused.code, session.day()), ("too_many_leads", today));
 
     // Sets a parameter from a later day on, after single days and weeks have been simulated.
@@ -498,7 +498,7 @@ fn excessive_leads_are_rejected_and_the_run_stays_intact() {
         today + 9
     );
     drop(again);
-    verify(&folder).expect("the record holds");
+    verify(&folder).expect("it verifies");
 }
 
 #[test]

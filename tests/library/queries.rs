@@ -133,7 +133,7 @@ fn lead_choices_query_counts_every_lead_once() {
         assert_eq!(sum(&chosen, name), counted, "{name}");
     }
     let parts: f64 = conditions[1..].iter().map(|(name, _)| sum(&chosen, name)).sum();
-    assert_eq!(parts, sum(&chosen, "leads"), "everybody is counted once");
+    assert_eq!(parts, sum(&chosen, "leads"), "every lead is counted once");
     let signed = ["plan_A", "plan_B", "plan_C"].iter().map(|name| sum(&chosen, name)).sum::<f64>();
     assert!(signed > 0.0 && sum(&chosen, "lost") > 0.0 && sum(&chosen, "negotiating") > 0.0, "{chosen:?}");
     for row in &chosen.rows {

@@ -192,7 +192,11 @@ fn purchases_count_in_the_following_week() {
     assert_eq!(week_figures.cash_change, seen.cash_change);
     assert!(seen.dashboard.contains(&format!("{:.0}", -seen.cash_change)[..2]), "{}", seen.dashboard);
     call_tool(&mut session, "research_market", json!({}));
-    assert_eq!(session.company().observe().cash_change, seen.cash_change, "the last week is what it was");
+    assert_eq!(
+        session.company().observe().cash_change,
+        seen.cash_change,
+        "a purchase does not change the last week"
+    );
     let sql = format!(
         "SELECT sum(amount) FROM ledger WHERE {}",
         novamind::session::ledger_weeks_condition_sql(1, 1)
@@ -277,7 +281,8 @@ fn damaged_run_is_rejected() {
         lines[at] = Value::Object(line).to_string();
     }
     std::fs::write(&path, lines.join("\n") + "\n").expect("a change");
-    let error = Session::open(&place, Access::Write, true).err().expect("the database knows").to_string();
+    let error =
+        Session::open(&place, Access::Write, true).err().expect("an error due to the database").to_string();
     assert!(error.contains("it was changed") && error.contains("world.db contains its result"), "{error}");
     std::fs::remove_file(place.join("world.db")).expect("it is there");
     let error = Session::open(&place, Access::Write, true).err().expect("another state").to_string();

@@ -45,7 +45,7 @@ fn causes_of_group_figures_match_breakpoints_and_tables() {
     {
         let condition: Condition = format!("{figure} >= 0 over 7").parse().expect("a condition");
         let value =
-            session.inspect().condition_history(condition).expect("a look").today.value.expect("a value");
+            session.inspect().condition_history(condition).expect("a result").today.value.expect("a value");
         let explanation = explain_change(&session, figure).expect("an answer");
         assert!((explanation.after - value).abs() < 1e-12, "{figure}: {} {value}", explanation.after);
         let sum =
@@ -55,7 +55,7 @@ fn causes_of_group_figures_match_breakpoints_and_tables() {
     for figure in ["subscribers(S1)", "satisfaction(S1)", "reputation(S1)", "open_issues(S1)"] {
         let condition: Condition = format!("{figure} >= 0").parse().expect("a condition");
         let value =
-            session.inspect().condition_history(condition).expect("a look").today.value.expect("a value");
+            session.inspect().condition_history(condition).expect("a result").today.value.expect("a value");
         assert_eq!(explain_change(&session, figure).expect("an answer").after, value, "{figure}");
     }
     let left = query_number(

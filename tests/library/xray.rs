@@ -59,7 +59,7 @@ fn unfinished_non_debug_runs_cannot_be_inspected() {
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         // After the run is abandoned, the user can inspect it but cannot continue it.
         session.abandon().expect("it ends");
-        assert_eq!(session.inspect().lead_equations(group_s2(), Some(3)).expect("a look").len(), 3);
+        assert_eq!(session.inspect().lead_equations(group_s2(), Some(3)).expect("a result").len(), 3);
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         assert_eq!(inspections(&trajectory), [], "the end is the last line");
@@ -77,7 +77,7 @@ fn inspections_are_recorded_without_changing_the_state() {
         apply_opening_decisions(session);
         advance_week(session);
     }
-    watched.inspect().lead_equations(group_s2(), Some(2)).expect("a look");
+    watched.inspect().lead_equations(group_s2(), Some(2)).expect("a result");
     watched.step(3, &mut |_| {}).expect("days");
     alone.step(3, &mut |_| {}).expect("days");
     // Inspections are made within a week, after a call, and for an earlier day.
@@ -88,12 +88,12 @@ fn inspections_are_recorded_without_changing_the_state() {
         watched
             .inspect()
             .lead_equations(group_s2(), None)
-            .expect("a look")
+            .expect("a result")
             .last()
             .map(|lead_equation| lead_equation.day),
         Some(10)
     );
-    watched.inspect().lead_equations(group_s2(), Some(4)).expect("a look");
+    watched.inspect().lead_equations(group_s2(), Some(4)).expect("a result");
     advance_week(&mut watched);
     advance_week(&mut alone);
     assert_eq!(watched.state_hash(), alone.state_hash());
@@ -107,7 +107,7 @@ fn inspections_are_recorded_without_changing_the_state() {
     assert_eq!(texts, ["leads S2 2", "leads S2 10", "leads S2 4"]);
     assert_eq!(verify(&place).expect("it verifies").day, 14);
     let mut again = Session::open(&place, Access::Write, false).expect("it opens");
-    assert_eq!(again.inspect().lead_equations(group_s2(), Some(10)).expect("a look").len(), 10);
+    assert_eq!(again.inspect().lead_equations(group_s2(), Some(10)).expect("a result").len(), 10);
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn lead_equation_equals_the_mean_of_the_lead_draw() {
     for group in Group::all() {
         for lead_equation in [20, 42]
             .into_iter()
-            .flat_map(|day| session.inspect().lead_equations(group, Some(day)).expect("a look"))
+            .flat_map(|day| session.inspect().lead_equations(group, Some(day)).expect("a result"))
         {
             let factors: f64 = LeadFactor::ALL.iter().map(|factor| lead_equation.factor(*factor)).product();
             let channels: f64 = lead_equation.channels().map(|(_, leads)| leads).sum();
@@ -159,7 +159,7 @@ fn lead_equation_equals_the_mean_of_the_lead_draw() {
 }
 
 fn individual_view(session: &mut Session, customer: u32, day: Option<u32>) -> IndividualView {
-    match session.inspect().customer_view(customer, day).expect("a look") {
+    match session.inspect().customer_view(customer, day).expect("a result") {
         CustomerView::Individual(view) => *view,
         CustomerView::Enterprise(_) => panic!("customer {customer} is an enterprise"),
     }
@@ -307,7 +307,7 @@ fn enterprise_view_predicts_recorded_answers() {
         let Cell::Text(text) = &turn[3] else { panic!("{turn:?}") };
         let value: Value = serde_json::from_str(text).expect("JSON");
         let CustomerView::Enterprise(view) =
-            session.inspect().customer_view(customer, Some(day)).expect("a look")
+            session.inspect().customer_view(customer, Some(day)).expect("a result")
         else {
             panic!("a company")
         };
@@ -355,12 +355,12 @@ fn lead_residuals_fit_a_poisson_distribution() {
     let spend = json!({"targeted_spend": {"content_marketing": {"S1": 50, "S2": 50, "S3": 50}}});
     session.call("set_targeted_ad_spend", &spend, Via::Script).expect("ads");
     advance_weeks(&mut session, 143);
-    assert_eq!(session.day(), 1000, "the company lives");
+    assert_eq!(session.day(), 1000, "the company is not bankrupt");
     for id in ["S1", "S2", "S3"] {
         let group = Group::parse(id).expect("a group");
         let (mut statistic, mut freedom, mut spread, mut extreme) = (0.0, 0.0, 0.0, 0);
         for last in (28..=1000).step_by(28).chain([1000]) {
-            let days = session.inspect().lead_equations(group, Some(last)).expect("a look");
+            let days = session.inspect().lead_equations(group, Some(last)).expect("a result");
             for lead_equation in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
                 let (expected, actual) =
                     (lead_equation.expected_leads(), f64::from(lead_equation.actual_leads));

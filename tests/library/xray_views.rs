@@ -64,7 +64,7 @@ fn views_are_unavailable_in_unfinished_non_debug_runs() {
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         session.abandon().expect("it ends");
         assert!(call_every_view(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
-        session.inspect().next_draws(RandomPart::Service, None).expect("a look");
+        session.inspect().next_draws(RandomPart::Service, None).expect("a result");
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
         assert!(inspections(&trajectory).is_empty(), "the end is the last line");
@@ -98,7 +98,7 @@ fn views_do_not_change_the_state_hash() {
             assert!(call_every_view(&mut watched, "S1", shown).into_iter().all(|answer| answer.is_ok()));
         }
         for part in RandomPart::ALL {
-            watched.inspect().next_draws(part, Some(5)).expect("a look");
+            watched.inspect().next_draws(part, Some(5)).expect("a result");
         }
         advance_week(&mut watched);
         advance_week(&mut alone);
@@ -124,7 +124,7 @@ fn only_draws_are_available_before_the_first_day() {
         );
     }
     for part in RandomPart::ALL {
-        assert_eq!(session.inspect().next_draws(part, None).expect("a look").day, 1);
+        assert_eq!(session.inspect().next_draws(part, None).expect("a result").day, 1);
     }
 }
 
@@ -137,11 +137,11 @@ fn view_of_a_past_day_is_stable() {
     let all = |session: &mut Session| {
         let mut inside = session.inspect();
         (
-            inside.quality_equation(group, Some(12)).expect("a look"),
-            inside.satisfaction_equation(group, Some(12)).expect("a look"),
-            inside.reputation_equation(group, Some(12)).expect("a look"),
-            inside.spillover(Some(12)).expect("a look"),
-            inside.drift_state(Some(12)).expect("a look"),
+            inside.quality_equation(group, Some(12)).expect("a result"),
+            inside.satisfaction_equation(group, Some(12)).expect("a result"),
+            inside.reputation_equation(group, Some(12)).expect("a result"),
+            inside.spillover(Some(12)).expect("a result"),
+            inside.drift_state(Some(12)).expect("a result"),
         )
     };
     let before = all(&mut session);

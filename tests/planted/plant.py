@@ -36,9 +36,9 @@ COPIED = ["Cargo.toml", "Cargo.lock", "clippy.toml", "rustfmt.toml", "README.md"
 STAGES = ["own", "library", "program", "console", "study", "others"]
 # Seconds without a finished test after which a test program counts as hanging.
 LONGEST = 1200
-SWITCH = '''//! The switch of planted errors.
+SWITCH = '''//! The switch that activates a mutant.
 
-/// Returns whether this error is made.
+/// Returns whether the mutant with this number is active.
 pub fn planted(number: u32) -> bool {
     static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
     let read = || std::env::var("NOVAMIND_PLANTED").ok().and_then(|text| text.parse().ok()).unwrap_or(0);

@@ -96,8 +96,8 @@ fn check_deviation_changes(policies: &[&str], output: &str) {
             moved.push(format!("  {policy} {figure}: {now:?}, not {before}"));
         }
     }
-    assert!(medians.is_empty(), "figures without a past: {medians:?}");
-    assert!(moved.is_empty(), "{} figures have moved:\n{}", moved.len(), moved.join("\n"));
+    assert!(medians.is_empty(), "figures without an earlier value: {medians:?}");
+    assert!(moved.is_empty(), "{} figures have changed:\n{}", moved.len(), moved.join("\n"));
 }
 
 /// Figures by seed, day, name and group.
@@ -136,7 +136,7 @@ fn check_figures(name: &str, policy: &str, scenario: &str, seeds: &str, until: &
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let (current, kept) = (figures(&path), figures(&kept));
     let keys: std::collections::BTreeSet<&String> = current.keys().chain(kept.keys()).collect();
-    assert!(keys.len() > 200, "{name} holds {} figures", keys.len());
+    assert!(keys.len() > 200, "{name} has {} figures", keys.len());
     let value = |figures: &Figures, key: &str| figures.get(key).map_or("nothing", String::as_str).to_owned();
     let different: Vec<String> = keys
         .into_iter()
@@ -145,8 +145,8 @@ fn check_figures(name: &str, policy: &str, scenario: &str, seeds: &str, until: &
         .collect();
     assert!(
         different.is_empty(),
-        "{} figures differ from those of the last release, for instance\n{}\nIf that is meant, raise MECHANICS and write \
-         them anew: novamind {} --metrics tests/data/paired/{name}",
+        "{} figures differ from those of the last release, for instance\n{}\nIf this is intended, raise MECHANICS and \
+         write them anew: novamind {} --metrics tests/data/paired/{name}",
         different.len(),
         different[..different.len().min(20)].join("\n"),
         options.join(" ")

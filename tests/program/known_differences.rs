@@ -631,6 +631,6 @@ fn game_status_counts_every_active_subscription() {
         server.post("/query", &json!({ "sql": sql })).1["rows"][0]["n"].as_u64().expect("a number")
     };
     let companies = "AND customer_id IN (SELECT customer_id FROM customers WHERE customer_type = 'large')";
-    assert!(count(companies) > 0, "the story has companies");
+    assert!(count(companies) > 0, "the run has enterprises");
     assert_eq!(server.get("/game-status")["subscribers"], count(""));
 }

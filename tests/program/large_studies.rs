@@ -211,7 +211,7 @@ fn full_disk_keeps_stored_runs() {
     assert!((1..20).contains(&before), "{before}");
     let last = fs::read(&result_files(&home)[0]).expect("runs");
     assert!(last.ends_with(b"\n"), "a partial line is removed");
-    assert_eq!(home.run(&["lab", "study", &file]).stdout, whole, "there is room again");
+    assert_eq!(home.run(&["lab", "study", &file]).stdout, whole, "there is space again");
     assert_eq!(count_stored_runs(&home, ".jsonl"), 20);
     limited(1, "").assert_fails(1, &["few.csv", "File too large", "runs are saved"]);
     assert!(!Path::new(&into).exists(), "no partial table is written");

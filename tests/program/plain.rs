@@ -551,7 +551,7 @@ fn hidden_tables_are_queried_in_plain_mode_and_on_the_command_line() {
     let answer = |at: usize| &values[values.len() - 8 + at];
     assert_eq!(answer(0)["data"]["row_count"], 7, "{}", answer(0));
     assert_eq!(answer(0)["data"]["rows"][6]["group_id"], "S1");
-    assert_eq!(answer(1)["code"], "sql_error", "a statement ends where the line does: {}", answer(1));
+    assert_eq!(answer(1)["code"], "sql_error", "a statement ends at the end of the line: {}", answer(1));
     assert_eq!(answer(2)["code"], "day_unknown");
     assert_eq!((&answer(3)["code"], &answer(4)["code"]), (&"usage".into(), &"usage".into()));
     let way = "hidden.groups is not a visible table; query hidden tables with novamind query --xray";
@@ -575,7 +575,7 @@ fn hidden_tables_are_queried_in_plain_mode_and_on_the_command_line() {
         .flatten()
         .find_map(|entry| std::fs::read_to_string(entry.path().join("trajectory.jsonl")).ok());
     let lines = lines.expect("a run");
-    assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each that was let through is a line");
+    assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each accepted query has a line");
     // In other runs, the rejection does not depend on the query.
     let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks exports and interfaces with Python packages: atif and inspect-ai read eleven runs, exported scripts lead to the same states, and
-# mcp lists and calls every tool. Uses a virtual environment in target/python. Without Python or the packages, the script reports it and
-# succeeds; with --required it fails.
+# mcp lists and calls every tool. Uses a virtual environment in target/python. If Python or the packages are
+# missing, the script reports this and succeeds, or fails with --required.
 set -eu
 cd "$(dirname "$0")/../.."
 program=${NOVAMIND:-target/debug/novamind}

@@ -1,4 +1,7 @@
-"""Plays the scripts of eleven runs on new runs: in plain mode and with the Python client. Both must end in the state that they name."""
+"""Plays the scripts of eleven runs on new runs: in plain mode and with the Python client.
+
+Both must end in the state that the script names.
+"""
 import json
 import os
 import re

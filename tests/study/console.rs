@@ -19,7 +19,7 @@ pub struct ConsoleParticipant<'a> {
     began: i64,
     /// Current screen, previous screen, and time at which the current screen was opened.
     current_view: (&'static str, &'static str, i64),
-    /// Class to which the passing time belongs.
+    /// Category to which the passing time is assigned.
     spends: TimeCategory,
 }
 

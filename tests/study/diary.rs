@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Class of a participant's time.
+/// Category of a participant's time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TimeCategory {
     Active,
@@ -46,7 +46,7 @@ pub struct Diary {
     pub refused_labels: u32,
     pub lines: Vec<ExpectedLine>,
     pub answers: Vec<ExpectedAnswer>,
-    /// Milliseconds by week and class of time.
+    /// Milliseconds by week and category of time.
     pub time: BTreeMap<(u32, TimeCategory), u64>,
     pub sittings: u32,
     pub sittings_not_closed: u32,
@@ -60,7 +60,7 @@ pub struct Diary {
     pub erased: bool,
     /// Whether times come from a real clock, so that only bounds are known.
     pub is_real_time: bool,
-    /// Minimum and maximum milliseconds by class of time.
+    /// Minimum and maximum milliseconds by category of time.
     pub bounds: BTreeMap<TimeCategory, (u64, u64)>,
 }
 

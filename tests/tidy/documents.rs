@@ -235,7 +235,7 @@ fn documented_lesson_minutes_match_the_lessons() {
     let span = format!("{least} to {most} minutes");
     for path in ["README.md", "docs/lessons/README.md"] {
         let text = fs::read_to_string(root().join(path)).expect("a document");
-        assert!(text.contains(&span), "{path} says something else than {span}");
+        assert!(text.contains(&span), "{path} does not state {span}");
     }
 }
 
@@ -250,7 +250,7 @@ fn links_resolve() {
                 let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
                 let path = if file.is_empty() { page.path.clone() } else { folder.join(file) };
                 let Ok(path) = path.canonicalize() else {
-                    problems.push(page.problem_at(at, &format!("{target} is not there")));
+                    problems.push(page.problem_at(at, &format!("{target} is missing")));
                     continue;
                 };
                 let other = pages
@@ -281,7 +281,7 @@ fn named_files_exist() {
     for page in pages() {
         for (at, line) in page.lines_outside_code_blocks() {
             let missing = code_spans(line).filter(|word| is_path(word) && !root().join(word).exists());
-            problems.extend(missing.map(|word| page.problem_at(at, &format!("{word} is not there"))));
+            problems.extend(missing.map(|word| page.problem_at(at, &format!("{word} is missing"))));
         }
     }
     for folder in ["src", "tests"] {
@@ -294,7 +294,7 @@ fn named_files_exist() {
                 let words = words.map(|word| word.trim_end_matches(['.', ':', '\'']));
                 let missing = words.filter(|word| word.starts_with("docs/"));
                 let missing = missing.filter(|word| !is_existing_page_or_heading(word));
-                problems.extend(missing.map(|word| page.problem_at(at + 1, &format!("{word} is not there"))));
+                problems.extend(missing.map(|word| page.problem_at(at + 1, &format!("{word} is missing"))));
             }
         }
     }

@@ -3,7 +3,7 @@
 #   Rscript load.R FOLDER            prints a line for each run
 #   source("load.R"); study <- tables("FOLDER"); study$runs
 #
-# Missing values are NA. The ' that prevents a text from being a formula is removed.
+# Missing values are NA. The ' that prevents the interpretation of a text as a formula is removed.
 
 names_of_tables <- c("runs", "weeks", "forecasts", "queries", "events", "answers", "notes",
                      "visits")

@@ -3,7 +3,7 @@
     python3 load.py FOLDER            prints a line for each run
     from load import tables           tables("FOLDER") returns data frames if pandas is installed, otherwise lists of dicts
 
-Missing values are None, or NaN in data frames. The `'` that prevents a text from being a formula is removed.
+Missing values are None, or NaN in data frames. The `'` that prevents the interpretation of a text as a formula is removed.
 """
 
 import csv

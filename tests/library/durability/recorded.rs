@@ -76,7 +76,7 @@ fn run_recorded_before_a_new_scenario_key_verifies() {
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (14, 2), "its results are compared in any notation of numbers");
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
-    assert!(!session.company().observe().has_own_parameters, "it plays the scenario as its version had it");
+    assert!(!session.company().observe().has_own_parameters, "parameters of the recording version");
 }
 
 /// Name, last day, number of states, and prefix of the last state hash of each run of format 2.

@@ -199,7 +199,7 @@ fn hidden_customers_match_the_requested_day() {
     advance_week(&mut session);
     assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
     for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
-        let rows = session.inspect().query_hidden_tables(SUBSCRIBERS, Some(*day)).expect("a look").rows;
+        let rows = session.inspect().query_hidden_tables(SUBSCRIBERS, Some(*day)).expect("a result").rows;
         // A query returns at most 5,000 rows.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
         for (row, expected) in rows.iter().zip(expected) {
@@ -225,7 +225,10 @@ fn hidden_customers_match_the_requested_day() {
     assert!(differ > 0, "late answers cost relationship");
     let day = session.day();
     advance_week(&mut session);
-    assert_eq!(session.inspect().query_hidden_tables(relationships, Some(day)).expect("a look").rows, before);
+    assert_eq!(
+        session.inspect().query_hidden_tables(relationships, Some(day)).expect("a result").rows,
+        before
+    );
 }
 
 #[test]
@@ -252,7 +255,7 @@ fn hidden_threads_match_the_customer_view() {
             ref other => panic!("{other:?}"),
         };
         let CustomerView::Enterprise(view) =
-            session.inspect().customer_view(number(2), Some(number(0))).expect("a look")
+            session.inspect().customer_view(number(2), Some(number(0))).expect("a result")
         else {
             panic!("a company")
         };

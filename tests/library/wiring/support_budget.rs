@@ -48,7 +48,7 @@ fn check_budget_effect(arguments: Value, inside: &str) {
     let [issues, helped, others, others_helped] = count_resolved_issues(&mut session, inside);
     assert!(issues >= 1.0 && others > 20.0, "{arguments}: {issues} issues inside, {others} outside");
     assert_eq!(others_helped, 0.0, "{arguments} resolves other issues");
-    assert!(helped > 0.8 * issues, "{arguments}: {helped} of {issues} are solved");
+    assert!(helped > 0.8 * issues, "{arguments}: {helped} of {issues} are resolved");
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn run_is_imported_into_the_folder_of_its_participant() {
     fs::create_dir_all(&path).expect("a folder");
     let imported = import(&[]);
     assert_eq!(imported.exit_code, 0, "{}", imported.stderr);
-    assert_eq!(run_folders(&path), [path.join(run_id(&run))], "where its participant finds it");
+    assert_eq!(run_folders(&path), [path.join(run_id(&run))], "the folder in which its participant finds it");
     for options in [&[][..], &["--as", "P01"]] {
         let program_output = import(options);
         assert!(
@@ -87,7 +87,7 @@ fn run_is_imported_into_the_folder_of_its_participant() {
         );
     }
     let list = lab.run(&["runs"]);
-    assert_eq!(list.stdout.matches(&run_id(&run)).count(), 1, "once on a machine: {}", list.stdout);
+    assert_eq!(list.stdout.matches(&run_id(&run)).count(), 1, "one copy per machine: {}", list.stdout);
     let mine = run_with_input(lab.program().args(["--as", "P01", "runs"]), "");
     assert!(mine.stdout.contains(&run_id(&run)), "{}", mine.stdout);
 }

@@ -444,7 +444,7 @@ fn reports_summarize_sessions_and_compare_runs() {
     let share = figure("ad spend on the best channel, as measured");
     assert_eq!(share[0], share[1], "the same decisions");
     let truly = figure("ad spend on the truly best channel");
-    assert!(truly[0].is_null() && truly[1].is_number(), "only a run that is over tells: {truly}");
+    assert!(truly[0].is_null() && truly[1].is_number(), "only a finished run shows this share: {truly}");
     let cash = object["comparison"]["cash"].as_array().expect("cash");
     assert_eq!(cash.last().expect("a row")["values"][0], object["runs"][0]["logbook"]["cash"]);
     let csv = home.run(&["lab", "compare", &names[0], &names[1], "--csv"]).stdout;

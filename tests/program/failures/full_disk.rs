@@ -136,7 +136,7 @@ fn query_rebuilds_only_a_missing_database() {
         }
         let answer = ask();
         assert_eq!((answer.exit_code, &answer.stdout), (0, &before), "{}", answer.stderr);
-        assert!(run.join("world.db").exists(), "the next question finds it");
+        assert!(run.join("world.db").exists(), "the next query finds it");
         assert_eq!(read_bytes(&run, "trajectory.jsonl"), trajectory);
     }
     assert_eq!(ask().stdout, before);

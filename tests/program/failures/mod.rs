@@ -327,7 +327,7 @@ fn blocking_files_are_reported() {
         "{}",
         program_output.stdout
     );
-    assert!(program_output.stdout.contains("ok set_prices"), "the game continues: {}", program_output.stdout);
+    assert!(program_output.stdout.contains("ok set_prices"), "the run continues: {}", program_output.stdout);
 
     let file = home.0.path().join("file");
     fs::write(&file, "in the way").expect("a file");
@@ -366,7 +366,11 @@ fn run_in_use_is_not_opened() {
     let mut pipe = owner.stdin.take().expect("a pipe");
     let mut answers = std::io::BufRead::lines(std::io::BufReader::new(owner.stdout.take().expect("a pipe")));
     let mut wait_for = |part: &str| {
-        answers.by_ref().map(|line| line.expect("readable")).find(|line| line.contains(part)).expect("said")
+        answers
+            .by_ref()
+            .map(|line| line.expect("readable"))
+            .find(|line| line.contains(part))
+            .expect("an answer")
     };
     pipe.write_all(b"set_prices A=12\n").expect("written");
     wait_for("ok set_prices");
@@ -470,7 +474,11 @@ fn misplaced_options_are_rejected() {
     }
     assert_eq!(fs::read_dir(home.runs()).expect("a folder").count(), 0, "no other run was started");
     let runs = home.runs().to_string_lossy().into_owned();
-    assert_eq!(home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).exit_code, 0, "these may be there");
+    assert_eq!(
+        home.run(&["--runs-dir", &runs, "--as", "P01", "runs"]).exit_code,
+        0,
+        "both are allowed there"
+    );
     assert_eq!(home.run(&["play", "--plain", "--mode", "lesson"]).exit_code, 2, "there are no lessons yet");
 }
 

@@ -118,10 +118,10 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     company.on_day(|day| {
         bench_on_customers(bencher, company.subscribers(), |customers| {
-            let (mut connection, mut facts) = (company.world.issue_desk.clone(), Facts::default());
+            let (mut issue_desk_copy, mut facts) = (company.world.issue_desk.clone(), Facts::default());
             let mut calls =
                 customers.sweep(|group, number, block| issues::find_issues(group, number, block, day));
-            issues::allocate_resolutions(&mut calls, day.settings, customers, &mut connection, day);
+            issues::allocate_resolutions(&mut calls, day.settings, customers, &mut issue_desk_copy, day);
             let settled = customers.sweep_with(calls, |_, _, block, issue_batch| {
                 issues::update_issues(block, &issue_batch, day)
             });

@@ -196,8 +196,8 @@ fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
         return None;
     }
     if before.is_empty() {
-        let (written, left) = parse_number(cell.trim_start_matches([' ', '-', '!', '*']))?;
-        return left.starts_with(after).then_some(written);
+        let (shown_number, left) = parse_number(cell.trim_start_matches([' ', '-', '!', '*']))?;
+        return left.starts_with(after).then_some(shown_number);
     }
     let mut from = 0;
     while let Some(at) = low[from..].find(before).map(|at| at + from) {
@@ -211,11 +211,11 @@ fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
             continue;
         }
         let rest = cell[from..].trim_start_matches(['"', '*', ':', '|', ' ', '─']);
-        let Some((mut written, mut left)) = parse_number(rest) else { continue };
+        let Some((mut shown_number, mut left)) = parse_number(rest) else { continue };
         if let Some((new, after)) =
             left.trim_start().strip_prefix("→ ").and_then(|next| parse_number(next.trim_start()))
         {
-            (written, left) = (new, after);
+            (shown_number, left) = (new, after);
         }
         // A value per day is a rate and not the figure. A number that is directly followed by other characters belongs
         // to a longer name.
@@ -223,7 +223,7 @@ fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
         let change = after.is_empty() && left.starts_with(", of it");
         let ends = left.chars().next().is_none_or(|next| " ,;.|)│".contains(next));
         if ends && !rate && !change && left.starts_with(after) {
-            return Some(written);
+            return Some(shown_number);
         }
     }
     None
@@ -236,8 +236,12 @@ fn shown_cash_change(cell: &str) -> Option<ShownNumber> {
     let (_, rest) = parse_number(cash.trim_start_matches([' ', '─']))?;
     let rest = rest.trim_start();
     let fell = rest.strip_prefix("▼ ");
-    let (written, _) = parse_number(fell.or(rest.strip_prefix("▲ ")).or(rest.strip_prefix('('))?)?;
-    Some(if fell.is_some() { ShownNumber { value: -written.value, ..written } } else { written })
+    let (shown_number, _) = parse_number(fell.or(rest.strip_prefix("▲ ")).or(rest.strip_prefix('('))?)?;
+    Some(if fell.is_some() {
+        ShownNumber { value: -shown_number.value, ..shown_number }
+    } else {
+        shown_number
+    })
 }
 
 /// Splits a line into independent parts. Cash in the header is a separate part.
@@ -258,7 +262,7 @@ fn shown_figures(text: &str) -> Vec<(usize, ShownNumber, String)> {
                     CASH_CHANGE => shown_cash_change(cell),
                     name => shown_value(name, cell),
                 });
-                found.extend(numbers.map(|written| (figure, written, cell.trim().to_owned())));
+                found.extend(numbers.map(|shown_number| (figure, shown_number, cell.trim().to_owned())));
             }
         }
     }
@@ -357,7 +361,7 @@ fn figures_with_the_same_name_have_the_same_value() {
             let values = database_figures(runs.path(), day);
             let mut first: BTreeMap<usize, ShownNumber> = BTreeMap::new();
             for (place, text) in shown_texts(runs.path(), day) {
-                for (figure, written, line) in shown_figures(&text) {
+                for (figure, shown_number, line) in shown_figures(&text) {
                     let other =
                         |(table, name): &(&str, &str)| place.starts_with(table) && line.starts_with(name);
                     if OTHER_TABLE_FIGURES.iter().any(other) {
@@ -373,13 +377,13 @@ fn figures_with_the_same_name_have_the_same_value() {
                         continue;
                     }
                     let sign = |value: f64| if cost { value.abs() } else { value };
-                    let other = *first.entry(figure).or_insert(written);
+                    let other = *first.entry(figure).or_insert(shown_number);
                     let (should, leeway) = match values[figure] {
                         Some(value) => (value, 0.0),
                         None => (other.value, other.rounding),
                     };
-                    if (sign(written.value) - sign(should)).abs()
-                        > written.rounding + leeway + SUM_TOLERANCE * should.abs()
+                    if (sign(shown_number.value) - sign(should)).abs()
+                        > shown_number.rounding + leeway + SUM_TOLERANCE * should.abs()
                     {
                         wrong.push(format!("{policy} day {day}, {place}: {line:?}; it is {should}"));
                     }
@@ -397,8 +401,9 @@ fn figures_with_the_same_name_have_the_same_value() {
 #[test]
 fn shown_figures_parses_numbers_in_context() {
     let of = |text: &str| -> Vec<(&str, f64)> {
-        let named =
-            |(figure, written, _): (usize, ShownNumber, String)| (FIGURES[figure].0[0], written.value);
+        let named = |(figure, shown_number, _): (usize, ShownNumber, String)| {
+            (FIGURES[figure].0[0], shown_number.value)
+        };
         shown_figures(text).into_iter().map(named).collect()
     };
     let top = " NovaMind  day 49/84 · wk 7/12   cash $952k ▼ $9.86k   runway to end";

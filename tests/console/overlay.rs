@@ -61,12 +61,12 @@ fn true_values_are_shown_next_to_estimates() {
     let leads = session.inspect().lead_equations(group, None).expect("equations");
     let expected = leads.last().map(|lead_equation| lead_equation.expected_leads());
     assert_eq!(Some(group_values.expected_leads), expected);
-    let mood = session
+    let true_satisfaction = session
         .debug_hidden_state()
         .expect("a debug run")
         .mean_satisfaction(group)
         .map(|(satisfaction, _)| satisfaction);
-    assert_eq!(group_values.satisfaction, mood);
+    assert_eq!(group_values.satisfaction, true_satisfaction);
     assert!(customers.contains(&format!("{reputation:.3}")), "{reputation} in\n{customers}");
 }
 

@@ -30,7 +30,7 @@ const LONGEST_NUMBER: usize = 8;
 
 /// Returns the lines that contain a word that is truncated although free space follows up to the next border.
 pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
-    let wasteful = |line: &&str| {
+    let is_needlessly_truncated = |line: &&str| {
         line.match_indices('…').any(|(at, sign)| {
             // An ellipsis after a complete sentence does not replace a part of a word.
             if line[..at].ends_with(". ") {
@@ -45,7 +45,7 @@ pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
             blanks >= least && matches!(next, Some('│' | '┃') | None) && next.is_some()
         })
     };
-    screen.lines().filter(wasteful).map(str::to_owned).collect()
+    screen.lines().filter(is_needlessly_truncated).map(str::to_owned).collect()
 }
 
 /// Returns the share of non-empty cells in the emptiest half of the screen: left, right, upper or lower half. Borders

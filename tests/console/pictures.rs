@@ -43,10 +43,10 @@ fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
     copy_played_run(policy, seed, until, runs.path());
     let mut console = Console::in_latest_run(runs.path(), SIZES[1]);
     let mut complaints = Vec::new();
-    let rich = until > 300;
+    let has_much_data = until > 300;
     for (place, keys, back) in PLACES {
         console.press(keys);
-        let picture = picture_text(&mut console, place, rich, &mut complaints);
+        let picture = picture_text(&mut console, place, has_much_data, &mut complaints);
         insta::assert_snapshot!(format!("{name}-{place}"), picture);
         console.size = SIZES[1];
         console.press(back);
@@ -57,22 +57,22 @@ fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
 /// Minimum share of non-empty cells in every half of a large window.
 const MIN_NON_EMPTY_SHARE: f64 = 0.04;
 
-/// Returns the layout problems of a picture. Empty halves are a problem only if `rich` is set, because only a company
+/// Returns the layout problems of a picture. Empty halves are a problem only if `has_much_data` is set, because only a company
 /// with much data fills both halves.
-fn layout_problems(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
+fn layout_problems(place: &str, size: (u16, u16), has_much_data: bool, letters: &str) -> Vec<String> {
     let cut = needlessly_truncated_lines(letters);
     let mut found: Vec<String> = cut
         .into_iter()
         .map(|line| format!("{place} at {size:?}: truncated next to free space: {line}"))
         .collect();
     let ink = min_half_coverage(letters, size.0.into());
-    if rich && size.0 >= 120 && ink < MIN_NON_EMPTY_SHARE {
+    if has_much_data && size.0 >= 120 && ink < MIN_NON_EMPTY_SHARE {
         found.push(format!("{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}"));
     }
     found
 }
 
-fn picture_text(console: &mut Console, place: &str, rich: bool, found: &mut Vec<String>) -> String {
+fn picture_text(console: &mut Console, place: &str, has_much_data: bool, found: &mut Vec<String>) -> String {
     let mut text = String::new();
     for size in SIZES {
         console.size = size;
@@ -84,7 +84,7 @@ fn picture_text(console: &mut Console, place: &str, rich: bool, found: &mut Vec<
             if let Some(before) = &letters {
                 assert_eq!(*before, drawn_text, "the theme {theme} changes the text");
             } else {
-                found.extend(layout_problems(place, size, rich, &drawn_text));
+                found.extend(layout_problems(place, size, has_much_data, &drawn_text));
                 if size == SIZES[1] {
                     text.clone_from(&drawn_text);
                 }

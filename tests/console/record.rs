@@ -314,18 +314,18 @@ fn attention_records_do_not_change_the_state_hash() {
 fn read_posts_stay_read_after_reopening() {
     let runs = tempfile::tempdir().expect("a folder");
     super::company::copy_played_run("crisis.toml", 5, 28, runs.path());
-    let badge = |console: &mut Console| console.screen().contains("5 Social ●");
+    let has_badge = |console: &mut Console| console.screen().contains("5 Social ●");
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    assert!(badge(&mut console), "the posts of the week are new:\n{}", console.screen());
+    assert!(has_badge(&mut console), "the posts of the week are new:\n{}", console.screen());
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    assert!(badge(&mut console), "the overview shows no posts");
+    assert!(has_badge(&mut console), "the overview shows no posts");
     console.press("5 1");
-    assert!(!badge(&mut console));
+    assert!(!has_badge(&mut console));
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    assert!(!badge(&mut console), "they were read in an earlier session:\n{}", console.screen());
+    assert!(!has_badge(&mut console), "they were read in an earlier session:\n{}", console.screen());
     console.advance_week();
     console.press("esc 1");
-    assert!(badge(&mut console), "posts of the new week are new:\n{}", console.screen());
+    assert!(has_badge(&mut console), "posts of the new week are new:\n{}", console.screen());
 }

@@ -166,9 +166,9 @@ fn playback_runs_to_the_end_and_pauses_at_a_key() {
         if shown_day(&console) == 21 && days.len() == 4 {
             console.press("space");
             console.wait_until_idle().expect("paused");
-            let stands = shown_day(&console);
+            let paused_day = shown_day(&console);
             console.assert_shows("paused");
-            assert!(stands <= 28, "a week that was on its way may still come");
+            assert!(paused_day <= 28, "a week that was on its way may still come");
             console.press("space");
         }
     }
@@ -313,8 +313,8 @@ fn random_keys_do_not_panic_in_replay() {
                 console.press_key(key);
             }
         }
-        let viewed = console.app.run().is_some_and(|run| run.playback.is_some());
-        if !viewed {
+        let is_playback = console.app.run().is_some_and(|run| run.playback.is_some());
+        if !is_playback {
             taken_over += u32::from(console.app.run().is_some());
             drop(console);
             console = open((120, 40));

@@ -11,12 +11,12 @@ fn assert_role(console: &mut Console, words: &str, role: Role) {
     let buffer = console.draw();
     let characters: Vec<char> = words.chars().collect();
     let symbol = |x: u16, y: u16| buffer[(x, y)].symbol().chars().next().unwrap_or(' ');
-    let stands = |x: u16, y: u16| {
-        let room = usize::from(buffer.area.width - x) >= characters.len();
-        room && characters.iter().enumerate().all(|(at, letter)| symbol(x + at as u16, y) == *letter)
+    let is_text_at = |x: u16, y: u16| {
+        let has_room = usize::from(buffer.area.width - x) >= characters.len();
+        has_room && characters.iter().enumerate().all(|(at, letter)| symbol(x + at as u16, y) == *letter)
     };
     let mut places = (0..buffer.area.height).flat_map(|y| (0..buffer.area.width).map(move |x| (x, y)));
-    let place = places.find(|(x, y)| stands(*x, *y));
+    let place = places.find(|(x, y)| is_text_at(*x, *y));
     let Some((x, y)) = place else { panic!("{words} is not shown:\n{}", console.screen()) };
     let (style, expected) = (buffer[(x, y)].style(), console.app.theme.style(role));
     let same = expected.fg.is_none_or(|colour| style.fg == Some(colour))

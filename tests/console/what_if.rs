@@ -40,7 +40,7 @@ fn cash_cell(console: &Console, week: u32, edits: &[&str]) -> String {
 }
 
 /// Returns the lines of the calls to a tool.
-fn lines_of(console: &Console, tool: &str) -> Vec<u64> {
+fn call_line_numbers(console: &Console, tool: &str) -> Vec<u64> {
     let folder = console.app.run().expect("a run").company.folder.clone().expect("a folder");
     let decided = WhatIf::open(&folder).expect("a what-if").decisions(1).expect("decisions");
     let calls =
@@ -58,7 +58,7 @@ fn each_treatment_equals_the_edit_of_plain_mode() {
     console.press("down enter");
     console.assert_shows("What if, decisions of week 4");
     console.assert_shows("price A ");
-    let line = *lines_of(&console, "set_prices").last().expect("a price");
+    let line = *call_line_numbers(&console, "set_prices").last().expect("a price");
     let cases = [
         ("enter", format!("drop {line}"), "leave out"),
         ("enter '0.5' enter", format!("change {line} {{\"A\": 15, \"B\": 30}}"), "× 0.5"),
@@ -79,7 +79,7 @@ fn each_treatment_equals_the_edit_of_plain_mode() {
     console.press("enter right right s '2' enter");
     console.assert_shows("2 changes · the simulation starts with week 4");
     console.press("ctrl-s");
-    let development = *lines_of(&console, "set_daily_spend").last().expect("a budget");
+    let development = *call_line_numbers(&console, "set_daily_spend").last().expect("a budget");
     let scaled = format!("change {development} {{\"development\": 1800}}");
     let cell = cash_cell(&console, 4, &[&format!("drop {line}"), &scaled]);
     console.assert_shows(&cell);
@@ -127,7 +127,7 @@ fn adopted_alternative_opens_with_the_changed_decision() {
     let mut console = console_in_what_if(runs.path(), Mode::Sandbox, (120, 40));
     console.press("enter x ctrl-s A");
     console.assert_shows("now playing run");
-    let spend = lines_of(&console, "set_daily_spend").len();
+    let spend = call_line_numbers(&console, "set_daily_spend").len();
     assert_eq!(spend, 1, "the later budget is left out");
 }
 

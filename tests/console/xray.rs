@@ -111,11 +111,11 @@ fn former_customer_is_shown_as_in_plain_mode() {
 #[test]
 fn inspections_do_not_change_the_state_hash() {
     let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
-    let hashes = [true, false].map(|looks| {
-        let runs = folders[usize::from(looks)].path();
+    let hashes = [true, false].map(|inspects| {
+        let runs = folders[usize::from(inspects)].path();
         drop(create_run(runs, Mode::Debug, 3));
         let mut console = Console::in_latest_run(runs, (120, 40));
-        if looks {
+        if inspects {
             console.press("g x left left = down tab down , . enter e 's2' enter 1");
         }
         console.advance_week();

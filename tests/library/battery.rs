@@ -76,7 +76,7 @@ fn play_week(session: &mut Session, at: u32) {
     if at < 5 {
         call_tool(session, "research_market", json!({}));
     }
-    let deed = match at {
+    let weekly_call = match at {
         2 => Some(("post_social_media", json!({"content": "Support answers within a day now."}))),
         3 => Some(("set_prices", json!({"A": 11, "B": 27.5}))),
         4 => Some(("set_ads_strength", json!({"global_strength": 0.1, "by_group": {"S1": 0.2}}))),
@@ -84,7 +84,7 @@ fn play_week(session: &mut Session, at: u32) {
         6 => Some(("set_targeted_dev_spend", json!({"S1": 4000, "S2": 333}))),
         _ => None,
     };
-    if let Some((tool, arguments)) = deed {
+    if let Some((tool, arguments)) = weekly_call {
         call_tool(session, tool, arguments);
     }
     let forecasts = session.company().naive_forecasts();

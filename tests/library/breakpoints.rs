@@ -96,10 +96,10 @@ fn record_days(session: &mut Session) -> Vec<DayRecord> {
                 seen.left[ending.group] += 1;
             }
             for group in Group::all() {
-                let moods: Vec<f64> =
+                let satisfactions: Vec<f64> =
                     xray.blocks(group).flat_map(|block| block.satisfaction.iter().copied()).collect();
-                seen.subscribers[group] = moods.len() as u32;
-                seen.satisfaction[group] = moods.iter().sum::<f64>() / moods.len() as f64;
+                seen.subscribers[group] = satisfactions.len() as u32;
+                seen.satisfaction[group] = satisfactions.iter().sum::<f64>() / satisfactions.len() as f64;
                 seen.reputation[group] = xray.reputation(group);
             }
             all.push(seen);
@@ -157,8 +157,8 @@ const CONDITIONS: [(&str, ReferenceCondition); 12] = [
 fn scan_conditions(days: &[DayRecord]) -> Vec<(u32, String)> {
     let mut found = Vec::new();
     for day in 1..=days.len() {
-        for (text, holds) in CONDITIONS {
-            if holds(days, day) && !(day > 1 && holds(days, day - 1)) {
+        for (text, is_true_on) in CONDITIONS {
+            if is_true_on(days, day) && !(day > 1 && is_true_on(days, day - 1)) {
                 found.push((day as u32, condition(text).to_string()));
             }
         }
@@ -173,32 +173,32 @@ fn breakpoints_match_a_full_scan() {
     let days = record_days(&mut alone);
     let mut expected = scan_conditions(&days);
     expected.dedup();
-    let mut stopping = run_in(folder.path(), Mode::Debug, DAYS);
+    let mut session_with_breakpoints = run_in(folder.path(), Mode::Debug, DAYS);
     for (text, _) in CONDITIONS {
-        stopping.inspect().set_breakpoint(condition(text)).expect("a breakpoint");
+        session_with_breakpoints.inspect().set_breakpoint(condition(text)).expect("a breakpoint");
     }
     assert_eq!(
-        stopping.inspect().breakpoints().expect("a result").len(),
+        session_with_breakpoints.inspect().breakpoints().expect("a result").len(),
         CONDITIONS.len() - 1,
         "two are the same"
     );
     let mut stops: Vec<(u32, String)> = Vec::new();
-    while stopping.day() < DAYS {
-        let from = stopping.day();
-        let run = stopping.inspect().run_until_breakpoint(1000, &mut |_| {}).expect("days");
+    while session_with_breakpoints.day() < DAYS {
+        let from = session_with_breakpoints.day();
+        let run = session_with_breakpoints.inspect().run_until_breakpoint(1000, &mut |_| {}).expect("days");
         assert_eq!(run.from, from);
         assert!(
-            !run.hits.is_empty() || stopping.day() == DAYS,
+            !run.hits.is_empty() || session_with_breakpoints.day() == DAYS,
             "it stops without a hit on day {}",
-            stopping.day()
+            session_with_breakpoints.day()
         );
-        for BreakpointHit { breakpoint, state: judged } in run.hits {
-            assert_eq!(judged.day, stopping.day());
-            stops.push((judged.day, breakpoint.condition.to_string()));
+        for BreakpointHit { breakpoint, state: hit_state } in run.hits {
+            assert_eq!(hit_state.day, session_with_breakpoints.day());
+            stops.push((hit_state.day, breakpoint.condition.to_string()));
             if breakpoint.condition.to_string() == "churn(S1) > 0.05 over 7" {
                 let [now, before] =
-                    [judged.day, judged.day - 1].map(|day| churn_over_7_days(&days, day as usize));
-                assert_eq!((judged.value, judged.before), (now, before));
+                    [hit_state.day, hit_state.day - 1].map(|day| churn_over_7_days(&days, day as usize));
+                assert_eq!((hit_state.value, hit_state.before), (now, before));
             }
         }
     }
@@ -211,9 +211,9 @@ fn breakpoints_match_a_full_scan() {
         parts.remove("facts").expect("a part");
         parts
     };
-    assert_eq!(parts(&stopping), parts(&alone), "breakpoints change nothing");
+    assert_eq!(parts(&session_with_breakpoints), parts(&alone), "breakpoints change nothing");
     // A search in the finished run, which does not use breakpoints, finds the same days.
-    for (text, holds) in CONDITIONS {
+    for (text, is_true_on) in CONDITIONS {
         let parsed = condition(text);
         let found: Vec<u32> = alone
             .inspect()
@@ -222,10 +222,10 @@ fn breakpoints_match_a_full_scan() {
             .iter()
             .map(|condition_state| condition_state.day)
             .collect();
-        let of_it = expected.iter().filter(|(_, text)| *text == parsed.to_string());
-        assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
+        let expected_hits = expected.iter().filter(|(_, text)| *text == parsed.to_string());
+        assert_eq!(found, expected_hits.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
         let back = alone.inspect().condition_history(parsed).expect("a result");
-        let last = |is_true: bool| (1..=days.len()).rev().find(|day| holds(&days, *day) == is_true);
+        let last = |is_true: bool| (1..=days.len()).rev().find(|day| is_true_on(&days, *day) == is_true);
         assert_eq!(back.last_true.map(|state| state.day as usize), last(true), "{text}");
         assert_eq!(back.last_false.map(|state| state.day as usize), last(false), "{text}");
         let since = if back.today.is_true { last(false) } else { last(true) };
@@ -294,8 +294,8 @@ fn thirty_day_churn_uses_initial_subscribers() {
          JOIN customers USING (customer_id) WHERE group_id = 'S1' AND start_day <= {now} - 30 \
          AND status IN ('subscribed', 'cancelled') AND (status = 'subscribed' OR end_day > {now} - 30)"
     );
-    let of_the_tables = query_column(&mut session, &sql)[0];
-    assert!(churn > 0.0 && (churn - of_the_tables).abs() < 1e-12, "{churn} {of_the_tables}");
+    let churn_from_tables = query_column(&mut session, &sql)[0];
+    assert!(churn > 0.0 && (churn - churn_from_tables).abs() < 1e-12, "{churn} {churn_from_tables}");
 }
 
 /// Returns a reputation after changes, by the rule of the simulator: the value after each change is clamped to 0..=1
@@ -439,11 +439,11 @@ fn spillover_has_the_sign_of_its_source() {
     record_days_up_to(&mut session, 110);
     let mut spilled = 0;
     for day in (61..=110).step_by(3) {
-        let of_source = session
+        let source_writes = session
             .inspect()
             .figure_writes(WriteTarget::Reputation(group("S1")), Some(day))
             .expect("a result");
-        let mood = of_source.writes.iter().find_map(|write| match write.source {
+        let source_change = source_writes.writes.iter().find_map(|write| match write.source {
             WriteSource::Reputation(ReputationCause::Contributions(_)) => Some(write.changes[0]),
             _ => None,
         });
@@ -454,7 +454,7 @@ fn spillover_has_the_sign_of_its_source() {
         for write in figure_writes.writes {
             let WriteSource::Reputation(ReputationCause::Spillover(spill)) = write.source else { continue };
             if spill.source == group("S1") {
-                assert_eq!(Some(spill.change), mood);
+                assert_eq!(Some(spill.change), source_change);
                 assert_eq!(write.changes, [spill.change * spill.weight * spill.factor]);
                 assert_eq!(write.requested_change() < 0.0, spill.change < 0.0);
                 assert!(
@@ -478,20 +478,20 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let (before, hidden_condition) = (lines(), condition("reputation(S3) falls"));
         let reputation = WriteTarget::Reputation(group("S3"));
-        let mut inside = session.inspect();
+        let mut inspector = session.inspect();
         let rejections = [
-            inside.set_breakpoint(hidden_condition).expect_err("hidden"),
-            inside.breakpoints().expect_err("hidden"),
-            inside.clear_breakpoints(None).expect_err("hidden"),
-            inside.clear_breakpoints(Some(99)).expect_err("hidden"),
-            inside.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
-            inside.condition_history(hidden_condition).expect_err("hidden"),
-            inside.breakpoint_histories(Some(99)).expect_err("hidden"),
-            inside.find_condition_days(hidden_condition).expect_err("hidden"),
-            inside.figure_writes(reputation, None).expect_err("hidden"),
-            inside.figure_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
+            inspector.set_breakpoint(hidden_condition).expect_err("hidden"),
+            inspector.breakpoints().expect_err("hidden"),
+            inspector.clear_breakpoints(None).expect_err("hidden"),
+            inspector.clear_breakpoints(Some(99)).expect_err("hidden"),
+            inspector.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
+            inspector.condition_history(hidden_condition).expect_err("hidden"),
+            inspector.breakpoint_histories(Some(99)).expect_err("hidden"),
+            inspector.find_condition_days(hidden_condition).expect_err("hidden"),
+            inspector.figure_writes(reputation, None).expect_err("hidden"),
+            inspector.figure_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
         ];
-        drop(inside);
+        drop(inspector);
         for refusal in rejections {
             assert_eq!(
                 refusal.to_string(),

@@ -100,19 +100,23 @@ fn debrief_curves_match_the_record_and_reference_plays() {
 fn first_difference_is_valued_by_resimulation() {
     let folder = tempfile::tempdir().expect("a folder");
     let found = debrief(&play_lesson(folder.path(), 30, 0));
-    let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
-    assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
+    let DecisionComparison::Different(first_difference) = &found.comparison else {
+        panic!("{:?}", found.comparison)
+    };
+    assert_eq!((first_difference.week, first_difference.day, first_difference.decisions.len()), (1, 0, 1));
     // This single decision makes the run equal to the reference play.
-    let effect = parting.effect.as_simulated().expect("an effect");
+    let effect = first_difference.effect.as_simulated().expect("an effect");
     let good = found.reference.as_ref().expect("a reference play").cash_by_day.clone();
     assert_eq!(Some(&effect.with), good.last());
     assert_eq!(Some(&effect.own), found.cash_by_day.last());
     // The higher price of the second week is kept, so the decision of the first week alone does not reproduce the
     // reference play.
     let later = debrief(&play_lesson(folder.path(), 40, 1));
-    let DecisionComparison::Different(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
-    assert_eq!(parting.week, 1);
-    assert_ne!(parting.effect.as_simulated().map(|effect| effect.with), good.last().copied());
+    let DecisionComparison::Different(first_difference) = &later.comparison else {
+        panic!("{:?}", later.comparison)
+    };
+    assert_eq!(first_difference.week, 1);
+    assert_ne!(first_difference.effect.as_simulated().map(|effect| effect.with), good.last().copied());
 }
 
 #[test]
@@ -138,8 +142,11 @@ fn debrief_uses_the_figure_of_the_goal() {
     assert_eq!((judged.figure, &judged.actual), (WeekFigure::RecurringRevenue, &actual));
     let good = judged.reference.as_ref().expect("the reference play");
     assert!(good.len() == 2 && good != &actual, "{good:?}");
-    let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
-    let (before, with) = parting.effect.as_simulated().and_then(|effect| effect.judged).expect("an effect");
+    let DecisionComparison::Different(first_difference) = &found.comparison else {
+        panic!("{:?}", found.comparison)
+    };
+    let (before, with) =
+        first_difference.effect.as_simulated().and_then(|effect| effect.judged).expect("an effect");
     assert_eq!(
         (Some(before), Some(with)),
         (actual.last().map(|week| week.1), good.last().map(|good| good.1))
@@ -150,8 +157,8 @@ fn debrief_uses_the_figure_of_the_goal() {
     {
         assert!(markdown.contains(text), "{text}:\n{markdown}");
     }
-    let of_cash = debrief(&play_lesson(&folder.path().join("other"), 30, 0));
-    assert_eq!(of_cash.judged_by, None);
+    let cash_debrief = debrief(&play_lesson(&folder.path().join("other"), 30, 0));
+    assert_eq!(cash_debrief.judged_by, None);
 }
 
 #[test]

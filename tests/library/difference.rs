@@ -24,8 +24,11 @@ fn difference_starts_on_the_day_of_the_change() {
     for session in [&mut one, &mut other] {
         advance_weeks(session, 2);
     }
-    let alike = one.inspect().compare_with_run(&mut other, None).expect("a result");
-    assert_eq!((alike.last_day, alike.first_day, alike.difference), (14, None, None));
+    let equal_comparison = one.inspect().compare_with_run(&mut other, None).expect("a result");
+    assert_eq!(
+        (equal_comparison.last_day, equal_comparison.first_day, equal_comparison.difference),
+        (14, None, None)
+    );
     assert!(
         one.inspect()
             .compare_with_run(&mut other, Some(9))
@@ -136,14 +139,14 @@ fn difference_requires_permission_and_is_recorded() {
         let mut session = run_in(folder.path(), mode);
         advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
-        let mut inside = session.inspect();
+        let mut inspector = session.inspect();
         let texts = [
-            inside.compare_days(1, 2).expect_err("hidden").to_string(),
-            inside.compare_days(0, 9000).expect_err("hidden").to_string(),
-            inside.compare_with_run(&mut debug, Some(9000)).expect_err("hidden").to_string(),
-            inside.replay_days(&mut |_| panic!("hidden")).expect_err("hidden").to_string(),
+            inspector.compare_days(1, 2).expect_err("hidden").to_string(),
+            inspector.compare_days(0, 9000).expect_err("hidden").to_string(),
+            inspector.compare_with_run(&mut debug, Some(9000)).expect_err("hidden").to_string(),
+            inspector.replay_days(&mut |_| panic!("hidden")).expect_err("hidden").to_string(),
         ];
-        drop(inside);
+        drop(inspector);
         let from_debug =
             debug.inspect().compare_with_run(&mut session, None).expect_err("hidden").to_string();
         assert_eq!(from_debug, texts[0]);

@@ -37,20 +37,24 @@ fn create_run(storage: Storage) -> Session {
 /// Replies in some threads, ends some threads, ignores some threads, and offers a subscriber a different price.
 fn answer_threads(session: &mut Session) {
     let seen = session.company().observe();
-    let mine = |thread: &&WaitingThread, rest: u32| {
+    let has_remainder = |thread: &&WaitingThread, rest: u32| {
         thread.thread % 7 != 6 && (thread.thread % 5 == 4) == (rest == 1)
     };
     let offers: Vec<Value> = seen
         .waiting
         .iter()
-        .filter(|thread| mine(thread, 0))
+        .filter(|thread| has_remainder(thread, 0))
         .map(|thread| {
             let price = thread.asked.unwrap_or(34.0);
             json!([thread.customer, [["C", price * 1.2], ["B", price], ["A", price / 3.0]]])
         })
         .collect();
-    let ended: Vec<Value> =
-        seen.waiting.iter().filter(|thread| mine(thread, 1)).map(|thread| json!(thread.customer)).collect();
+    let ended: Vec<Value> = seen
+        .waiting
+        .iter()
+        .filter(|thread| has_remainder(thread, 1))
+        .map(|thread| json!(thread.customer))
+        .collect();
     for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", ended)] {
         if !deals.is_empty() {
             call_tool(session, tool, json!({ "deals": deals }));
@@ -82,8 +86,8 @@ fn assert_no_rows(session: &mut Session, wrong: &str) {
 #[test]
 fn run_with_deals_resumes_and_verifies() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut straight = create_run(Storage::Memory);
-    (0..15).for_each(|_| advance_week(&mut straight));
+    let mut uninterrupted_session = create_run(Storage::Memory);
+    (0..15).for_each(|_| advance_week(&mut uninterrupted_session));
 
     let mut session = create_run(Storage::Runs(folder.path().to_owned()));
     let place = session.folder().expect("a folder").to_owned();
@@ -94,7 +98,7 @@ fn run_with_deals_resumes_and_verifies() {
             session = Session::open(&place, Access::Write, true).expect("it opens");
         }
     }
-    assert_eq!(session.state_hash(), straight.state_hash());
+    assert_eq!(session.state_hash(), uninterrupted_session.state_hash());
     for sql in [
         "SELECT count(*) FROM enterprise_turns",
         "SELECT sum(message_id * turn_number * length(message_text)) FROM enterprise_turns",
@@ -102,10 +106,10 @@ fn run_with_deals_resumes_and_verifies() {
         "SELECT sum(amount) FROM ledger",
         "SELECT count(*) FROM notifications WHERE type = 'deal_won'",
     ] {
-        assert_eq!(query_number(&mut session, sql), query_number(&mut straight, sql), "{sql}");
+        assert_eq!(query_number(&mut session, sql), query_number(&mut uninterrupted_session, sql), "{sql}");
     }
     assert!(query_number(&mut session, "SELECT count(*) FROM notifications WHERE type = 'deal_won'") > 20.0);
-    assert_eq!(session.company().observe().waiting, straight.company().observe().waiting);
+    assert_eq!(session.company().observe().waiting, uninterrupted_session.company().observe().waiting);
     drop(session);
     assert_eq!(verify(&place).expect("it verifies").states, 15);
     check_forged_price_is_detected(&place);
@@ -336,19 +340,19 @@ fn check_plan_request_text(run: &mut Session, thread: &ThreadContext) {
 #[test]
 fn plan_request_rows_contain_the_plan_before_a_price_is_named() {
     let mut session = create_run(Storage::Memory);
-    let mut wishes = 0;
+    let mut plan_request_count = 0;
     for _ in 0..20 {
         advance_week(&mut session);
         let (threads, _) = ThreadContext::read_all(&mut session).expect("threads");
-        let wish = |thread_context: &&ThreadContext| {
+        let is_plan_request = |thread_context: &&ThreadContext| {
             thread_context.waiting.kind == "plan_change" && thread_context.waiting.asked.is_none()
         };
-        for thread in threads.iter().filter(wish) {
+        for thread in threads.iter().filter(is_plan_request) {
             check_plan_request_text(&mut session, thread);
-            wishes += 1;
+            plan_request_count += 1;
         }
     }
-    assert!(wishes > 0, "no subscriber asked for another plan");
+    assert!(plan_request_count > 0, "no subscriber asked for another plan");
 }
 
 /// Checks that the tables contain the fields that rules use: the price and plan that an enterprise named, and the last offer.

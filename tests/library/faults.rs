@@ -91,9 +91,9 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             (factor - 1.0) * gap < 0.0
         }),
         Fault::QuotaInverted => at(12, |session| {
-            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
+            let equation = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
             // Without the fault, this term is 0, because no demand is close to the quota.
-            mood.term(SatisfactionTerm::Quota).expect("subscribers") != 0.0
+            equation.term(SatisfactionTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
             let moves = session.inspect().competitor_state(Some(75)).expect("a result").moves;
@@ -117,10 +117,10 @@ fn fault_symptom(fault: Fault) -> FaultSymptom {
             spilled.contains(&true)
         }),
         Fault::TenureInDays => at(12, |session| {
-            let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
+            let equation = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a result");
             let most = parameter_value(session, "quality.stickiness_log_scale")
                 * libm::log(1.0 + 12.0 / parameter_value(session, "quality.stickiness_days_scale"));
-            mood.term(SatisfactionTerm::Tenure).expect("subscribers") > most
+            equation.term(SatisfactionTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
             let before = session.inspect().drift_state(Some(89)).expect("a result");
@@ -181,15 +181,17 @@ fn run_folder(session: &Session) -> PathBuf {
 #[test]
 fn each_fault_changes_the_state_and_is_visible_in_its_view() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut sound_companies = BTreeMap::new();
+    let mut correct_sessions = BTreeMap::new();
     for fault in Fault::ALL {
         let FaultSymptom { days, shows } = fault_symptom(fault);
-        let sound = sound_companies.entry(days).or_insert_with(|| create_company(folder.path(), None, days));
+        let correct_session =
+            correct_sessions.entry(days).or_insert_with(|| create_company(folder.path(), None, days));
         let mut faulty = create_company(folder.path(), Some(fault), days);
-        assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
-        assert!(!shows(sound), "{fault:?} shows in a run without it");
+        assert_ne!(correct_session.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
+        assert!(!shows(correct_session), "{fault:?} shows in a run without it");
         assert!(shows(&mut faulty), "{fault:?} does not show");
-        let first = sound.inspect().compare_with_run(&mut faulty, None).expect("a result").first_day;
+        let first =
+            correct_session.inspect().compare_with_run(&mut faulty, None).expect("a result").first_day;
         assert!(first.is_some_and(|day| day <= days), "{fault:?}");
     }
 }

@@ -106,7 +106,7 @@ fn interrupted_lesson_start_is_completed_on_open() {
     let folder = tempfile::tempdir().expect("a folder");
     let session = begin_lesson(folder.path(), "gates", PARTS);
     let (run_path, hash) = (run_folder(&session), session.state_hash());
-    let standing = session.lesson().expect("a lesson").clone();
+    let progress = session.lesson().expect("a lesson").clone();
     let parameters = session.params().ads.log_curve_k;
     drop(session);
     let path = run_path.join("trajectory.jsonl");
@@ -117,7 +117,7 @@ fn interrupted_lesson_start_is_completed_on_open() {
         truncate_run(&run_path, &lines[..kept]);
         let mut again =
             Session::open(&run_path, Access::Write, true).unwrap_or_else(|error| panic!("{kept}: {error}"));
-        assert_eq!(again.lesson(), Some(&standing), "{kept} lines were left");
+        assert_eq!(again.lesson(), Some(&progress), "{kept} lines were left");
         assert_eq!(again.params().ads.log_curve_k, parameters, "{kept}");
         assert_eq!(again.state_hash(), hash, "{kept} lines were left");
         advance_lesson_week(&mut again).unwrap_or_else(|refusal| panic!("{kept}: {refusal}"));
@@ -131,8 +131,8 @@ fn interrupted_retry_is_counted_on_open() {
     advance_lesson_week(&mut session).expect("a week");
     let again = retry_step(&session, 0).expect("another try");
     let path = run_folder(&again);
-    let standing = again.lesson().expect("a lesson").clone();
-    assert_eq!(standing.attempt(0), 2);
+    let progress = again.lesson().expect("a lesson").clone();
+    assert_eq!(progress.attempt(0), 2);
     drop((again, session));
     let whole = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
     let lines: Vec<&str> = whole.lines().collect();
@@ -177,12 +177,12 @@ fn goal_compares_with_a_reference_play_that_uses_rules() {
     drop(session);
     let mut session = Session::open(&path, Access::Write, true).expect("it opens");
     session.set_rule_evaluator(calls_for_waiting_threads);
-    let standing = session.lesson().expect("a lesson").clone();
-    let goal = standing.goal_results(0)[0].clone();
+    let progress = session.lesson().expect("a lesson").clone();
+    let goal = progress.goal_results(0)[0].clone();
     assert!(goal.bound.is_some_and(|bound| bound > 0.0), "{goal:?}");
     assert!(goal.value.zip(goal.bound).is_some_and(|(value, bound)| value < bound), "{goal:?}");
     assert_eq!(goal.met, Some(false));
-    assert!(standing.has_started(1));
+    assert!(progress.has_started(1));
     advance_lesson_week(&mut session).expect("a week");
     // With the decisions of the reference play, the goal is reached.
     let lesson = Arc::new(write_lesson(folder.path(), "gates", RULE_LESSON).expect("a lesson"));

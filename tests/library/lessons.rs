@@ -140,10 +140,10 @@ fn lesson_asks_questions_judges_goals_and_ends() {
     assert_eq!(take_hint(&mut session).expect("a hint"), "Try.");
     advance_lesson_week(&mut session).expect("a week");
     advance_lesson_week(&mut session).expect("a week");
-    let standing = session.lesson().expect("a lesson");
+    let progress = session.lesson().expect("a lesson");
     let cash = session.weeks().last().expect("a week").cash;
-    assert_eq!(standing.outcome(0).expect("an outcome").value, Some(cash));
-    assert_eq!(standing.goal_results(0)[0].met, Some(cash >= 900_000.0));
+    assert_eq!(progress.outcome(0).expect("an outcome").value, Some(cash));
+    assert_eq!(progress.goal_results(0)[0].met, Some(cash >= 900_000.0));
     assert_eq!(lesson_step(&session), Some(1));
     assert_eq!(session.params().quality.base_product_quality, 0.4);
     assert_eq!(rejection_code(submit_guess(&mut session, 3.0)), "guess_not_possible");
@@ -226,16 +226,16 @@ fn bankruptcy_in_a_lesson_is_evaluated_once() {
         }
         assert_eq!(session.ended(), Some(RunEndReason::Bankruptcy));
         assert!(!session.day().is_multiple_of(7), "the cash runs out within a week");
-        let standing = session.lesson().expect("a lesson").clone();
+        let progress = session.lesson().expect("a lesson").clone();
         let cash = session.weeks().last().expect("a week").cash;
-        assert_eq!(standing.outcome(step).expect("an outcome").met, (step == 1).then_some(false));
-        assert_eq!(standing.goal_results(step)[0].met, Some(false));
-        assert_eq!(standing.goal_results(step)[0].value, Some(cash));
-        assert_eq!(standing.triggered_pitfall_names(), ["costly"]);
+        assert_eq!(progress.outcome(step).expect("an outcome").met, (step == 1).then_some(false));
+        assert_eq!(progress.goal_results(step)[0].met, Some(false));
+        assert_eq!(progress.goal_results(step)[0].value, Some(cash));
+        assert_eq!(progress.triggered_pitfall_names(), ["costly"]);
         let path = session.folder().expect("a folder").to_owned();
         drop(session);
         let again = Session::open(&path, Access::Write, true).expect("it opens");
-        assert_eq!(again.lesson(), Some(&standing));
+        assert_eq!(again.lesson(), Some(&progress));
         assert!(!path.join("afterwards.jsonl").exists(), "nothing comes after the end");
     }
 }
@@ -247,7 +247,7 @@ fn missing_evaluation_is_added_on_open() {
     submit_guess(&mut session, 1.0).expect("a guess");
     advance_lesson_week(&mut session).expect("a week");
     advance_lesson_week(&mut session).expect("a week");
-    let standing = session.lesson().expect("a lesson").clone();
+    let progress = session.lesson().expect("a lesson").clone();
     let run_path = session.folder().expect("a folder").to_owned();
     drop(session);
     let path = run_path.join("trajectory.jsonl");
@@ -264,7 +264,7 @@ fn missing_evaluation_is_added_on_open() {
             }
         }
         let again = Session::open(&run_path, Access::Write, true).expect("it opens");
-        assert_eq!(again.lesson(), Some(&standing), "{kept}");
+        assert_eq!(again.lesson(), Some(&progress), "{kept}");
         assert_eq!(again.params().quality.base_product_quality, 0.4, "{kept}");
     }
 }
@@ -281,10 +281,10 @@ fn retry_restarts_the_step_and_is_counted() {
     advance_lesson_week(&mut session).expect("a week");
     let again = retry_step(&session, 1).expect("another try");
     assert_eq!(again.state_hash(), begun);
-    let standing = again.lesson().expect("a lesson");
-    assert_eq!((standing.attempt(0), standing.attempt(1)), (1, 2));
-    assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), Some(1.0)), "the first guess is kept");
-    assert!(standing.goal_results(0).len() == 1 && standing.goal_results(1).is_empty());
+    let progress = again.lesson().expect("a lesson");
+    assert_eq!((progress.attempt(0), progress.attempt(1)), (1, 2));
+    assert_eq!((progress.guess(0), progress.guess(1)), (Some(1.0), Some(1.0)), "the first guess is kept");
+    assert!(progress.goal_results(0).len() == 1 && progress.goal_results(1).is_empty());
     let third = retry_step(&again, 1).expect("a third try");
     assert_eq!(third.lesson().expect("a lesson").attempt(1), 3);
     assert_eq!(rejection_code(retry_step(&third, 2)), "step_unknown");

@@ -24,13 +24,13 @@ fn group_s2() -> Group {
 }
 
 fn inspections(lines: &Trajectory) -> Vec<(String, String)> {
-    let look = |record: &Record| match record {
+    let inspection_parts = |record: &Record| match record {
         Record::Activity(Activity::Inspection(inspection)) => {
             Some((inspection.what.clone(), format!("{} {}", inspection.which, inspection.shown_day)))
         }
         _ => None,
     };
-    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
+    lines.lines.iter().filter_map(|line| inspection_parts(&line.record)).collect()
 }
 
 #[test]

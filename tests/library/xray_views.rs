@@ -23,15 +23,15 @@ fn run_in(folder: &Path, mode: Mode) -> Session {
 /// Returns the success or the rejection of every view for a group and a day.
 fn call_every_view(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Rejection>> {
     let group = Group::parse(group).expect("a group");
-    let mut inside = session.inspect();
+    let mut inspector = session.inspect();
     vec![
-        inside.quality_equation(group, day).map(drop),
-        inside.satisfaction_equation(group, day).map(drop),
-        inside.reputation_equation(group, day).map(drop),
-        inside.spillover(day).map(drop),
-        inside.competitor_state(day).map(drop),
-        inside.drift_state(day).map(drop),
-        inside.hidden_values(day).map(drop),
+        inspector.quality_equation(group, day).map(drop),
+        inspector.satisfaction_equation(group, day).map(drop),
+        inspector.reputation_equation(group, day).map(drop),
+        inspector.spillover(day).map(drop),
+        inspector.competitor_state(day).map(drop),
+        inspector.drift_state(day).map(drop),
+        inspector.hidden_values(day).map(drop),
     ]
 }
 
@@ -135,13 +135,13 @@ fn view_of_a_past_day_is_stable() {
     advance_weeks(&mut session, 3);
     let group = Group::parse("S1").expect("a group");
     let all = |session: &mut Session| {
-        let mut inside = session.inspect();
+        let mut inspector = session.inspect();
         (
-            inside.quality_equation(group, Some(12)).expect("a result"),
-            inside.satisfaction_equation(group, Some(12)).expect("a result"),
-            inside.reputation_equation(group, Some(12)).expect("a result"),
-            inside.spillover(Some(12)).expect("a result"),
-            inside.drift_state(Some(12)).expect("a result"),
+            inspector.quality_equation(group, Some(12)).expect("a result"),
+            inspector.satisfaction_equation(group, Some(12)).expect("a result"),
+            inspector.reputation_equation(group, Some(12)).expect("a result"),
+            inspector.spillover(Some(12)).expect("a result"),
+            inspector.drift_state(Some(12)).expect("a result"),
         )
     };
     let before = all(&mut session);

@@ -120,7 +120,7 @@ class Program:
         self.test = built["target"]["name"] if "test" in built["target"]["kind"] else None
         self.skipped = []
 
-    def is_of(self, stage, crate):
+    def belongs_to(self, stage, crate):
         if self.test:
             return stage == (self.test if self.test in STAGES else "others")
         return stage == ("own" if self.crate == crate else "others")
@@ -198,7 +198,7 @@ def main():
         print(f"stage {stage}: {len(left)} errors", flush=True)
         unnoticed = []
         for error in left:
-            chosen = [program for program in programs if program.is_of(stage, error["crate"])]
+            chosen = [program for program in programs if program.belongs_to(stage, error["crate"])]
             by = next(filter(None, (program.notices(error["number"], options.arguments) for program in chosen)), None)
             print(f"{error['number']:>3}  {error['crate']}: {by or '-'}", flush=True)
             unnoticed += [] if by else [error]

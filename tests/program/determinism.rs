@@ -125,8 +125,8 @@ fn reopening_at_any_week_keeps_the_state() {
     let folder = tempfile::tempdir().expect("a folder");
     let new = |storage| NewRun { seed: Some(11), days: Some(42), storage, ..NewRun::default() };
     let create = |storage| Session::create(new(storage), &Configuration::bundled()).expect("it begins");
-    let mut straight = create(Storage::Memory);
-    (0..WEEKS).for_each(|week| play_week(&mut straight, week));
+    let mut uninterrupted_session = create(Storage::Memory);
+    (0..WEEKS).for_each(|week| play_week(&mut uninterrupted_session, week));
     // The run is closed after one of the weeks, or after every week.
     for left_after in (0..WEEKS).map(Some).chain([None]) {
         let mut session = create(Storage::Runs(folder.path().to_owned()));
@@ -138,10 +138,13 @@ fn reopening_at_any_week_keeps_the_state() {
                 session = Session::open(&place, Access::Write, true).expect("it opens");
             }
         }
-        assert_eq!(session.state_hash(), straight.state_hash(), "left after {left_after:?}");
-        assert_eq!(session.company().observe().dashboard, straight.company().observe().dashboard);
-        assert_eq!(session.cash_by_day(), straight.cash_by_day());
-        assert_eq!(session.weeks(), straight.weeks());
+        assert_eq!(session.state_hash(), uninterrupted_session.state_hash(), "left after {left_after:?}");
+        assert_eq!(
+            session.company().observe().dashboard,
+            uninterrupted_session.company().observe().dashboard
+        );
+        assert_eq!(session.cash_by_day(), uninterrupted_session.cash_by_day());
+        assert_eq!(session.weeks(), uninterrupted_session.weeks());
     }
 }
 
@@ -246,9 +249,10 @@ fn program_killed_during_a_week_loses_no_confirmed_week() {
     assert_eq!(week_states(&folder), expected);
 
     // The database must equal the database of the uninterrupted run.
-    let mut straight = Session::open(&only_run(whole.path()), Access::Write, true).expect("it opens");
+    let mut uninterrupted_session =
+        Session::open(&only_run(whole.path()), Access::Write, true).expect("it opens");
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
-    assert_eq!(session.state_hash(), straight.state_hash());
+    assert_eq!(session.state_hash(), uninterrupted_session.state_hash());
     for sql in [
         "SELECT COUNT(*), SUM(amount), SUM(id * amount) FROM ledger",
         "SELECT COUNT(*), SUM(customer_id * start_day) FROM subscriptions WHERE status = 'subscribed'",
@@ -256,6 +260,10 @@ fn program_killed_during_a_week_loses_no_confirmed_week() {
         "SELECT COUNT(*), SUM(issue_id * days_open) FROM issues",
         "SELECT COUNT(*), SUM(predicted_value) FROM predictions",
     ] {
-        assert_eq!(session.query(sql).expect("rows").rows, straight.query(sql).expect("rows").rows, "{sql}");
+        assert_eq!(
+            session.query(sql).expect("rows").rows,
+            uninterrupted_session.query(sql).expect("rows").rows,
+            "{sql}"
+        );
     }
 }

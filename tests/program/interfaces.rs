@@ -518,7 +518,9 @@ fn served_run_with_non_baseline_options_is_reported_as_sandbox() {
             None => assert!(!err.contains("sandbox run"), "{options:?}: {err}"),
         }
     }
-    assert!(mode_of(&["--days", "28", "--mode", "baseline"]).1.contains("28 days can be set only in a study"));
+    assert!(
+        mode_of(&["--days", "28", "--mode", "baseline"]).1.contains("28 days can be set only in a study")
+    );
     let help = Home::new().run(&["serve", "--help"]).stdout;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(help.contains("baseline runs have 500") && help.contains("for programs, baseline"), "{help}");

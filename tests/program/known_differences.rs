@@ -48,7 +48,7 @@ sql SELECT * FROM enterprise_turns LIMIT 1
 /// The runs and responses that the examples check.
 struct Fixture {
     home: Home,
-    story: Vec<Value>,
+    responses: Vec<Value>,
     server: Server,
     /// Folders of the server, which must exist until the end of the test.
     _served: Home,
@@ -60,15 +60,16 @@ impl Fixture {
         let options = ["--json", "--echo", "--seed", "7", "--days", "84", "--cash", "20000000"];
         let program_output = home.play(&options, FIXTURE_COMMANDS);
         assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
-        let story = program_output.json_lines();
+        let responses = program_output.json_lines();
         let server = Server::start(&served, &NEW_RUN_OPTIONS);
-        Fixture { home, story, server, _served: served }
+        Fixture { home, responses, server, _served: served }
     }
 
     /// Returns the data of the last response to a command with this prefix.
     fn fixture_data(&self, line: &str) -> &Value {
         let is_it = |answer: &&Value| answer["input"].as_str().is_some_and(|input| input.starts_with(line));
-        let answer = self.story.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
+        let answer =
+            self.responses.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
         assert_eq!(answer["ok"], true, "{answer}");
         &answer["data"]
     }
@@ -503,12 +504,12 @@ const DASHBOARD_EXAMPLES: [Example; 5] = [
         );
     }),
     ("counts only threads", |stage| {
-        let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
+        let weeks = stage.responses.iter().filter(|answer| answer["command"] == "next");
         let first = weeks.map(|week| week["data"]["dashboard"].as_str().expect("a dashboard")).next();
         assert_contains(first.expect("a week"), &["1 awaiting your response; the first is lost in"]);
     }),
     ("never lists posts of the company", |stage| {
-        let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
+        let weeks = stage.responses.iter().filter(|answer| answer["command"] == "next");
         let listed = weeks.filter(|week| week["data"]["dashboard"].to_string().contains("Your posts"));
         assert_eq!(listed.count(), 1);
     }),

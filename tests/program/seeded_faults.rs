@@ -89,8 +89,9 @@ fn debugging_answers_match_the_program() {
         let shown = run_commands(&home, &faulty, &row.commands);
         // The page also lists figures of the run without the fault. These figures are not compared if a command
         // simulates further days.
-        let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
-        let sound_output = if moves_on { String::new() } else { run_commands(&home, &sound, &row.commands) };
+        let simulates_days = row.commands.iter().any(|line| line.starts_with("run "));
+        let sound_output =
+            if simulates_days { String::new() } else { run_commands(&home, &sound, &row.commands) };
         let texts = figures(&row.shown);
         assert!(!texts.is_empty(), "{}: {}", row.number, row.shown);
         for figure in texts {

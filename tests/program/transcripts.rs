@@ -190,8 +190,8 @@ fn evaluation_log_has_a_sample_with_every_message() {
     assert!(called > 8 && roles("tool") == called, "{called}");
     // Inspect builds message tables from the model events, so each message must be in one model event.
     let events = sample["events"].as_array().expect("events");
-    let of_model = events.iter().filter(|event| event["event"] == "model");
-    let of_events: Vec<&Value> = of_model
+    let model_events = events.iter().filter(|event| event["event"] == "model");
+    let event_messages: Vec<&Value> = model_events
         .flat_map(|event| {
             let choices = event["output"]["choices"].as_array().expect("choices");
             event["input"]
@@ -201,7 +201,7 @@ fn evaluation_log_has_a_sample_with_every_message() {
                 .chain(choices.iter().map(|choice| &choice["message"]))
         })
         .collect();
-    assert_eq!(of_events, messages.iter().collect::<Vec<_>>());
+    assert_eq!(event_messages, messages.iter().collect::<Vec<_>>());
     let ids: std::collections::BTreeSet<&str> =
         messages.iter().filter_map(|message| message["id"].as_str()).collect();
     assert!(ids.len() == messages.len() && ids.iter().all(|id| id.starts_with(&run)), "{ids:?}");

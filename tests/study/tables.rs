@@ -191,7 +191,7 @@ fn compare_column(diary: &Diary, rows: &[&Row], column: &str, expected: &[String
 }
 
 fn compare_answers(diary: &Diary, rows: &[&Row]) {
-    let expected_answers: Vec<ExpectedAnswer> = rows
+    let exported_answers: Vec<ExpectedAnswer> = rows
         .iter()
         .map(|row| ExpectedAnswer {
             occasion: row["occasion"].clone(),
@@ -200,7 +200,7 @@ fn compare_answers(diary: &Diary, rows: &[&Row]) {
             for_ms: if diary.is_real_time { 0 } else { row["for_ms"].parse().expect("milliseconds") },
         })
         .collect();
-    assert_eq!(expected_answers, diary.answers, "{}", diary.label);
+    assert_eq!(exported_answers, diary.answers, "{}", diary.label);
     for row in rows.iter().filter(|row| row["question"] == "check") {
         assert_eq!(row["as_expected"], if row["value"] == "second" { "1" } else { "0" }, "{}", diary.label);
     }

@@ -20,11 +20,11 @@ pub fn run_folder(runs: &Path) -> PathBuf {
 
 /// Returns the recorded x-ray views with object and day, in the order of the lines.
 pub fn inspections(lines: &Trajectory) -> Vec<String> {
-    let look = |record: &Record| match record {
+    let inspection_text = |record: &Record| match record {
         Record::Activity(Activity::Inspection(inspection)) => {
             Some(format!("{} {} {}", inspection.what, inspection.which, inspection.shown_day))
         }
         _ => None,
     };
-    lines.lines.iter().filter_map(|line| look(&line.record)).collect()
+    lines.lines.iter().filter_map(|line| inspection_text(&line.record)).collect()
 }

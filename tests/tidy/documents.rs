@@ -317,20 +317,20 @@ fn check_values_match_the_tests() {
         .collect();
     let mut problems = Vec::new();
     for page in pages() {
-        let mut of_results = None;
+        let mut result_column = None;
         for (at, line) in page.lines_outside_code_blocks() {
             let Some(row) = cells(line) else {
-                of_results = None;
+                result_column = None;
                 continue;
             };
             if row.last() == Some(&"Test") {
-                of_results = row.iter().position(|cell| *cell == "Result");
+                result_column = row.iter().position(|cell| *cell == "Result");
                 continue;
             }
             if is_table_separator(&row) {
                 continue;
             }
-            let Some(result) = of_results else { continue };
+            let Some(result) = result_column else { continue };
             let name = row[row.len() - 1].trim_matches('`');
             let bodies: Vec<&str> = sources.iter().filter_map(|source| function_body(source, name)).collect();
             if bodies.is_empty() {
@@ -359,12 +359,12 @@ fn function_body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
 #[test]
 fn every_mechanism_names_its_code() {
     let folder: &Path = &root().join("docs/mechanics");
-    let nameless: Vec<PathBuf> = files(folder, "md")
+    let pages_without_code: Vec<PathBuf> = files(folder, "md")
         .into_iter()
         .filter(|path| !path.ends_with("README.md"))
         .filter(|path| !Page::read(path.clone()).text.contains("\nCode: "))
         .collect();
-    assert!(nameless.is_empty(), "{nameless:?}");
+    assert!(pages_without_code.is_empty(), "{pages_without_code:?}");
 }
 
 /// Documents and comments must not refer to numbered chapters of texts outside the repository.

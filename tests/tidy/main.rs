@@ -105,9 +105,9 @@ fn build_script_watches_every_embedded_folder() {
 #[test]
 fn public_items_are_used() {
     let files = sources();
-    let stories = test_sources();
+    let test_files = test_sources();
     let mut uses: BTreeMap<&str, usize> = BTreeMap::new();
-    let lines = files.iter().chain(&stories).flat_map(Source::code);
+    let lines = files.iter().chain(&test_files).flat_map(Source::code);
     for word in
         lines.flat_map(|(_, line)| line.split(|letter: char| !letter.is_alphanumeric() && letter != '_'))
     {
@@ -188,9 +188,10 @@ fn simulator_uses_no_clock_files_or_unordered_maps() {
     ];
     let complaint =
         |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
-    let pure =
+    let restricted_sources =
         sources().into_iter().filter(|file| matches!(file.unit_name().as_str(), "world" | "voice" | "tools"));
-    let complaints: Vec<String> = pure.flat_map(|file| file.rule_violations(complaint)).collect();
+    let complaints: Vec<String> =
+        restricted_sources.flat_map(|file| file.rule_violations(complaint)).collect();
     assert_none(&complaints);
 }
 

@@ -100,7 +100,10 @@ mod tests {
             (NewRun { participant: Some(" ".to_owned()), ..base.clone() }, "--participant"),
             (NewRun { days: Some(28), ..base.clone() }, "28 days can be set only in a study"),
             (NewRun { cash: Some(2e6), ..base.clone() }, "$2,000,000 can be set only in a study"),
-            (NewRun { scenario: "paper".to_owned(), ..base.clone() }, "scenario paper can be set only in a study"),
+            (
+                NewRun { scenario: "paper".to_owned(), ..base.clone() },
+                "scenario paper can be set only in a study",
+            ),
         ] {
             let words = rejection_text(&new).expect(part);
             assert!(words.contains(part), "{words}");

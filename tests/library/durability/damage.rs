@@ -73,7 +73,7 @@ fn check_damage_to_the_trajectory(places: usize) {
         let place = copy_run(&folder, &other.path().join(number.to_string()));
         let path = place.join("trajectory.jsonl");
         let (at, cut) = damage_file(&path, &mut dice);
-        let hurt = fs::read(&path).expect("bytes");
+        let damaged_bytes = fs::read(&path).expect("bytes");
         match Session::open(&place, Access::Write, true) {
             // Only a last line without a line end may be dropped.
             Ok(mut session) => {
@@ -92,7 +92,11 @@ fn check_damage_to_the_trajectory(places: usize) {
                     text.contains("trajectory.jsonl") && text.contains("line"),
                     "byte {at}, cut {cut}: {text}"
                 );
-                assert_eq!(fs::read(&path).expect("bytes"), hurt, "a failed opening changes nothing");
+                assert_eq!(
+                    fs::read(&path).expect("bytes"),
+                    damaged_bytes,
+                    "a failed opening changes nothing"
+                );
                 // Opening the run read-only also fails.
                 assert!(Session::open(&place, Access::Read, false).is_err(), "byte {at}, cut {cut}");
                 refused += 1;

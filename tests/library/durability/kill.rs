@@ -26,9 +26,9 @@ fn start(runs: &Path, options: &[&str]) -> Child {
 }
 
 /// Returns random input for plain mode, about six lines per week.
-fn random_script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
+fn random_script(dice: &mut Dice, weeks: usize, is_new_run: bool) -> String {
     let mut lines = String::new();
-    if begins {
+    if is_new_run {
         opening_calls().iter().for_each(|(tool, args)| lines += &format!("{tool} {args}\n"));
     }
     for _ in 0..weeks {
@@ -134,11 +134,11 @@ fn check_kills(count: usize) {
         }
         let Some(folder) = only_run(place.path()) else { continue };
         let session = Session::open(&folder, Access::Write, true).unwrap_or_else(|error| panic!("{error}"));
-        let filed =
+        let week_count =
             session.journal().iter().filter(|entry| matches!(entry, JournalEntry::Advance { .. })).count();
-        assert_eq!(filed, confirmed.iter().filter(|word| *word == "next").count(), "run {number}");
-        assert_eq!(session.weeks().len(), filed, "run {number}: a week that was confirmed is complete");
-        weeks += filed;
+        assert_eq!(week_count, confirmed.iter().filter(|word| *word == "next").count(), "run {number}");
+        assert_eq!(session.weeks().len(), week_count, "run {number}: a week that was confirmed is complete");
+        weeks += week_count;
         drop(session);
         verify(&folder).unwrap_or_else(|error| panic!("run {number}: {error}"));
     }

@@ -13,39 +13,39 @@ use crate::support::dice::Dice;
 #[test]
 fn snapshot_restores_the_complete_state() {
     let (runs_folder, other) = (temporary_runs_folder(), temporary_runs_folder());
-    let mut straight = create_run(runs_folder.path(), 11, 120);
-    let folder = straight.folder().expect("a folder").to_owned();
+    let mut uninterrupted_session = create_run(runs_folder.path(), 11, 120);
+    let folder = uninterrupted_session.folder().expect("a folder").to_owned();
     let mut dice = Dice::for_test("snapshots");
-    apply_opening_decisions(&mut straight);
+    apply_opening_decisions(&mut uninterrupted_session);
     for number in 0..14 {
-        apply_random_actions(&mut straight, &mut dice);
-        straight.save().expect("saved");
+        apply_random_actions(&mut uninterrupted_session, &mut dice);
+        uninterrupted_session.save().expect("saved");
         let again = copy_run(&folder, &other.path().join(number.to_string()));
         // A snapshot can only be used with an up-to-date database.
         assert!(again.join("snapshot.bin").exists());
         let mut resumed = open_run(&again);
         assert_eq!(resumed.remarks(), [""; 0], "week {number}");
-        assert_eq!(session_view(&mut resumed), session_view(&mut straight), "week {number}");
+        assert_eq!(session_view(&mut resumed), session_view(&mut uninterrupted_session), "week {number}");
         // Undo also reverts actions from before the run was closed.
         let seed = dice.roll(1 << 20) as u64;
-        let go_on = |session: &mut Session| {
+        let continue_run = |session: &mut Session| {
             let mut dice = Dice::new(seed);
             let _ = session.undo(novamind::record::trajectory::record::Via::Form);
             (0..2).for_each(|_| apply_random_action(session, &mut dice));
             advance_week(session);
         };
-        go_on(&mut straight);
-        go_on(&mut resumed);
-        let (mut left, mut right) = (session_view(&mut resumed), session_view(&mut straight));
+        continue_run(&mut uninterrupted_session);
+        continue_run(&mut resumed);
+        let (mut left, mut right) = (session_view(&mut resumed), session_view(&mut uninterrupted_session));
         // The recorded times of submission differ, so they are replaced before the comparison.
         for view in [&mut left, &mut right] {
             view["rows"][4] = "submitted at".into();
         }
         assert_eq!(left, right, "after week {number}");
     }
-    let day = straight.day();
+    let day = uninterrupted_session.day();
     assert!(day >= 35, "the company went bankrupt too early for the test to be meaningful: day {day}");
-    drop(straight);
+    drop(uninterrupted_session);
     assert_eq!(verify(&folder).expect("it verifies").day, day);
 }
 
@@ -70,8 +70,8 @@ fn unusable_snapshots_are_replaced_by_replay() {
 
     let mut changed = late.clone();
     *changed.last_mut().expect("bytes") ^= 1;
-    let mut of_the_future = late.clone();
-    of_the_future[18] = b'9';
+    let mut later_format = late.clone();
+    later_format[18] = b'9';
     for (name, bytes, text) in [
         ("none", None, None),
         ("an earlier one", Some(early), None),
@@ -80,7 +80,7 @@ fn unusable_snapshots_are_replaced_by_replay() {
         ("half of one", Some(late[..late.len() / 2].to_vec()), Some("is damaged")),
         ("almost nothing", Some(late[..30].to_vec()), Some("is truncated")),
         ("an empty one", Some(Vec::new()), Some("another version or is damaged")),
-        ("one of another format", Some(of_the_future), Some("another version or is damaged")),
+        ("one of another format", Some(later_format), Some("another version or is damaged")),
     ] {
         let place = copy_run(&folder, &other.path().join(name));
         match bytes {

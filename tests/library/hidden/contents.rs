@@ -32,7 +32,7 @@ impl WatchedTables {
                 .map(|block| block.open_issue_days.iter().filter(|days| **days > 0).count())
                 .sum();
             let expectation = world.market.drift.expectation(group);
-            let mood = xray.mean_satisfaction(group);
+            let mean_values = xray.mean_satisfaction(group);
             let economy = |dimension| cell(xray.macro_multiplier(group, dimension));
             self.add_rows(
                 "hidden.groups",
@@ -42,8 +42,8 @@ impl WatchedTables {
                     integer(world.market.knowledge[group].level),
                     integer(xray.subscribers(group)),
                     cell(xray.reputation(group)),
-                    cell(mood.map(|mood| mood.0)),
-                    cell(mood.map(|mood| mood.1)),
+                    cell(mean_values.map(|mean_values| mean_values.0)),
+                    cell(mean_values.map(|mean_values| mean_values.1)),
                     integer(issues as i64),
                     cell(expectation.quality),
                     cell(expectation.c_max),
@@ -186,19 +186,19 @@ fn hidden_customers_match_the_requested_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
     play_until_several_groups_subscribe(&mut session);
-    let mut evenings = BTreeMap::new();
+    let mut rows_by_day = BTreeMap::new();
     for _ in 0..5 {
         advance_week(&mut session);
         let current = expected_subscriber_rows(&session);
         assert_eq!(query_hidden(&mut session, SUBSCRIBERS), current, "day {}", session.day());
-        evenings.insert(session.day(), current);
+        rows_by_day.insert(session.day(), current);
         make_offers(&mut session);
     }
     session.step(3, &mut |_| {}).expect("days");
-    evenings.insert(session.day(), expected_subscriber_rows(&session));
+    rows_by_day.insert(session.day(), expected_subscriber_rows(&session));
     advance_week(&mut session);
-    assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
-    for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
+    assert!(rows_by_day[&35].len() > 100, "{}", rows_by_day[&35].len());
+    for (day, expected) in rows_by_day.iter().chain(rows_by_day.iter().rev()) {
         let rows = session.inspect().query_hidden_tables(SUBSCRIBERS, Some(*day)).expect("a result").rows;
         // A query returns at most 5,000 rows.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
@@ -263,7 +263,7 @@ fn hidden_threads_match_the_customer_view() {
             .threads_on_shown_day()
             .find(|enterprise_thread_day| enterprise_thread_day.thread == number(1))
             .expect("its thread");
-        let judged = thread_day.plans[Plan::B];
+        let plan_state = thread_day.plans[Plan::B];
         let (answer, price) = match thread_day.answer {
             None => (Cell::Null, Cell::Null),
             Some(OfferResponse::Silence) => (text("silence"), Cell::Null),
@@ -277,9 +277,9 @@ fn hidden_threads_match_the_customer_view() {
             cell(thread_day.relationship),
             cell(thread_day.late_penalty),
             thread_day.reply_day.map_or(Cell::Null, integer),
-            cell(judged.quality),
-            cell((!judged.accepts_any_price).then_some(judged.accepts_below)),
-            cell(judged.counter),
+            cell(plan_state.quality),
+            cell((!plan_state.accepts_any_price).then_some(plan_state.accepts_below)),
+            cell(plan_state.counter),
             answer,
         ];
         assert_eq!(row[3..12], expected[..], "{row:?}");

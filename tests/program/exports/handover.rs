@@ -16,9 +16,9 @@ fn export_is_reproducible() {
     let home = Home::new();
     let run = played_run(&home, "P01");
     for ending in ["tar", "tar.gz"] {
-        let (first, said_first) = export_run(&home, &run, &format!("first.{ending}"));
-        let (second, said_second) = export_run(&home, &run, &format!("second.{ending}"));
-        assert_eq!(checksum(&said_first), checksum(&said_second));
+        let (first, first_output) = export_run(&home, &run, &format!("first.{ending}"));
+        let (second, second_output) = export_run(&home, &run, &format!("second.{ending}"));
+        assert_eq!(checksum(&first_output), checksum(&second_output));
         assert!(fs::read(first).expect("bytes") == fs::read(second).expect("bytes"), "{ending}");
     }
     let go_on = home.play(&["--run", &run_id(&run)], "set_prices A=13\n");

@@ -443,7 +443,7 @@ impl App {
     fn switch_screen(&mut self, screen: ScreenId) {
         self.record_view();
         if let Stage::Run(run) = &mut self.stage {
-            // Leaving a screen ends an edit, so that digits show screens after the user has returned.
+            // Leaving a screen ends an edit, so that the digit keys show screens again when the user returns.
             let left = run.screens.get_mut(run.screen);
             let pane = left.focused_index();
             left.set_focus(pane);

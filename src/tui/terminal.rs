@@ -175,7 +175,7 @@ fn enter_console_mode() -> io::Result<()> {
 }
 
 /// Restores the terminal and ends the program as SIGQUIT does by default, with a core dump. Does not need the main
-/// thread, so that a program that hangs is also ended.
+/// thread, so that it also ends a program that hangs.
 #[cfg(unix)]
 pub fn quit_with_core_dump() {
     restore_terminal();

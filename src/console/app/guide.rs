@@ -13,7 +13,7 @@ use novamind_glossary::Subject;
 use novamind_session::Access;
 use novamind_worker::request::Request;
 
-/// Name of the query of cancelled subscribers.
+/// Name of the query for cancelled subscribers.
 const CANCELLATIONS_QUERY: &str = "issues-of-leavers";
 
 impl App {

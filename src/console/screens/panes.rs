@@ -23,7 +23,7 @@ pub struct PaneBorder {
     pub title: String,
     /// Short status, at the right of the upper border.
     pub note: String,
-    /// Keys that work in the pane, shown in the lower border while it has the focus.
+    /// Keys that work in the pane, shown in the lower border while the pane has the focus.
     pub keys: String,
     /// Whether the keys are shown even without the focus, for example because they work in every pane.
     pub shows_keys_always: bool,
@@ -52,8 +52,8 @@ pub trait Pane<S> {
         None
     }
 
-    /// Returns the name with which the column layout of the table is saved. If the columns depend on a query, the table has
-    /// no name.
+    /// Returns the name under which the column layout of the table is saved. If the columns depend on a query, the
+    /// table has no name.
     fn table_name(&self) -> Option<&'static str> {
         None
     }

@@ -243,7 +243,7 @@ impl Plot<'_> {
         }
     }
 
-    /// Draws the band within its limits. Arrows mark the columns in which it continues beyond them.
+    /// Draws the band within its limits. Arrows mark the columns in which the band exceeds its limits.
     fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame, limits: [f64; 2]) {
         let Some(band) = self.band else { return };
         for at in 0..frame.area.width {
@@ -333,7 +333,7 @@ fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     rows
 }
 
-/// Returns the values between which a band is drawn around curves with these values.
+/// Returns the lower and the upper limit of a band around curves whose values have this range.
 fn band_limits([least, most]: [f64; 2]) -> [f64; 2] {
     let distance = (MAX_BAND_DISTANCE * (most - least)).max(MIN_BAND_DISTANCE * most.abs().max(least.abs()));
     [least - distance, most + distance]

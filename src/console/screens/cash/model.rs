@@ -196,7 +196,7 @@ pub fn cash_steps(ledger: &WeeklyLedger, company: &DisplayedCompany, week: u32, 
     steps
 }
 
-/// Formats dollars with an explicit sign.
+/// Formats whole dollars, with a minus sign for negative amounts.
 pub fn format_money(value: f64) -> String {
     let sign = if value <= -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped_number(value.abs(), 0))

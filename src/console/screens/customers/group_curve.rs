@@ -16,7 +16,8 @@ pub struct GroupCurve {
 }
 
 impl GroupCurve {
-    /// Marks the curve as outdated, because the company has changed. It is shown until the new curve arrives.
+    /// Marks the curve as outdated, because the company has changed. The old curve is shown until the new curve
+    /// arrives.
     pub fn set_outdated(&mut self) {
         self.is_outdated = true;
     }

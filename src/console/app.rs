@@ -1,6 +1,7 @@
 //! State of the console: messages become actions, actions change the state and produce orders for the worker.
 //!
-//! The state never blocks, reads a file or draws. Slow work is returned as an [`Order`], and its result arrives as a message.
+//! The state never blocks, reads a file or draws. Slow work is returned as an [`Order`], and its result arrives as a
+//! message.
 
 mod activity_log;
 mod breadcrumbs;

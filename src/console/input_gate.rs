@@ -1,5 +1,5 @@
-//! A gate for the thread that reads keys. While the user's editor is open, the gate is closed, so that the editor receives
-//! the keys.
+//! A gate for the thread that reads keys. While the user's editor is open, the gate is closed, so that the editor
+//! receives the keys.
 
 #[cfg(unix)]
 use std::io;

@@ -163,7 +163,8 @@ impl Console {
                 }
                 self.workers.wait_for_jobs(SUSPEND_TIMEOUT);
                 match self.is_editor_open() {
-                    // The editor has restored the terminal. The shell stops and continues the editor together with the console.
+                    // The editor has restored the terminal. The shell stops and continues the editor together with the
+                    // console.
                     true => signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)?,
                     false => self.screen.suspend(self.app.mouse)?,
                 }

@@ -1,5 +1,6 @@
-//! The user's own commands in `commands.toml` of the configuration folder: a key or an entry of the palette for a query,
-//! a rule, a sequence of calls, or an external program that receives rows (docs/guide/console.md#your-own-commands).
+//! The user's own commands in `commands.toml` of the configuration folder: a key or an entry of the palette for a
+//! query, a rule, a sequence of calls, or an external program that receives rows
+//! (docs/guide/console.md#your-own-commands).
 
 mod program;
 mod rows;

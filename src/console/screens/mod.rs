@@ -104,7 +104,8 @@ pub trait ScreenState {
         0
     }
 
-    /// Returns the title of the open item, such as a group or a tool. The item is shown next to a list or replaces the list.
+    /// Returns the title of the open item, such as a group or a tool. The item is shown next to a list or replaces the
+    /// list.
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         None
     }
@@ -139,7 +140,8 @@ pub trait ScreenState {
     }
 }
 
-/// The behavior and appearance of a screen. Screens that consist of panes implement this trait through [`panes::PaneScreen`].
+/// The behavior and appearance of a screen. Screens that consist of panes implement this trait through
+/// [`panes::PaneScreen`].
 pub trait Screen: ScreenState {
     /// Returns the scopes of the focused pane, the innermost first. The caller adds the global scope. If the first
     /// scope is a text scope, keys type characters.

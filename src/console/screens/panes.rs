@@ -1,4 +1,5 @@
-//! Screens that consist of panes: the trait of panes, and the code that manages focus, borders, filters, clicks and zoom.
+//! Screens that consist of panes: the trait of panes, and the code that manages focus, borders, filters, clicks and
+//! zoom.
 //!
 //! The screen owns the state, because the panes of the screen share the state. Each pane is a type without state that
 //! defines the behavior and the drawing of one area.
@@ -202,7 +203,8 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
         None
     }
 
-    /// Handles an action that does not depend on the focused pane. Returns `None` if the focused pane must handle the action.
+    /// Handles an action that does not depend on the focused pane. Returns `None` if the focused pane must handle the
+    /// action.
     fn handle_screen_action(&mut self, _: Action, _: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         None
     }
@@ -228,9 +230,9 @@ pub fn draw_pane<S: PaneScreen>(
     S::pane(name).draw_with_border(screen, canvas, placement, context);
 }
 
-/// Draws one of several panes that share an area: the focused pane, or the first pane if none of them has the focus. The
-/// area does not depend on the focus, so moving the focus does not move other panes. A mark in the lower border shows
-/// the number of panes.
+/// Draws one of several panes that share an area: the focused pane, or the first pane if none of them has the focus.
+/// The area does not depend on the focus, so moving the focus does not move other panes. A mark in the lower border
+/// shows the number of panes.
 pub fn draw_stack<S: PaneScreen>(
     screen: &S,
     names: &[S::PaneId],

@@ -67,7 +67,7 @@ pub(super) enum Sight {
     Help,
 }
 
-/// Condition without which a step is omitted.
+/// Condition of a step. If it is not met, the step is omitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Need {
@@ -153,7 +153,7 @@ fn contains_positive_number(value: &Value) -> bool {
 }
 
 impl Sight {
-    /// Returns the dialog that shows it, or `None` if a screen shows it.
+    /// Returns the dialog that shows the content, or `None` if a screen shows it.
     pub fn dialog(self) -> Option<DialogContent> {
         match self {
             Sight::Curve => Some(DialogContent::Curve),
@@ -165,7 +165,7 @@ impl Sight {
         }
     }
 
-    /// Returns whether the user sees it.
+    /// Returns whether the content is visible.
     pub fn is_shown(self, facts: &TourFacts<'_>) -> bool {
         if let Some(content) = self.dialog() {
             return facts.dialog.as_ref().is_some_and(|view| view.content == content && view.is_shown);

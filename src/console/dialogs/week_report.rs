@@ -290,8 +290,8 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: SectionLines<'a>)
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// Describes a due forecast and the actual value in one or two lines. `of_limit` means that the program submitted the
-/// forecast at the time limit.
+/// Describes a due forecast and the actual value in one or two lines. `of_limit` is true if the program submitted
+/// the forecast at the time limit.
 fn forecast_lines<'a>(
     canvas: &Canvas<'_>,
     due: &ScoredForecast,

@@ -25,8 +25,8 @@ pub struct OpenEditor {
 }
 
 impl Console {
-    /// Opens a text in the user's editor. If the editor cannot be opened, the application receives the
-    /// reason in `Message::EditorClosed`, as if the editor had failed.
+    /// Opens a text in the user's editor. If the editor cannot be opened, the application receives the reason in
+    /// `Message::EditorClosed`, as if the editor had failed.
     pub(super) fn open_editor(&mut self, document: EditorDocument) -> io::Result<()> {
         if let Err(reason) = self.start_editor(document) {
             self.close_editor()?;

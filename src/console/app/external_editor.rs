@@ -21,7 +21,7 @@ impl App {
     pub fn external_editor_rejection(&self) -> Option<&'static str> {
         const WRONG_TEXT: &str = "your editor opens notes, posts, SQL and code only";
         let Stage::Run(run) = &self.stage else { return Some(WRONG_TEXT) };
-        // The console cannot record what happens in another program, so sessions of participants do not allow one.
+        // The console cannot record another program, so sessions of participants do not allow external editors.
         let is_recorded =
             run.company.is_baseline() && run.company.is_running() || run.company.study.is_some();
         if is_recorded || self.study.is_some() {

@@ -128,7 +128,7 @@ impl App {
         }
         let screen = match &news {
             Response::ToolCalled(tool, answer, company) => {
-                // Keeps the message about saving if the user has left the run in the meantime.
+                // The call ends only a script. If the user has left the run in the meantime, the label of saving is kept.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.update_company(company.clone());
                 match answer {

@@ -236,8 +236,8 @@ impl Inbox {
         }
     }
 
-    /// Returns the unsent offers to waiting threads as text, by thread. The bulk offer is
-    /// returned once for each marked thread.
+    /// Returns the unsent offers to waiting threads as text, by thread. The bulk offer is returned once
+    /// for each marked thread.
     pub fn draft_offers(&self, company: &DisplayedCompany) -> BTreeMap<u32, String> {
         let marked = self.bulk_offer.iter().flat_map(|offer| self.marked.iter().map(move |number| (number, offer)));
         let all: BTreeMap<u32, &OfferDraft> =

@@ -97,8 +97,8 @@ impl PriceCurve {
     }
 }
 
-/// Returns the known group of individuals with the most leads in the measured weeks, or the first such group if
-/// there were no leads.
+/// Returns the known group of individuals with the most leads in the measured weeks, or the first such group if there
+/// were no leads.
 fn main_group(company: &DisplayedCompany) -> Option<Group> {
     let people = company.fits.iter().filter(|fit| !fit.group.is_enterprise());
     // The first of equal groups is preferred.

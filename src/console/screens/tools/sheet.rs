@@ -280,8 +280,7 @@ impl ArgumentBlock {
     }
 }
 
-/// Returns the name and price of every offer in a list of deals. Returns `None` if the notation is
-/// unknown.
+/// Returns the name and price of every offer in a list of deals. Returns `None` if the notation is unknown.
 fn deal_prices(list: &Value) -> Option<(Vec<(String, f64)>, DealPrices)> {
     let (mut rows, mut pointers) = (Vec::new(), Vec::new());
     for (at, deal) in list.as_array()?.iter().enumerate() {

@@ -236,7 +236,7 @@ impl OwnCommands {
         Some(if is_complete { OwnKeyMeaning::Command(at) } else { OwnKeyMeaning::Prefix })
     }
 
-    /// Formats the commands and problems as text in aligned columns, or an empty text if there are none.
+    /// Formats the commands as text in aligned columns. Returns an empty text if there are no commands.
     pub fn to_text(&self) -> String {
         if self.commands.is_empty() {
             return String::new();

@@ -11,7 +11,8 @@ use crate::theme::Role;
 
 /// Largest distance of a band from the curves, as a multiple of their range. Beyond this distance, the band is cut.
 const MAX_BAND_DISTANCE: f64 = 1.0;
-/// Smallest distance at which a band is cut, as a share of the largest value. Nearly constant curves are not flattened.
+/// Smallest distance at which a band is cut, as a share of the largest absolute value, so that the band of a nearly
+/// constant curve stays visible.
 const MIN_BAND_DISTANCE: f64 = 0.25;
 /// Distance between the arrows that mark a cut band, in columns.
 const CUT_MARK_DISTANCE: u16 = 4;

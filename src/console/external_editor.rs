@@ -100,7 +100,7 @@ fn create_private_file(document: &EditorDocument) -> io::Result<PathBuf> {
     loop {
         let name = format!("novamind-{}-{number}.{}", std::process::id(), document.extension);
         let path = folder.join(name);
-        // An existing file, also a link, is never opened.
+        // An existing file or link is never opened.
         match OpenOptions::new().write(true).create_new(true).mode(PRIVATE_MODE).open(&path) {
             Ok(mut file) => {
                 let end = if document.text.is_empty() || document.text.ends_with('\n') { "" } else { "\n" };

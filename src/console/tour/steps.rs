@@ -118,7 +118,8 @@ impl TourStep {
         is_possible && has_time && last_day >= weeks as u32 * WEEK_DAYS
     }
 
-    /// Returns whether the goal of a step that changes the company is reached. Other steps end when the user continues.
+    /// Returns whether the goal of a step that changes the company is reached. Returns false for a step that only has to be
+    /// read.
     pub fn is_reached(&self, company: &DisplayedCompany) -> bool {
         match &self.goal {
             Goal::Set { set, .. } => is_set(*set, company),

@@ -253,7 +253,7 @@ impl DecisionList {
         self.changes().iter().position(is_it)
     }
 
-    /// Returns the refused change of a row, if there is one.
+    /// Returns the problem with the change in a row, if there is one.
     pub(super) fn problem(&self, row: Row) -> Option<&Problem> {
         let listed = match row {
             Row::Decision(wanted) => self.position_of(wanted).map(|at| &self.changes()[at]),

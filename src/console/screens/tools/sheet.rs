@@ -341,7 +341,7 @@ impl ToolSheet {
         self
     }
 
-    /// Returns the sheet with updated current values and the drafts that still differ from the current values.
+    /// Returns the sheet with updated current values and the drafts of all cells that still exist.
     pub fn with_current_values(&self, company: &DisplayedCompany) -> ToolSheet {
         let mut sheet = ToolSheet::new(self.spec, company);
         for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {

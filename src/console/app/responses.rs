@@ -128,7 +128,7 @@ impl App {
         }
         let screen = match &news {
             Response::ToolCalled(tool, answer, company) => {
-                // The call ends only a script. If the user has left the run in the meantime, the label of saving is kept.
+                // Only the progress of a script ends. If the user has left the run in the meantime, its saving continues.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.update_company(company.clone());
                 match answer {

@@ -118,8 +118,7 @@ impl TourStep {
         is_possible && has_time && last_day >= weeks as u32 * WEEK_DAYS
     }
 
-    /// Returns whether the goal of a step that changes the company is reached. Returns false for a step that only has to be
-    /// read.
+    /// Returns whether a step that changes the company has reached its goal. Returns false for steps without a change.
     pub fn is_reached(&self, company: &DisplayedCompany) -> bool {
         match &self.goal {
             Goal::Set { set, .. } => is_set(*set, company),

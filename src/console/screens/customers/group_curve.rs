@@ -7,7 +7,7 @@ use novamind_tools::Rejection;
 use novamind_worker::page_questions::EstimatedCurveQuestion;
 use novamind_worker::question::Pending;
 
-/// The curve of a group, and the question for a newer one.
+/// The curve of a group, and the question that requests a newer curve.
 #[derive(Default)]
 pub struct GroupCurve {
     pending: Pending<EstimatedCurveQuestion>,

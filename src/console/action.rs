@@ -456,7 +456,7 @@ actions! {
     FinalPage {
         ToMenu "to-menu" "start menu" "Go to the start menu."
         WriteRunReport "report-of-run" "report" "Write the report into the run folder, as Markdown and HTML."
-        WriteRunCard "card-of-run" "card" "Write a summary card to share into the run folder, as text and as SVG."
+        WriteRunCard "card-of-run" "card" "Write a shareable summary card to the run folder, as text and as SVG."
         ReplayFromStart "replay-of-run" "replay" "Replay the run from its first day."
         Opponents "opponents" "opponents" "Play the strong policies and the baseline with the scenario and seed of this run, and rank the run among them."
         WhatIf "what-if" "what if" "Simulate the last twelve weeks again with other decisions."
@@ -494,7 +494,7 @@ actions! {
     Decisions {
         CycleDecision "cycle-decision" "change" "Change the selected decision: keep it, leave it out, scale its amounts, or replace its values. On another row, open the row."
         OmitDecision "drop-decision" "leave out" "Leave out the selected decision; restore a changed decision, or remove an added decision."
-        ScaleDecision "scale-decision" "scale" "Multiply the amounts of the selected decision by a factor; in the list of new decisions, all values of the tool from the first changed week on."
+        ScaleDecision "scale-decision" "scale" "Multiply the amounts of the selected decision by a factor; in the list of new decisions, multiply all values of the tool from the first changed week on."
         ReplaceDecision "replace-decision" "replace" "Replace the values of the selected decision in the form of its tool."
         AddDecision "add-decision" "add decision" "Add a decision to the week, in the form of its tool."
         NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or add one; up to three are compared."

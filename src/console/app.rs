@@ -1,6 +1,7 @@
 //! State of the console: messages become actions, actions change the state and produce orders for the worker.
 //!
-//! The state never blocks, reads a file or draws. Slow work is returned as an [`Order`], and its result arrives as a message.
+//! The state never blocks, reads a file or draws. Slow work is returned as an [`Order`], and its result arrives as a
+//! message.
 
 mod activity_log;
 mod breadcrumbs;
@@ -443,7 +444,7 @@ impl App {
     fn switch_screen(&mut self, screen: ScreenId) {
         self.record_view();
         if let Stage::Run(run) = &mut self.stage {
-            // Leaving a screen ends an edit, so that digits show screens after the user has returned.
+            // Leaving a screen ends an edit, so that the digit keys show screens again when the user returns.
             let left = run.screens.get_mut(run.screen);
             let pane = left.focused_index();
             left.set_focus(pane);

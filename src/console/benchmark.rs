@@ -1,4 +1,5 @@
-//! Response times of the console, measured with the real application and its threads. The output of the terminal is discarded.
+//! Response times of the console, measured with the real application and its threads. The output of the terminal is
+//! discarded.
 
 use std::io::{self, Sink};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -56,7 +57,8 @@ pub fn measure_keys_during_weeks(settings: Settings, run: &str, weeks: usize) ->
     Ok(seconds)
 }
 
-/// A headless console whose frames are written to a terminal that discards its output, so that writing counts as response time.
+/// A headless console whose frames are written to a terminal that discards its output, so that writing counts as
+/// response time.
 struct MeasuredConsole {
     headless: Headless,
     terminal: Terminal<CrosstermBackend<Sink>>,

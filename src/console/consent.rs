@@ -55,7 +55,8 @@ impl ConsentText {
         self.scroll.handle_action(action, self.visible_rows.get().max(1))
     }
 
-    /// Draws the text and the choices below it. `agree` and `decline` are the labels of the two choices, including their keys.
+    /// Draws the text and the choices below it. `agree` and `decline` are the labels of the two choices, including
+    /// their keys.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, title: &str, agree: &str, decline: &str) {
         canvas.clear(area, Role::Text);
         let width = area.width.saturating_sub(4).clamp(1, MAX_TEXT_WIDTH);

@@ -104,8 +104,8 @@ pub struct EditorDocument {
 pub struct Figure {
     /// Title of the figure, for example `cancellations of S1`.
     pub title: String,
-    /// Term that explains the figure: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`), or a
-    /// column (`ledger.amount`).
+    /// Term that explains the figure: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`),
+    /// or a column (`ledger.amount`).
     pub term: &'static str,
     /// Query for the source rows, if the figure has source rows.
     pub sql: Option<String>,

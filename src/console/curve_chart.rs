@@ -1,4 +1,4 @@
-//! The chart of a participation curve with the plans, for the curve explorer, Fit and the form of prices.
+//! The chart of a participation curve with the plans, for the curve explorer, the Fit pane and the price form.
 
 use ratatui::layout::Rect;
 
@@ -24,7 +24,7 @@ pub fn draw_curve_chart(
     let all = || plans.iter().chain(explorer.plans.iter());
     let top = all().map(|plan_point| plan_point.quality).fold(1.0, f64::max);
     let most = explorer.points.last().map_or(1.0, |point| point.price);
-    // A drafted price can be above the curve.
+    // A drafted price can be higher than the highest price of the curve.
     let most = all().map(|plan_point| plan_point.list_price).fold(most, f64::max);
     // Points above the chart are omitted, so that lines end at its upper edge. The band is clipped at the upper edge.
     let line = |of: fn(&CurvePoint) -> f64, role| {

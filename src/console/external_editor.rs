@@ -14,7 +14,7 @@ use novamind_tui::terminal::TerminalSettings;
 use novamind_tui::widgets::editor::MAX_BYTES;
 use novamind_worker::message::Message;
 
-/// Only the user can read the file.
+/// File mode: only the user can read and write the file.
 const PRIVATE_MODE: u32 = 0o600;
 
 /// An editor that uses the terminal.
@@ -25,7 +25,8 @@ pub struct OpenEditor {
 }
 
 impl Console {
-    /// Opens a text in the user's editor. If that fails, the application receives the reason as for an editor that failed.
+    /// Opens a text in the user's editor. If the editor cannot be opened, the application receives the reason in
+    /// `Message::EditorClosed`, as if the editor had failed.
     pub(super) fn open_editor(&mut self, document: EditorDocument) -> io::Result<()> {
         if let Err(reason) = self.start_editor(document) {
             self.close_editor()?;
@@ -39,7 +40,7 @@ impl Console {
         let path = create_private_file(&document).map_err(|error| {
             format!("The file for your editor cannot be written: {error}. The draft is unchanged.")
         })?;
-        // A change of the window size interrupts the read of a key.
+        // The signal for a new window size interrupts the thread that waits for a key.
         let wake = || drop(signal_hook::low_level::raise(signal_hook::consts::SIGWINCH));
         let started = self.gate.close(wake).and_then(|()| {
             let settings = self.screen.release();
@@ -69,7 +70,7 @@ impl Console {
         reclaimed
     }
 
-    /// Ends the editor, because the console ends. The file with the text is kept.
+    /// Terminates the editor when the console exits. The file with the text is kept.
     pub(super) fn end_editor(&mut self) {
         if let Some(editor) = self.editor.take() {
             let _ = Command::new("kill").arg(editor.process.to_string()).status();
@@ -99,7 +100,7 @@ fn create_private_file(document: &EditorDocument) -> io::Result<PathBuf> {
     loop {
         let name = format!("novamind-{}-{number}.{}", std::process::id(), document.extension);
         let path = folder.join(name);
-        // An existing file, also a link, is never opened.
+        // An existing file or link is never opened.
         match OpenOptions::new().write(true).create_new(true).mode(PRIVATE_MODE).open(&path) {
             Ok(mut file) => {
                 let end = if document.text.is_empty() || document.text.ends_with('\n') { "" } else { "\n" };
@@ -131,7 +132,8 @@ fn wait_in_background(mut child: Child, path: PathBuf, original: String, sender:
     });
 }
 
-/// Returns the edited text and removes the file. After an error, a changed file is kept, and the reason names it.
+/// Returns the edited text and removes the file. If an error occurs, a changed file is kept, and the error names the
+/// file.
 fn read_result(status: ExitStatus, path: &Path, original: &str) -> Result<String, String> {
     let edited = fs::read(path);
     let text = match &edited {
@@ -206,7 +208,7 @@ mod tests {
         let (result, path) = result_of("false", "one");
         let reason = result.expect_err("an error");
         assert!(reason.contains("the draft is unchanged") && !path.exists(), "{reason}");
-        // `sh` passes the file as the first argument; the editor writes it and is then killed.
+        // `sh` passes the file as the first argument; the editor writes the file and is then killed.
         let (result, path) = result_of("kill_self() { echo new > \"$1\"; kill -9 $$; }; kill_self", "one");
         let reason = result.expect_err("an error");
         assert!(reason.contains(&path.display().to_string()), "{reason}");

@@ -64,7 +64,8 @@ fn write_to_free_name(path: &Path, contents: &[u8]) -> io::Result<PathBuf> {
     }
 }
 
-/// Returns the file name with the next number: `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after `note.txt`.
+/// Returns the file name with the next number: `query-0007.csv` after `query-0006.csv`, `note-0002.txt` after
+/// `note.txt`.
 fn next_name(path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
     let numbered = stem.rsplit_once('-').and_then(|(name, number)| Some((name, number.parse::<u32>().ok()?)));

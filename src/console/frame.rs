@@ -261,8 +261,8 @@ fn time_left_label(app: &App) -> String {
 type TabFormat = fn(&str, &str, &str, bool) -> String;
 
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
-    // The first format in which every tab fits is used, otherwise the last format. In the narrowest windows only the current
-    // screen has its name.
+    // The first format in which every tab fits is used, otherwise the last format. In the narrowest windows, only the
+    // tab of the current screen shows a title.
     let ways: [TabFormat; 6] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
         |key, title, badge, _| format!(" {key} {title}{badge}"),

@@ -1,5 +1,5 @@
-//! A gate for the thread that reads keys. While the user's editor is open, the gate is closed, so that the editor receives
-//! the keys.
+//! A gate for the thread that reads keys. While the user's editor is open, the gate is closed, so that the editor
+//! receives the keys.
 
 #[cfg(unix)]
 use std::io;
@@ -10,11 +10,11 @@ use std::time::Duration;
 /// Time after which the thread that reads keys is woken again.
 #[cfg(unix)]
 const WAKE_INTERVAL: Duration = Duration::from_millis(50);
-/// Number of times that the thread that reads keys is woken.
+/// Maximum number of times that the thread that reads keys is woken.
 #[cfg(unix)]
 const MAX_WAKES: u32 = 40;
 
-/// Lets the thread that reads keys pause, so that another program receives the keys.
+/// A gate that pauses the thread that reads keys, so that another program receives the keys.
 #[derive(Default)]
 pub struct InputGate {
     state: Mutex<GateState>,

@@ -1,4 +1,5 @@
-//! The task of a lesson, drawn next to the screen or on a page: question, goals, hints, pitfalls and available features.
+//! The task of a lesson, drawn next to the screen or on a page: question, goals, hints, pitfalls and available
+//! features.
 
 use ratatui::layout::Rect;
 use ratatui::text::Line;

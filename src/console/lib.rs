@@ -1,10 +1,8 @@
 //! The terminal application.
 //!
 //! Input triggers actions, actions change the state, and a view without side effects draws the state. The session and
-//! the database run on
-//! separate threads and send their results through the same channel as the input. The screen never blocks. All
-//! displayed data comes
-//! from tool results, the weekly dashboard or guarded queries.
+//! the database run on separate threads and send their results through the same channel as the input. The screen never
+//! blocks. All displayed data comes from tool results, the weekly dashboard or guarded queries.
 
 mod action;
 pub mod app;
@@ -165,7 +163,8 @@ impl Console {
                 }
                 self.workers.wait_for_jobs(SUSPEND_TIMEOUT);
                 match self.is_editor_open() {
-                    // The editor has restored the terminal. The shell stops and continues the editor together with the console.
+                    // The editor has restored the terminal. The shell stops and continues the editor together with the
+                    // console.
                     true => signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)?,
                     false => self.screen.suspend(self.app.mouse)?,
                 }
@@ -250,7 +249,7 @@ fn spawn_input_threads(sender: Sender<Message>, gate: &Arc<InputGate>) {
     std::thread::spawn(move || {
         while let Ok(event) = crossterm::event::read() {
             if key_gate.is_closed() && matches!(event, crossterm::event::Event::Resize(..)) {
-                // The event is the one that interrupts the read.
+                // This event was raised only to interrupt the read, so it is dropped.
                 key_gate.pass();
                 continue;
             }

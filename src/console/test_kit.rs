@@ -127,7 +127,7 @@ pub fn draw_at_all_sizes(screen: &mut dyn Screen, company: &DisplayedCompany) {
         let small = small.filter(|(width, height)| (width + 3 * height) % 151 == 0);
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
             screen_text(screen, company, width, height);
-            // Zoomed panes are drawn only in some of these sizes.
+            // Zoomed panes are drawn only at some of these sizes.
             if height % 6 == 0 || height == 37 {
                 zoomed_text(screen, company, width, height);
             }

@@ -44,7 +44,7 @@ pub struct Canvas<'a> {
     pub stale: bool,
     /// Text that is shown in place of a chart without data.
     pub empty_chart_text: &'static str,
-    /// Marker with which curves are drawn.
+    /// Marker that is used to draw curves.
     pub marker: Marker,
     /// Breadcrumbs that are shown before the title of the focused pane.
     pub breadcrumbs: Vec<String>,
@@ -188,8 +188,8 @@ impl<'a> Canvas<'a> {
         self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Text);
     }
 
-    /// Returns the first visible row of a list, for which the selected row is near the middle, and draws the marks of
-    /// [`Canvas::draw_scroll_marks`].
+    /// Returns the first visible row of a list, chosen so that the selected row is near the middle, and draws the marks
+    /// of [`Canvas::draw_scroll_marks`].
     pub fn scroll_to_row(&mut self, list: Rect, selected: usize, rows: usize) -> usize {
         let from = first_visible_row(selected, list.height as usize, rows);
         self.draw_scroll_marks(list, from, rows);
@@ -218,8 +218,8 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws a mark next to the right end of a row, on the border or in a gap. Without either, the mark covers the end
-    /// of the row.
+    /// Draws a mark next to the right end of a row, on the border or in a gap. If there is neither, the mark covers the
+    /// end of the row.
     fn draw_mark_beside(&mut self, row: Rect, mark: &str) {
         let style = self.style(Role::Key);
         let beside = Position::new(row.right(), row.y);
@@ -281,7 +281,7 @@ pub fn row_rects(area: Rect) -> impl Iterator<Item = Rect> {
     (area.top()..area.bottom()).map(move |y| Rect { y, height: 1, ..area })
 }
 
-/// Returns the first visible row for which the selected row is near the middle.
+/// Returns the first visible row, chosen so that the selected row is near the middle.
 pub fn first_visible_row(selected: usize, height: usize, rows: usize) -> usize {
     selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
 }

@@ -12,8 +12,8 @@ use super::theme::Role;
 /// A match: the index of the entry, and the positions of the matched letters in the entry's title.
 pub type FuzzyMatch = (usize, Vec<u32>);
 
-/// Returns the matching entries, the best first. Matches in titles rank higher than matches in explanations. Without a
-/// search text, returns all entries in their order.
+/// Returns the matching entries, the best first. Matches in titles rank higher than matches in explanations. If the
+/// search text is empty, returns all entries in their original order.
 pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<FuzzyMatch> {
     let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
     let mut matcher = Matcher::new(Config::DEFAULT);

@@ -25,7 +25,7 @@ impl Glyphs {
         }
     }
 
-    /// Returns the marker with which curves are drawn.
+    /// Returns the marker that is used to draw curves.
     pub fn marker(self) -> Marker {
         match self {
             Glyphs::Braille => Marker::Braille,

@@ -1,4 +1,4 @@
-//! Components of terminal applications that do not depend on the simulator: canvas, themes, widgets, keys, fuzzy
+//! Components of terminal applications, independent of the simulator: canvas, themes, widgets, keys, fuzzy
 //! search, and pictures of frames.
 
 pub mod ascii;

@@ -203,7 +203,8 @@ fn quoted_length(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// Returns the length of a number token, which can contain digits, letters, a decimal point and an exponent with a sign.
+/// Returns the length of a number token, which can contain digits, letters, a decimal point and an exponent with a
+/// sign.
 fn number_length(rest: &str) -> usize {
     let mut before = ' ';
     let part_of = |letter: char| {
@@ -216,7 +217,8 @@ fn number_length(rest: &str) -> usize {
 }
 
 /// Returns the range of the statement at a position without its final semicolon, the index of the statement, and the
-/// number of statements. A position after the last semicolon belongs to the last statement if no further statement follows.
+/// number of statements. A position after the last semicolon belongs to the last statement if no further statement
+/// follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let pieces = tokenize(sql);
     let ends =

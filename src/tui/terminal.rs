@@ -102,7 +102,7 @@ impl TerminalScreen {
     /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn reclaim(&mut self, settings: &TerminalSettings, mouse: bool) -> io::Result<()> {
-        // The settings are restored first, because they are the ones that apply after the program has ended.
+        // The settings are restored first, so that they also apply after this program has ended.
         settings.restore();
         self.resume(mouse)
     }
@@ -157,7 +157,8 @@ impl TerminalScreen {
 
     /// Copies text to the clipboard, if the terminal permits it.
     pub fn copy_to_clipboard(&mut self, text: &str) {
-        // Terminals without a clipboard ignore the escape sequence. Errors are ignored, because the text is also on the screen.
+        // Terminals without a clipboard ignore the escape sequence. Errors are ignored, because the text is also on the
+        // screen.
         let _ = execute!(self.terminal.backend_mut(), CopyToClipboard::to_clipboard_from(text));
     }
 }
@@ -175,7 +176,7 @@ fn enter_console_mode() -> io::Result<()> {
 }
 
 /// Restores the terminal and ends the program as SIGQUIT does by default, with a core dump. Does not need the main
-/// thread, so that a program that hangs is also ended.
+/// thread, so that it also ends a program that hangs.
 #[cfg(unix)]
 pub fn quit_with_core_dump() {
     restore_terminal();

@@ -73,7 +73,8 @@ impl App {
         self.show_screen(screen);
     }
 
-    /// Goes back to the last breadcrumb if escape has nothing to close on this screen. Returns whether the screen changed.
+    /// Goes back to the last breadcrumb if escape has nothing to close on this screen. Returns whether the screen
+    /// changed.
     pub(super) fn go_back_to_breadcrumb(&mut self, action: Action) -> bool {
         let Stage::Run(run) = &mut self.stage else { return false };
         if action != Action::Close || run.screens.sql.is_running() {

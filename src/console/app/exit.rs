@@ -1,4 +1,5 @@
-//! Leaving a run: open views are recorded as left, the run is saved and closed, and then the menu opens or the program exits.
+//! Leaving a run: open views are recorded as left, the run is saved and closed, and then the menu opens or the program
+//! exits.
 
 use super::{App, BusyState, Order, Stage};
 use crate::context::ScreenId;

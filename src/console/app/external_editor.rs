@@ -17,11 +17,11 @@ impl App {
         }
     }
 
-    /// Returns why the text with the focus cannot be opened in the user's editor, or `None` if it can.
+    /// Returns why the focused text cannot be opened in the user's editor, or `None` if it can.
     pub fn external_editor_rejection(&self) -> Option<&'static str> {
         const WRONG_TEXT: &str = "your editor opens notes, posts, SQL and code only";
         let Stage::Run(run) = &self.stage else { return Some(WRONG_TEXT) };
-        // What happens in another program is not recorded, so a session of a participant does not allow it.
+        // The console cannot record another program, so sessions of participants do not allow external editors.
         let is_recorded =
             run.company.is_baseline() && run.company.is_running() || run.company.study.is_some();
         if is_recorded || self.study.is_some() {
@@ -35,7 +35,7 @@ impl App {
     pub(super) fn finish_external_edit(&mut self, result: Result<String, String>) {
         self.is_editing_externally = false;
         let now = self.stopwatch.elapsed();
-        // The console received no keys from the editor. The user was present, so no idle period is recorded.
+        // The console received no keys while the editor was open. The user was present, so no idle period is recorded.
         for (event, idle_ms, window) in self.presence.handle_input(false, now) {
             self.record_presence(event, idle_ms, window);
         }

@@ -13,7 +13,7 @@ use novamind_glossary::Subject;
 use novamind_session::Access;
 use novamind_worker::request::Request;
 
-/// Name of the query of cancelled subscribers.
+/// Name of the query for cancelled subscribers.
 const CANCELLATIONS_QUERY: &str = "issues-of-leavers";
 
 impl App {
@@ -64,7 +64,7 @@ impl App {
             return self
                 .show_error("baseline runs have no tour; Tour in the start menu opens a run for the tour");
         }
-        // The settings that the tour proposes suit its own run and a practice run.
+        // The settings that the tour proposes suit the tour's own run and a practice run.
         let seen = &run.company.observation;
         if !of_practice && !tour::is_tour_run(&seen.scenario, seen.seed.unwrap_or_default(), seen.last_day) {
             return self.show_error("the tour has its own run; open that run with Tour in the start menu");

@@ -25,15 +25,15 @@ pub(super) struct KeyEffects {
 impl App {
     /// Draws a frame and stores what the application needs to handle input. Returns the position of the cursor.
     ///
-    /// The frame is compared with the frame before. If the only key between them changed nothing, the frame is drawn
-    /// again with the reason in the footer.
+    /// The frame is compared with the previous frame. If only one key was pressed between the two frames and it changed
+    /// nothing, the frame is drawn again with the reason in the footer.
     pub fn draw(&mut self, buffer: &mut Buffer) -> Option<Position> {
         let mut drawn = draw_frame(self, buffer);
         if self.is_unchanged_by_key(digest_above_footer(buffer, &drawn))
             && let Some(chords) = self.key_effects.without_work.take()
         {
             let reason = self.reason_without_effect(&chords);
-            // Leaving and moving once too often is no mistake.
+            // Pressing escape or a movement key once too often is not an error.
             match chords.last().is_some_and(|chord| chord.is_escape() || chord.is_movement()) {
                 true => self.show_status(reason),
                 false => self.show_error(reason),

@@ -1,4 +1,5 @@
-//! Open dialogs, the topmost last. Each dialog records how long it was open and how much time the user spent on its steps.
+//! Open dialogs, the topmost last. Each dialog records how long it was open and how much time the user spent on its
+//! steps.
 
 use std::time::Duration;
 

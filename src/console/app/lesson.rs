@@ -18,7 +18,7 @@ use novamind_tools::Rejection;
 use novamind_worker::company::DisplayedCompany;
 use novamind_worker::request::{LessonRequest, Request};
 
-const NO_RATIONALE: &str = "the lesson asks for none";
+const NO_RATIONALE: &str = "(not asked for in this lesson)";
 const NO_LESSON: &str = "this run is not part of a lesson; the start menu lists lessons";
 
 /// Console state of the lesson that a run belongs to.

@@ -118,7 +118,7 @@ impl App {
         if !is_accepted {
             self.own_lines.lines.clear();
             let reason = self.status.as_ref().map_or(String::new(), |status| status.text.clone());
-            // The part that the footer could cut off is the reason, which the form of the tool also shows.
+            // The reason is last, because the footer can cut off the end, and the form of the tool repeats the reason.
             let rest = if left == 0 { String::new() } else { format!(", {left} not executed") };
             return self
                 .show_error(format!("{name}: rejected line {} of {count}{rest}: {reason}", count - left));

@@ -128,7 +128,7 @@ impl App {
         }
         let screen = match &news {
             Response::ToolCalled(tool, answer, company) => {
-                // Keeps the message about saving if the user has left the run in the meantime.
+                // Only the label of a script is removed. If the user has left the run, the label for saving remains.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
                 self.update_company(company.clone());
                 match answer {

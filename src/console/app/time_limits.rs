@@ -35,7 +35,8 @@ impl App {
         self.stop_clock(Some(TIME_LIMIT_RATIONALE.to_owned()), true);
     }
 
-    /// Returns the time limit notice above the screen. The notice handles no keys, so that the user can continue typing.
+    /// Returns the time limit notice above the screen. The notice handles no keys, so that the user can continue
+    /// typing.
     pub fn limit_notice(&self) -> Option<String> {
         let (scope, reached) = self.time_limit.notice?;
         let run = self.run().filter(|run| run.company.is_running())?;
@@ -46,7 +47,8 @@ impl App {
         })
     }
 
-    /// Submits the week when the time for the week has ended. The participant must answer due questions of the study first.
+    /// Submits the week when the time for the week has ended. The participant must answer due questions of the study
+    /// first.
     pub(super) fn enforce_week_limit(&mut self) {
         if !self.time_limit.must_submit_week
             || self.has_due_questions()

@@ -82,8 +82,8 @@ impl TypingLog {
         }
     }
 
-    /// Ends a draft and returns its statistics, or `None` if the draft was not edited. With `keep`, the statistics
-    /// include the text of an abandoned draft.
+    /// Ends a draft and returns its statistics, or `None` if the draft was not edited. If `keep` is true, the
+    /// statistics include the text of an abandoned draft.
     pub fn finish(&mut self, place: &str, outcome: TextEditOutcome, keep: bool) -> Option<TextEdit> {
         self.texts.remove(place).map(|episode| episode.into_draft(place, outcome, keep))
     }

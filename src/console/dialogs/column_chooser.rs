@@ -72,7 +72,7 @@ impl ColumnChooser {
 
     /// Shows the changed layout in the dialog and in the table.
     fn apply(&mut self) -> DialogResponse {
-        // The original order needs no entry, so that it also applies to columns of later versions.
+        // The original order is not saved, so that it also applies to columns that later versions add.
         let original = self.columns.iter().map(|column| &column.title);
         if self.layout.order.iter().eq(original) {
             self.layout.order.clear();

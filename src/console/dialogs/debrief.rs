@@ -1,4 +1,5 @@
-//! The debrief of a lesson: cash compared with the reference play and the pitfall play, differing decisions, and guesses.
+//! The debrief of a lesson: cash compared with the reference play and the pitfall play, differing decisions, and
+//! guesses.
 
 use std::sync::Arc;
 

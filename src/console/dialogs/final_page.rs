@@ -324,7 +324,7 @@ fn ranking_lines<'a>(
                 lines.extend(caveat_lines.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
             }
             false if best > 0 => {
-                // If space is short, only the first part of the caveat is shown, which describes the publication.
+                // If there is little space, only the first part of the caveat is shown. It describes the publication.
                 let first = caveat.split("; ").next().unwrap_or_default().to_owned();
                 let text = first_fitting([caveat.clone(), first], width as usize);
                 lines.push(TextLine::from(canvas.span(text, Role::Dim)));
@@ -336,7 +336,7 @@ fn ranking_lines<'a>(
     lines
 }
 
-/// Formats the last day of a ranked result: `504 days`, or nothing if it is not published.
+/// Formats the last day of a ranked result: `504 days`, or an empty text if the day is not published.
 fn format_days(days: Option<u32>) -> String {
     days.map_or(String::new(), |days| format!("{days} days"))
 }

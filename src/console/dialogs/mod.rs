@@ -118,7 +118,7 @@ pub trait Dialog {
         None
     }
 
-    /// Returns what the dialog shows to a step of the tour.
+    /// Returns the state of the dialog that the tour needs, if a step of the tour uses the dialog.
     fn tour_view(&self) -> Option<DialogView> {
         None
     }

@@ -149,8 +149,8 @@ impl Dialog for WeekReportDialog {
 }
 
 impl WeekReportDialog {
-    /// Returns the lines and the positions of selectable lines. If the height is small, optional lines are omitted. If it
-    /// is too small for all sections, no line is omitted, because the user must scroll anyway.
+    /// Returns the lines and the positions of selectable lines. If the height is small, optional lines are omitted. If
+    /// it is too small for all sections, no line is omitted, because the user must scroll anyway.
     fn report_lines<'a>(
         &self,
         canvas: &Canvas<'_>,
@@ -290,8 +290,8 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: SectionLines<'a>)
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// Describes a due forecast and the actual value in one or two lines. `of_limit` means that the program submitted the
-/// forecast at the time limit.
+/// Describes a due forecast and the actual value in one or two lines. `of_limit` is true if the program submitted
+/// the forecast at the time limit.
 fn forecast_lines<'a>(
     canvas: &Canvas<'_>,
     due: &ScoredForecast,
@@ -477,7 +477,8 @@ fn notices_section<'a>(
     distinct_notices.into_iter().rev().map(line).collect()
 }
 
-/// Lists action items in at most two rows each, and the key for the next step. Suggestions are included if there is space.
+/// Lists action items in at most two rows each, and the key for the next step. Suggestions are included if there is
+/// space.
 fn next_steps_section<'a>(
     canvas: &Canvas<'_>,
     needs: &[ActionItem],

@@ -1,5 +1,6 @@
-//! The user's own commands in `commands.toml` of the configuration folder: a key or an entry of the palette for a query,
-//! a rule, a sequence of calls, or an external program that receives rows (docs/guide/console.md#your-own-commands).
+//! The user's own commands in `commands.toml` of the configuration folder: a key or an entry of the palette for a
+//! query, a rule, a sequence of calls, or an external program that receives rows
+//! (docs/guide/console.md#your-own-commands).
 
 mod program;
 mod rows;
@@ -38,7 +39,7 @@ pub enum OwnAction {
     Query(String),
     /// Opens rules in the inbox, with their preview.
     Rules(String),
-    /// Executes tool calls in order, after a confirmation. Each call has its line.
+    /// Executes tool calls in order, after a confirmation. Each call is stored with the text of its line.
     Lines(Vec<(String, ToolId, Value)>),
     /// Runs an external program.
     Program(ExternalProgram),
@@ -62,18 +63,18 @@ pub struct ExternalProgram {
 pub struct OwnCommand {
     /// Name of the command in the palette.
     pub name: String,
-    /// Keys of the command, which may be empty.
+    /// Keys of the command. Empty if the command has no keys.
     pub keys: Vec<Chord>,
     /// What the command does.
     pub action: OwnAction,
 }
 
-/// All valid own commands, and the problems of the others.
+/// All valid own commands, and the problems of the invalid ones.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct OwnCommands {
     /// Valid commands in the order of the file.
     pub commands: Vec<OwnCommand>,
-    /// Problems of the file, with the line and what to do.
+    /// Problems in the file, each with its line number and a correction.
     pub problems: Vec<String>,
 }
 
@@ -89,10 +90,10 @@ pub enum OwnKeyMeaning {
 /// Returns why own commands cannot be used in a run, if they cannot.
 pub fn own_commands_refusal(company: &DisplayedCompany, has_participant: bool) -> Option<&'static str> {
     if has_participant {
-        return Some("own commands are closed in a study: they are help from outside");
+        return Some("own commands are closed in a study, because they are outside help");
     }
     (company.is_baseline() && company.is_running()).then_some(
-        "own commands are closed in an unfinished baseline run: they are help from outside, which agents do not have",
+        "own commands are closed in an unfinished baseline run, because they are outside help that agents do not have",
     )
 }
 
@@ -138,7 +139,7 @@ impl OwnCommand {
         }
     }
 
-    /// Returns the keys of the command as text, which may be empty.
+    /// Returns the keys of the command as text, or an empty text if the command has no keys.
     pub fn key_label(&self) -> String {
         format_sequence(&self.keys)
     }
@@ -235,7 +236,7 @@ impl OwnCommands {
         Some(if is_complete { OwnKeyMeaning::Command(at) } else { OwnKeyMeaning::Prefix })
     }
 
-    /// Formats the commands and problems as text in aligned columns, or an empty text if there are none.
+    /// Formats the commands as text in aligned columns. Returns an empty text if there are no commands.
     pub fn to_text(&self) -> String {
         if self.commands.is_empty() {
             return String::new();

@@ -16,7 +16,7 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
         Activity::Dialog(dialog) => {
             let end = match dialog.outcome {
                 DialogOutcome::Confirmed => "confirmed",
-                DialogOutcome::Cancelled => "left",
+                DialogOutcome::Cancelled => "cancelled",
             };
             let steps =
                 dialog.steps.iter().map(|step| format!("{} {}", step.step, format_millis(step.for_ms)));

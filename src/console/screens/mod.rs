@@ -104,7 +104,8 @@ pub trait ScreenState {
         0
     }
 
-    /// Returns the title of the open item, such as a group or a tool. The item is shown next to a list or replaces the list.
+    /// Returns the title of the open item, such as a group or a tool. The item is shown next to a list or replaces the
+    /// list.
     fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         None
     }
@@ -119,7 +120,8 @@ pub trait ScreenState {
         0
     }
 
-    /// Called when the user selects the screen by its key, also while the screen is shown. Opens the same view each time.
+    /// Called when the user selects the screen by its key, even if the screen is already shown. Opens the same
+    /// view each time.
     fn show_first_view(&mut self) {}
 
     /// Returns the recorded kind and the recorded name of the open object.
@@ -138,7 +140,8 @@ pub trait ScreenState {
     }
 }
 
-/// The behavior and appearance of a screen. Screens that consist of panes implement this trait through [`panes::PaneScreen`].
+/// The behavior and appearance of a screen. Screens that consist of panes implement this trait through
+/// [`panes::PaneScreen`].
 pub trait Screen: ScreenState {
     /// Returns the scopes of the focused pane, the innermost first. The caller adds the global scope. If the first
     /// scope is a text scope, keys type characters.
@@ -172,8 +175,8 @@ pub trait Screen: ScreenState {
     /// Returns the title of the focused pane and its table, if the pane has a table with several columns.
     fn focused_table(&self, look: &ScreenContext<'_>) -> Option<(String, &Table)>;
 
-    /// Arranges the columns of the focused table. Returns the name with which the layout is saved, or `None` if the layout
-    /// applies only until the table is rebuilt.
+    /// Arranges the columns of the focused table. Returns the name under which the layout is saved, or `None` if the
+    /// layout applies only until the table is rebuilt.
     fn set_focused_layout(&mut self, layout: ColumnLayout) -> Option<&'static str>;
 
     /// Arranges the columns of all tables of the screen that have a name.

@@ -1,4 +1,5 @@
-//! Screens that consist of panes: the trait of panes, and the code that manages focus, borders, filters, clicks and zoom.
+//! Screens that consist of panes: the trait of panes, and the code that manages focus, borders, filters, clicks and
+//! zoom.
 //!
 //! The screen owns the state, because the panes of the screen share the state. Each pane is a type without state that
 //! defines the behavior and the drawing of one area.
@@ -23,7 +24,7 @@ pub struct PaneBorder {
     pub title: String,
     /// Short status, at the right of the upper border.
     pub note: String,
-    /// Keys that work in the pane, shown in the lower border while it has the focus.
+    /// Keys that work in the pane, shown in the lower border while the pane has the focus.
     pub keys: String,
     /// Whether the keys are shown even without the focus, for example because they work in every pane.
     pub shows_keys_always: bool,
@@ -52,8 +53,8 @@ pub trait Pane<S> {
         None
     }
 
-    /// Returns the name with which the column layout of the table is saved. If the columns depend on a query, the table has
-    /// no name.
+    /// Returns the name under which the column layout of the table is saved. If the columns depend on a query, the
+    /// table has no name.
     fn table_name(&self) -> Option<&'static str> {
         None
     }
@@ -202,7 +203,8 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
         None
     }
 
-    /// Handles an action that does not depend on the focused pane. Returns `None` if the focused pane must handle the action.
+    /// Handles an action that does not depend on the focused pane. Returns `None` if the focused pane must handle the
+    /// action.
     fn handle_screen_action(&mut self, _: Action, _: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         None
     }
@@ -228,9 +230,9 @@ pub fn draw_pane<S: PaneScreen>(
     S::pane(name).draw_with_border(screen, canvas, placement, context);
 }
 
-/// Draws one of several panes that share an area: the focused pane, or the first pane if none of them has the focus. The
-/// area does not depend on the focus, so moving the focus does not move other panes. A mark in the lower border shows
-/// the number of panes.
+/// Draws one of several panes that share an area: the focused pane, or the first pane if none of them has the focus.
+/// The area does not depend on the focus, so moving the focus does not move other panes. A mark in the lower border
+/// shows the number of panes.
 pub fn draw_stack<S: PaneScreen>(
     screen: &S,
     names: &[S::PaneId],

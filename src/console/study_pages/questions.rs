@@ -62,7 +62,8 @@ impl QuestionPage {
         matches!(self.current_draft().input, AnswerInput::Choice(_) | AnswerInput::MultipleChoice(..))
     }
 
-    /// Shows a question of the page. If the question is shown for the first time, returns the effect that records the view.
+    /// Shows a question of the page. If the question is shown for the first time, returns the effect that records the
+    /// view.
     fn show_question(&mut self, at: usize) -> Option<Effect> {
         self.current = at.min(self.drafts.len().saturating_sub(1));
         (self.first_line, self.problem) = (0, None);

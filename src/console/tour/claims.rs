@@ -49,7 +49,7 @@ fn figure(name: &str, company: &DisplayedCompany) -> Option<String> {
     })
 }
 
-/// Returns the delivered quality of the plans, which is one value while all plans have the same tier.
+/// Returns the delivered quality of each plan, or a single value if the quality is the same for all plans.
 fn qualities(fit: &Fit) -> String {
     let [first, others @ ..] = Plan::ALL.map(|plan| format!("{:.2}", fit.plans[plan].quality));
     match others.iter().all(|other| *other == first) {

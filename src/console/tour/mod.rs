@@ -28,7 +28,7 @@ const MAX_LINES: usize = 6;
 pub struct Tour {
     /// Index of the current step, or `None` before the first update.
     step: Option<usize>,
-    /// Whether the current step has shown what it names.
+    /// Whether the content that the current step refers to has been shown.
     is_seen: bool,
     shown: ShownStep,
 }
@@ -134,8 +134,8 @@ impl Tour {
     }
 }
 
-/// Returns the step at which a user resumes: the step after the last one whose goal is reached, not counting steps after
-/// the first open goal.
+/// Returns the step at which a user resumes: the step after the last one whose goal is reached, not counting steps
+/// after the first open goal.
 fn first_step(facts: &TourFacts<'_>) -> usize {
     let is_open =
         |step: &TourStep| !matches!(step.goal, Goal::Read { .. }) && !step.is_reached(facts.company);

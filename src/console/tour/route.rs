@@ -1,7 +1,7 @@
 //! The keys that lead to the goal of a step, from wherever the user is.
 //!
-//! A dialog or a text field that the step does not need is closed first, and only its key is shown until it is closed.
-//! So no key of a step reaches another pane or field than the step means.
+//! A dialog or a text field that the step does not need is closed first. Until then, only the key that closes it is
+//! shown. Therefore, no key of a step reaches a pane or a field that the step does not intend.
 
 use super::claims::insert_figures;
 use super::steps::{Goal, Sight, TourStep};
@@ -14,7 +14,7 @@ use novamind_worker::company::DisplayedCompany;
 
 /// Rationale that the tour proposes for the first week.
 const EXAMPLE_RATIONALE: &str = "A first try.";
-/// Text that finds the query of cancelled subscribers in the palette.
+/// Text that finds the query for cancelled subscribers in the palette.
 const CANCELLATIONS_QUERY_WORDS: &str = "their issues";
 /// Actions that close a dialog or end typing.
 const CLOSING_ACTIONS: [Action; 7] = [
@@ -27,7 +27,7 @@ const CLOSING_ACTIONS: [Action; 7] = [
     Action::RestoreDrafts,
 ];
 
-/// What the user sees and where keys go, as far as the tour depends on it.
+/// The state of the console on which the tour depends: what the user sees, and which keys apply.
 pub struct TourFacts<'a> {
     /// The displayed company.
     pub company: &'a DisplayedCompany,
@@ -47,7 +47,7 @@ pub struct TourFacts<'a> {
     pub customers: CustomersFacts,
     /// The form that has the focus.
     pub form: Option<FormFacts>,
-    /// Whether the SQL screen shows rows of the query of cancelled subscribers.
+    /// Whether the SQL screen shows rows of the query for cancelled subscribers.
     pub shows_cancellations: bool,
 }
 
@@ -65,15 +65,15 @@ pub struct NextWeekFacts {
 pub struct CustomersFacts {
     /// Whether a group is open.
     pub is_group_open: bool,
-    /// Number of times that the focus must move to the pane of groups, or to Fit if a group is open.
+    /// Number of focus moves to the groups pane, or to Fit if a group is open.
     pub panes_to_goal: usize,
-    /// Number of times that the focus must move to Fit after a group was opened.
+    /// Number of focus moves to Fit after a group was opened.
     pub panes_to_fit: usize,
-    /// Number of times that the focus must move to the pane of groups after the open group was closed.
+    /// Number of focus moves to the groups pane after the open group was closed.
     pub panes_to_list: usize,
-    /// Rows from the selected group down to the first known group; negative if it is above.
+    /// Rows from the selected group down to the first known group. Negative if the first known group is above.
     pub rows_to_example: isize,
-    /// Columns from the selected column to the cancellations; negative if they are on the left.
+    /// Columns from the selected column to the cancellations column. Negative if that column is on the left.
     pub columns_to_cancellations: isize,
 }
 
@@ -195,7 +195,8 @@ impl Router<'_> {
         Some(vec![self.group(&[action], effect)])
     }
 
-    /// Returns the keys of a route that starts on a screen. In a dialog or a text field, returns the key that closes it.
+    /// Returns the keys of a route that starts on a screen. In a dialog or a text field, returns the key that closes
+    /// it.
     fn on_screen(&self, route: Vec<KeyGroup>) -> Vec<KeyGroup> {
         self.close_first().unwrap_or(route)
     }

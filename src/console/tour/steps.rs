@@ -67,7 +67,7 @@ pub(super) enum Sight {
     Help,
 }
 
-/// Condition without which a step is omitted.
+/// Condition of a step. If it is not met, the step is omitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Need {
@@ -118,7 +118,7 @@ impl TourStep {
         is_possible && has_time && last_day >= weeks as u32 * WEEK_DAYS
     }
 
-    /// Returns whether the goal of a step that changes the company is reached. Other steps end when the user continues.
+    /// Returns whether a step that changes the company has reached its goal. Returns false for steps without a change.
     pub fn is_reached(&self, company: &DisplayedCompany) -> bool {
         match &self.goal {
             Goal::Set { set, .. } => is_set(*set, company),
@@ -153,7 +153,7 @@ fn contains_positive_number(value: &Value) -> bool {
 }
 
 impl Sight {
-    /// Returns the dialog that shows it, or `None` if a screen shows it.
+    /// Returns the dialog that shows the content, or `None` if a screen shows it.
     pub fn dialog(self) -> Option<DialogContent> {
         match self {
             Sight::Curve => Some(DialogContent::Curve),
@@ -165,7 +165,7 @@ impl Sight {
         }
     }
 
-    /// Returns whether the user sees it.
+    /// Returns whether the content is visible.
     pub fn is_shown(self, facts: &TourFacts<'_>) -> bool {
         if let Some(content) = self.dialog() {
             return facts.dialog.as_ref().is_some_and(|view| view.content == content && view.is_shown);

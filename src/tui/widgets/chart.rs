@@ -11,7 +11,8 @@ use crate::theme::Role;
 
 /// Largest distance of a band from the curves, as a multiple of their range. Beyond this distance, the band is cut.
 const MAX_BAND_DISTANCE: f64 = 1.0;
-/// Smallest distance at which a band is cut, as a share of the largest value. Nearly constant curves are not flattened.
+/// Smallest distance at which a band is cut, as a share of the largest absolute value, so that the band of a nearly
+/// constant curve stays visible.
 const MIN_BAND_DISTANCE: f64 = 0.25;
 /// Distance between the arrows that mark a cut band, in columns.
 const CUT_MARK_DISTANCE: u16 = 4;
@@ -243,7 +244,7 @@ impl Plot<'_> {
         }
     }
 
-    /// Draws the band within its limits. Arrows mark the columns in which it continues beyond them.
+    /// Draws the band within its limits. Arrows mark the columns in which the band exceeds its limits.
     fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame, limits: [f64; 2]) {
         let Some(band) = self.band else { return };
         for at in 0..frame.area.width {
@@ -333,7 +334,7 @@ fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     rows
 }
 
-/// Returns the values between which a band is drawn around curves with these values.
+/// Returns the lower and the upper limit of a band around curves whose values have this range.
 fn band_limits([least, most]: [f64; 2]) -> [f64; 2] {
     let distance = (MAX_BAND_DISTANCE * (most - least)).max(MIN_BAND_DISTANCE * most.abs().max(least.abs()));
     [least - distance, most + distance]

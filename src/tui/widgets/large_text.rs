@@ -10,7 +10,7 @@ const LETTER_HEIGHT_POINTS: usize = 5;
 /// Width of a letter with its gap, in points.
 pub const LETTER_WIDTH_POINTS: u16 = 4;
 
-/// The size of a point of a large letter.
+/// Width and height of one point of a large letter.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PointSize {
     /// A point that is one column wide and half a row high.

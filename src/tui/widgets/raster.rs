@@ -50,7 +50,8 @@ impl Raster {
         *cell = (cell.0 | bit, role);
     }
 
-    /// Draws a line between two points. Coordinates are fractions of the width and the height from the lower left corner.
+    /// Draws a line between two points. Coordinates are fractions of the width and the height from the lower left
+    /// corner.
     pub fn draw_line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
         let (from, to) = (self.dot_position(from), self.dot_position(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);

@@ -16,7 +16,8 @@ pub struct ScrollState {
 }
 
 impl ScrollState {
-    /// Scrolls by rows, by pages of `page` rows, or to the start or end. Returns whether the action was a scroll action.
+    /// Scrolls by rows, by pages of `page` rows, or to the start or end. Returns whether the action was a scroll
+    /// action.
     pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
         let from = self.first_row.min(self.max_first_row.get());
         let to = match action.into() {

@@ -149,8 +149,8 @@ impl Table {
         &self.layout
     }
 
-    /// Changes the order, visibility and widths of the columns. If the selected column becomes hidden, selects the first
-    /// column.
+    /// Changes the order, visibility and widths of the columns. If the selected column becomes hidden, selects the
+    /// first column.
     pub fn set_layout(&mut self, layout: ColumnLayout) {
         self.layout = layout;
         self.measure_columns();

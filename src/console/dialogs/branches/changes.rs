@@ -11,7 +11,7 @@ use novamind_session::EnterpriseNames;
 use novamind_tools::ToolId;
 use novamind_tui::text::format_number;
 
-/// What an alternative does with a recorded decision.
+/// The treatment of a recorded decision in an alternative.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Treatment {
     Keep,
@@ -35,7 +35,7 @@ pub(super) enum Change {
     AllWeeks { week: u32, edit: DecisionEdit },
 }
 
-/// A change with the reason why it cannot be simulated, if there is one.
+/// A change, with the reason if the change was refused.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ListedChange {
     pub change: Change,

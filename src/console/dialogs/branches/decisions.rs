@@ -11,7 +11,7 @@ use novamind_session::EnterpriseNames;
 use novamind_tools::Rejection;
 use novamind_tui::widgets::TextField;
 
-/// Maximum number of weeks with decisions that an empty week offers.
+/// Maximum number of weeks with decisions that are offered if the displayed week has none.
 const MAX_OFFERED_WEEKS: usize = 4;
 
 /// A row of the list.
@@ -19,7 +19,7 @@ const MAX_OFFERED_WEEKS: usize = 4;
 pub(super) enum Row {
     /// The recorded decision in a line of the trajectory.
     Decision(u64),
-    /// The change with an index in the current alternative, if it has no recorded decision in the displayed week.
+    /// The change with this index in the current alternative, unless the row of its recorded decision is displayed.
     Change(usize),
     /// Another week with decisions, offered if the displayed week has none.
     Week(u32),
@@ -253,7 +253,7 @@ impl DecisionList {
         self.changes().iter().position(is_it)
     }
 
-    /// Returns the refused change of a row, if there is one.
+    /// Returns the problem with the change in a row, if there is one.
     pub(super) fn problem(&self, row: Row) -> Option<&Problem> {
         let listed = match row {
             Row::Decision(wanted) => self.position_of(wanted).map(|at| &self.changes()[at]),

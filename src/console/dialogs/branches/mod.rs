@@ -48,7 +48,7 @@ pub struct BranchesPage {
 }
 
 impl BranchesPage {
-    /// Opens the page at `week`, which the user can move up to `last_week`. Requests the recorded decisions.
+    /// Opens the page at `week`. The user can choose weeks up to `last_week`. Requests the recorded decisions.
     pub fn new(week: u32, last_week: u32) -> (BranchesPage, OutgoingQuestion) {
         let (pending, ask) = Pending::with_question(BranchesQuestion::Decisions);
         let decisions = DecisionList::new(week, last_week);
@@ -195,7 +195,7 @@ impl Dialog for BranchesPage {
     }
 
     fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
-        // Without decisions, the page shows only the reason.
+        // Until the decisions are loaded, the page shows only the problem, so the problem is kept.
         self.problem.take_if(|_| self.decisions.history().is_some());
         self.is_closing &= matches!(action, Action::Close | Action::Cancel);
         match (&mut self.page, action) {

@@ -330,7 +330,7 @@ impl Dialog for NextWeekDialog {
             Action::FillNaiveForecasts if self.step == NextWeekStep::Forecasts => {
                 self.fill_naive_forecasts(context.company)
             }
-            // Even without decisions this week, one key fills in all texts and goes to the last step.
+            // Even if there are no decisions this week, one key fills in all texts and goes to the last step.
             Action::FillNaiveForecasts
                 if self.step == NextWeekStep::Review && !context.company.is_baseline() =>
             {

@@ -159,7 +159,8 @@ pub struct CashStep {
     pub subject: LedgerSubject,
 }
 
-/// Returns the steps of a week in at most `most` rows: income first, then costs by size. The smallest costs are combined.
+/// Returns the steps of a week in at most `most` rows: income first, then costs by size. The smallest costs are
+/// combined.
 pub fn cash_steps(ledger: &WeeklyLedger, company: &DisplayedCompany, week: u32, most: usize) -> Vec<CashStep> {
     let Some((before, after)) = cash_before_and_after(company, week) else { return Vec::new() };
     let amounts = ledger.week(week);
@@ -196,7 +197,7 @@ pub fn cash_steps(ledger: &WeeklyLedger, company: &DisplayedCompany, week: u32, 
     steps
 }
 
-/// Formats dollars with an explicit sign.
+/// Formats whole dollars, with a minus sign for negative amounts.
 pub fn format_money(value: f64) -> String {
     let sign = if value <= -0.5 { "-" } else { "" };
     format!("{sign}${}", grouped_number(value.abs(), 0))

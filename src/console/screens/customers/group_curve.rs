@@ -7,7 +7,7 @@ use novamind_tools::Rejection;
 use novamind_worker::page_questions::EstimatedCurveQuestion;
 use novamind_worker::question::Pending;
 
-/// The curve of a group, and the question for a newer one.
+/// The curve of a group, and the question that requests a newer curve.
 #[derive(Default)]
 pub struct GroupCurve {
     pending: Pending<EstimatedCurveQuestion>,
@@ -16,7 +16,8 @@ pub struct GroupCurve {
 }
 
 impl GroupCurve {
-    /// Marks the curve as outdated, because the company has changed. It is shown until the new curve arrives.
+    /// Marks the curve as outdated, because the company has changed. The old curve is shown until the new curve
+    /// arrives.
     pub fn set_outdated(&mut self) {
         self.is_outdated = true;
     }

@@ -55,7 +55,8 @@ pub fn quality_by_week(company: &DisplayedCompany, group: Group, plan: Plan) -> 
     weeks.filter_map(|(at, week)| Some(((at + 1) as f64, week[group].quality?[plan]))).collect()
 }
 
-/// Returns each week since the group was found, with the lowest and highest required quality estimated at the end of that week.
+/// Returns each week since the group was found, with the lowest and highest required quality estimated at the end of
+/// that week.
 pub fn required_quality_by_week(company: &DisplayedCompany, group: Group) -> Vec<(f64, f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     let end = |(at, week): (usize, &novamind_session::identifiers::ByGroup<novamind_session::GroupWeek>)| {

@@ -136,14 +136,14 @@ pub struct Inbox {
     selected_term: usize,
     /// Input field for the value of the selected term, while the user types.
     value_field: Option<TextField>,
-    /// Number of scrolled rows: backwards in a thread, forwards in a preview.
+    /// Number of scrolled rows: up from the end of a thread, or down from the start of a preview.
     scroll: u16,
 }
 
 impl Inbox {
     fn update_threads(&mut self, company: &DisplayedCompany) {
         let place = self.list_position();
-        // The texts of the tools, which agents read, do not state the number of turns.
+        // The tool texts that agents read do not state the number of turns, so an unfinished baseline run hides it.
         let is_shown = !company.is_baseline() || !company.is_running();
         let min_turns = company.numbers.value(MIN_TURNS_PARAMETER).filter(|_| is_shown);
         let waiting = self.waiting_threads(company);
@@ -236,7 +236,8 @@ impl Inbox {
         }
     }
 
-    /// Returns the unsent offers to waiting threads as text, by thread. The offer to marked threads is one for each.
+    /// Returns the unsent offers to waiting threads as text, by thread. The bulk offer is returned once
+    /// for each marked thread.
     pub fn draft_offers(&self, company: &DisplayedCompany) -> BTreeMap<u32, String> {
         let marked = self.bulk_offer.iter().flat_map(|offer| self.marked.iter().map(move |number| (number, offer)));
         let all: BTreeMap<u32, &OfferDraft> =

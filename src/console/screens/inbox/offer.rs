@@ -171,7 +171,7 @@ impl OfferDraft {
     /// Returns the plans and prices for a thread.
     ///
     /// # Errors
-    /// The reason why no offer can be sent.
+    /// No offer can be sent. The error is the reason.
     pub fn resolve(&self, thread: &Thread, lists: [f64; 3]) -> Result<Vec<(Plan, f64)>, String> {
         let terms: Vec<(Plan, f64)> = self.0.iter().filter_map(|term| term.price(thread, lists)).collect();
         match terms.iter().find(|(_, price)| *price <= 0.0) {

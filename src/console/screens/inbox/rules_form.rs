@@ -1,4 +1,5 @@
-//! Editor for rules, with a preview of their effect on every waiting thread. The user must confirm before the answers are sent.
+//! Editor for rules, with a preview of their effect on every waiting thread. The user must confirm before the answers
+//! are sent.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -19,7 +20,8 @@ use novamind_tui::theme::Role;
 use novamind_tui::widgets::TextField;
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price have no rule.
+/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price have no
+/// rule.
 fn default_rules(company: &DisplayedCompany) -> String {
     let rule = |plan: Plan| {
         let list = company.current_setting(ToolId::SetPrices, plan.id());
@@ -137,7 +139,8 @@ impl Inbox {
         self.last_rules.is_some()
     }
 
-    /// Returns the tool calls of the last rules for the waiting threads, and a summary. Returns `None` if there are no calls.
+    /// Returns the tool calls of the last rules for the waiting threads, and a summary. Returns `None` if there are no
+    /// calls.
     pub fn last_rule_answers(&self, company: &DisplayedCompany) -> Option<(Vec<(ToolId, Value)>, String)> {
         let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
         let batch =

@@ -225,8 +225,8 @@ impl PaneScreen for Journal {
 const MIN_HEIGHT_FOR_TREE: u16 = 26;
 
 impl Journal {
-    /// Draws the tree of related runs below the list, if there is a tree. In small windows, the
-    /// tree shares the area of the list. Returns the areas for the list and the other panes.
+    /// Draws the tree of related runs below the list, if there is a tree. In small windows, the tree
+    /// shares the area of the list. Returns the areas for the list and the other panes.
     fn draw_tree(
         &self,
         canvas: &mut Canvas<'_>,

@@ -249,7 +249,7 @@ impl Pane<Market> for ReportPane {
 fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     let terms = &context.company.tool_limits;
     let words = format!(
-        "This group has not been found yet. {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day.",
+        "This group has not been found yet. Press {} to pay {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day.",
         context.keys.label(Action::FindGroup).unwrap_or_default(),
         dollars(terms.attempt_cost),
         grouped_number(terms.attempt_chance * 100.0, 0)

@@ -1,4 +1,5 @@
-//! True values of competitors, drift and the economy, shown above the public figures. A key shows and hides true values.
+//! True values of competitors, drift and the economy, shown above the public figures. A key shows and hides true
+//! values.
 
 use ratatui::layout::Rect;
 

@@ -1,4 +1,5 @@
-//! The start menu: continue a run, start a run, list and compare runs, show published results, start the tour, and quit.
+//! The start menu: continue a run, start a run, list and compare runs, show published results, start the tour, and
+//! quit.
 
 mod class;
 mod compare;

@@ -127,7 +127,8 @@ static PLAN_FIGURES: [PlanFigure; 11] = [
     ("paid/seat·mo.", |plan| format_optional(plan.usage.revenue_per_seat(), dollars_and_cents)),
     ("compute/seat·mo.", |plan| format_optional(plan.compute_cost_per_seat(), dollars_and_cents)),
     ("gross margin", |plan| {
-        // A warning sign marks a plan with a negative margin. The sign is in the cell, because narrow windows cut off notes.
+        // A warning sign marks a plan with a negative margin. The sign is in the cell, because narrow windows cut off
+        // notes.
         format_optional(plan.margin(), |margin| {
             format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 0))
         })

@@ -89,7 +89,8 @@ fn is_in_thread(post: &Post, (number, answered): (u32, Option<u32>)) -> bool {
     }
 }
 
-/// Returns all posts in feed order: the newest first. Comments follow the player's post that they answer, the oldest first.
+/// Returns all posts in feed order: the newest first. Comments follow the player's post that they answer, the oldest
+/// first.
 pub fn posts_in_feed_order(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let days: BTreeMap<u32, u32> = posts.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {

@@ -86,8 +86,8 @@ impl Subquery {
         }
         let names: Vec<String> = given.iter().map(|name| quote_identifier(name)).collect();
         let clause = meant.where_clause(&names);
-        // SQLite interprets an unknown quoted name as a string, so columns are renamed if their names are not plain or
-        // not unique.
+        // SQLite interprets an unknown quoted name as a string, so columns are renamed if their names are not plain
+        // identifiers or not unique.
         Some(match given == columns && names == given {
             true => Subquery { with: String::new(), from: format!("(\n{body}\n){clause}"), names },
             false => Subquery {

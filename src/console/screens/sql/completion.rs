@@ -30,8 +30,8 @@ struct NamedTable {
     table: &'static Table,
 }
 
-/// Returns the suggestions at a byte offset, with the tables of a release. Returns `None` if the word is shorter than `least`, unless the word
-/// follows a period.
+/// Returns the suggestions at a byte offset, from the tables of a release. Returns `None` if the word is shorter than
+/// `least` characters, unless the word follows a period.
 pub fn complete(sql: &str, place: usize, least: usize, interface: Interface) -> Option<Completion> {
     let (range, ..) = statement_at(sql, place);
     let start = range.start.min(place);

@@ -77,7 +77,8 @@ pub struct Sql {
     /// Whether keys type into the editor. Only the editor pane can be in this mode.
     editing: bool,
     running: Option<RunningStatement>,
-    /// Whether the last action inserted a column from the tables. The next inserted column is then separated by a comma.
+    /// Whether the last action inserted a column from the tables. The next inserted column is then separated by a
+    /// comma.
     has_inserted_column: bool,
     /// The last statement that was derived from a result.
     derived_sql: String,

@@ -18,7 +18,7 @@ const MIN_WIDTH_FOR_SIDE_PREVIEW: u16 = 110;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PickerItem {
-    /// Origin of the statement as one word, which is usually empty.
+    /// One-word origin of the statement, or an empty text. Most statements have no origin.
     pub tag: &'static str,
     pub title: String,
     pub description: String,

@@ -39,7 +39,8 @@ pub enum PivotResult {
 }
 
 impl PivotForm {
-    /// Returns the form for a pivot whose rows are the values of a column. Returns `None` if the statement cannot be pivoted.
+    /// Returns the form for a pivot whose rows are the values of a column. Returns `None` if the statement cannot be
+    /// pivoted.
     pub fn new(sql: &str, query_result: QueryResult, rows: usize, meant: RowFilter) -> Option<PivotForm> {
         let numeric: Vec<usize> =
             (0..query_result.columns.len()).filter(|at| *at != rows && is_numeric(&query_result, *at)).collect();

@@ -93,7 +93,8 @@ impl ResultChart {
         }
     }
 
-    /// Adds a series to the chart. Returns false if no numeric column is left or the maximum number of series is reached.
+    /// Adds a series to the chart. Returns false if no numeric column is left or the maximum number of series is
+    /// reached.
     pub fn add_series(&mut self, rows: &QueryResult) -> bool {
         let last = self.y_columns.last().copied().unwrap_or(0);
         let next = self.column_after(rows, last).filter(|next| !self.y_columns.contains(next) && self.y_columns.len() < MAX_SERIES);

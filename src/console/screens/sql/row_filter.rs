@@ -52,7 +52,7 @@ impl RowFilter {
         format!("\nWHERE {}", columns.iter().filter_map(holds).collect::<Vec<_>>().join("\n    OR "))
     }
 
-    /// Returns a suffix for titles, which is empty if there is no filter.
+    /// Returns a suffix for titles, or an empty text if there is no filter.
     pub fn label(&self) -> String {
         match self {
             RowFilter::All => String::new(),

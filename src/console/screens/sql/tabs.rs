@@ -21,7 +21,7 @@ const MAX_PINNED_TABS: usize = MAX_TABS - 1;
 const MAX_TOTAL_BYTES: usize = 128 << 20;
 /// Maximum length of a tab title in characters.
 const MAX_TITLE_CHARS: usize = 18;
-/// Row index of a click on the first tab, which is larger than the index of any row.
+/// Row index of a click on the first tab. It is larger than the index of any row.
 const FIRST_TAB_CLICK: usize = usize::MAX - MAX_TABS;
 /// Minimum height for a row with the titles of the tabs.
 const MIN_HEIGHT_FOR_TABS: u16 = 6;
@@ -126,7 +126,7 @@ impl ResultTabs {
     /// Pins or unpins the displayed tab. Returns whether the tab is now pinned.
     ///
     /// # Errors
-    /// The reason why the tab cannot be pinned.
+    /// The tab cannot be pinned. The error is the reason.
     pub fn toggle_pin(&mut self) -> Result<bool, String> {
         let pinned = self.tabs.iter().filter(|tab| tab.pinned);
         let (count, bytes) =

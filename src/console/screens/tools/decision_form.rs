@@ -83,7 +83,7 @@ impl DecisionForm {
     /// Returns the arguments of the call.
     ///
     /// # Errors
-    /// A message that names the first invalid cell, or explains that no value was entered.
+    /// A cell is invalid, or no value was entered. The error is a message that names the first invalid cell.
     pub fn arguments(&mut self) -> Result<Value, String> {
         self.form.stop_typing();
         let is_empty = self.recorded.is_empty() && !self.form.sheet.is_changed();

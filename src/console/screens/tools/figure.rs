@@ -1,4 +1,5 @@
-//! The figure that is selected on the Tools screen: a tool, or a value of its form with a query for the history of that value.
+//! The figure that is selected on the Tools screen: a tool, or a value of its form with a query for the history of that
+//! value.
 
 use std::sync::LazyLock;
 

@@ -122,7 +122,8 @@ impl ToolForm {
         self.code_editor.as_deref()
     }
 
-    /// Returns the code of the focused cell as a document, if the cell contains code. Code that starts with `#` is Python.
+    /// Returns the code of the focused cell as a document, if the cell contains code. Code that starts with `#` is
+    /// Python.
     pub fn code_document(&self) -> Option<EditorDocument> {
         self.sheet.blocks.get(self.focus.block).filter(|block| block.is_code())?;
         let text = self.sheet.cell(self.focus)?.text();

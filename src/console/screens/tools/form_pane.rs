@@ -120,7 +120,8 @@ impl Pane<Tools> for FormPane {
         let FormLayout { head, outcome, gap } = layout_form(tools, form, inside, context);
         let lines = form_lines(form);
         let below = draw_head(&head, canvas, inside);
-        // In a dense layout, the values can use all rows. Otherwise, up to half of the rows are reserved for the outcome.
+        // In a dense layout, the values can use all rows. Otherwise, up to half of the rows are reserved for the
+        // outcome.
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
         let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
@@ -159,7 +160,8 @@ struct FormLayout {
     gap: u16,
 }
 
-/// Returns the normal layout if the margins fit. Otherwise, returns a denser layout with as much of the description as fits.
+/// Returns the normal layout if the margins fit. Otherwise, returns a denser layout with as much of the description as
+/// fits.
 fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenContext<'_>) -> FormLayout {
     let (width, values) = (area.width as usize, form_lines(form).len());
     let lines = |text: &str, role: Role| wrap(text, width).into_iter().map(move |line| (line, role));

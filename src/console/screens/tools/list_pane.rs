@@ -150,7 +150,8 @@ fn tool_list_lines(tools: &Tools) -> Vec<ListLine> {
     lines
 }
 
-/// Draws a tool of the list. A tool that the lesson locks is marked. The selected tool shows whether the list has the focus.
+/// Draws a tool of the list. A tool that the lesson locks is marked. The selected tool shows whether the list has the
+/// focus.
 fn draw_tool(
     tools: &Tools,
     canvas: &mut Canvas<'_>,

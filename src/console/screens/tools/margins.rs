@@ -6,8 +6,8 @@ use novamind_session::identifiers::ByPlan;
 use novamind_tools::ToolId;
 use novamind_worker::company::DisplayedCompany;
 
-/// Returns the margin lines for a form, with the heading first. The lines cover every model tier, or only the set tier
-/// if `brief` is true. Returns no lines for tools that do not affect margins.
+/// Returns the margin lines for a form, with the heading first. The lines cover every model tier, or only the tier
+/// that is set if `brief` is true. Returns no lines for tools that do not affect margins.
 pub fn form_margin_lines(form: &ToolForm, sales: &PlanSales, company: &DisplayedCompany, brief: bool) -> Vec<String> {
     let Some(lever) = MarginSetting::from_tool(form.spec.id) else { return Vec::new() };
     let now = ByPlan::from_fn(|plan| DraftPlanTerms {

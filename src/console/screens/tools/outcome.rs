@@ -75,14 +75,14 @@ pub(super) enum DetailLevel {
     Full,
     /// Text without repetitions and blank rows.
     Compact,
-    /// Compact text with margins of the set model tiers only.
+    /// Compact text with margins only for the model tiers that are set.
     Brief,
 }
 
 pub(super) struct OutcomeLines {
     pub lines: Vec<(String, Role)>,
-    /// Number of leading lines that must be visible: up to the last row of margins or of the project's range, or 0
-    /// without such rows.
+    /// Number of leading lines that must be visible: all lines up to the last row that shows a margin or the project's
+    /// range. 0 if there are no such rows.
     pub required_lines: usize,
 }
 
@@ -93,7 +93,8 @@ impl OutcomeLines {
     }
 }
 
-/// Returns the text below the values: the draft, the check of the call, the call itself, reference figures, and the answer.
+/// Returns the text below the values: the draft, the check of the call, the call itself, reference figures, and the
+/// answer.
 pub(super) fn outcome_lines(
     form: &ToolForm,
     tools: &Tools,

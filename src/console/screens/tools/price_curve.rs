@@ -1,4 +1,4 @@
-//! The participation curve in the form of prices: how leads of one group would respond to the drafted prices, as
+//! The participation curve in the price form: how leads of one group would respond to the drafted prices, as
 //! estimated by market studies.
 
 use ratatui::layout::Rect;
@@ -97,7 +97,8 @@ impl PriceCurve {
     }
 }
 
-/// Returns the known group of individuals with the most leads in the measured weeks, or the first before any leads.
+/// Returns the known group of individuals with the most leads in the measured weeks, or the first such group if there
+/// were no leads.
 fn main_group(company: &DisplayedCompany) -> Option<Group> {
     let people = company.fits.iter().filter(|fit| !fit.group.is_enterprise());
     // The first of equal groups is preferred.

@@ -153,7 +153,8 @@ impl ArgumentBlock {
         }
     }
 
-    /// Returns whether the user can add rows. Rows for customers can be added, because there are too many customers to list.
+    /// Returns whether the user can add rows. Rows for customers can be added, because there are too many customers to
+    /// list.
     pub fn accepts_new_rows(&self) -> bool {
         matches!(self.argument.kind, ArgumentKind::Map(MapKey::Customer, _))
     }
@@ -202,7 +203,7 @@ impl ArgumentBlock {
         if self.is_text() { "enter a list or object as JSON" } else { "enter a number" }
     }
 
-    /// Fills in the value that a recorded call gives. A map replaces all values of the block.
+    /// Fills in the value that a recorded call specifies. A map replaces all values of the block.
     fn fill_recorded(&mut self, value: &Value) {
         if let Some((rows, deals)) = deal_prices(value).filter(|_| matches!(self.argument.kind, ArgumentKind::Deals(_))) {
             self.doc = "offered price of each plan".to_owned();
@@ -279,7 +280,7 @@ impl ArgumentBlock {
     }
 }
 
-/// Returns the name and price of every offer in a list of deals. Returns `None` for an unknown notation.
+/// Returns the name and price of every offer in a list of deals. Returns `None` if the notation is unknown.
 fn deal_prices(list: &Value) -> Option<(Vec<(String, f64)>, DealPrices)> {
     let (mut rows, mut pointers) = (Vec::new(), Vec::new());
     for (at, deal) in list.as_array()?.iter().enumerate() {
@@ -340,7 +341,7 @@ impl ToolSheet {
         self
     }
 
-    /// Returns the sheet with updated current values and the drafts that still differ from the current values.
+    /// Returns the sheet with updated current values and the drafts of all cells that still exist.
     pub fn with_current_values(&self, company: &DisplayedCompany) -> ToolSheet {
         let mut sheet = ToolSheet::new(self.spec, company);
         for (block, old) in sheet.blocks.iter_mut().zip(&self.blocks) {
@@ -379,7 +380,7 @@ impl ToolSheet {
     }
 
     /// Fills in the arguments of a recorded call, including texts and rows for customers. Returns the names of the
-    /// arguments that the call gives.
+    /// arguments that the call specifies.
     pub fn fill_recorded(&mut self, arguments: &Value) -> Vec<&'static str> {
         let mut given = Vec::new();
         for at in 0..self.blocks.len() {
@@ -433,7 +434,7 @@ impl ToolSheet {
     /// Returns the arguments of the call: all required arguments and all changed arguments.
     ///
     /// # Errors
-    /// The position of the first cell with invalid input.
+    /// A cell has invalid input. The error is the position of the first such cell.
     pub fn arguments(&self) -> Result<Value, CellPosition> {
         self.arguments_including(&[])
     }
@@ -441,7 +442,7 @@ impl ToolSheet {
     /// Returns the arguments of the call, including the unchanged values of the arguments with these names.
     ///
     /// # Errors
-    /// The position of the first cell with invalid input.
+    /// A cell has invalid input. The error is the position of the first such cell.
     pub fn arguments_including(&self, names: &[&str]) -> Result<Value, CellPosition> {
         let mut arguments = Map::new();
         for (at, block) in self.blocks.iter().enumerate() {
@@ -460,7 +461,7 @@ impl ToolSheet {
         self.positions().find(|place| self.blocks[place.block].path(place.row, place.column) == path)
     }
 
-    /// Returns the position of the first cell with a name in its path.
+    /// Returns the position of the first cell whose path contains a name.
     pub fn position_of_name(&self, name: &str) -> Option<CellPosition> {
         let is_for = |place: &CellPosition| {
             self.blocks[place.block].path(place.row, place.column).split('.').any(|text| text == name)

@@ -1,4 +1,5 @@
-//! Input on the x-ray screen: groups and customers with an optional day, days, components, conditions, numbers and commands.
+//! Input on the x-ray screen: groups and customers with an optional day, days, components, conditions, numbers and
+//! commands.
 
 use super::view::{ViewChoices, XrayView};
 use novamind_base::similar_names;

@@ -154,7 +154,8 @@ impl Xray {
         seen.and_then(|seen| seen.found.as_ref().ok()?.day).unwrap_or_else(|| self.day())
     }
 
-    /// Sends the question for the current view if its answer is missing and the worker is not busy with another question.
+    /// Sends the question for the current view if its answer is missing and the worker is not busy with another
+    /// question.
     fn request_inspection(&mut self) -> Vec<Effect> {
         let wanted = self.current_question();
         let is_known = wanted.as_ref() == self.inspection.as_ref().map(|seen| &seen.question);

@@ -62,7 +62,8 @@ impl XrayView {
         }
     }
 
-    /// Returns whether the view shows the state of one day. Other views show future values, breakpoints or command results.
+    /// Returns whether the view shows the state of one day. Other views show future values, breakpoints or command
+    /// results.
     pub fn has_day(self) -> bool {
         !matches!(self, XrayView::Draws | XrayView::Breakpoints | XrayView::Commands)
     }

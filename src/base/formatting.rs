@@ -12,7 +12,8 @@ use serde_json::{Number, Value, json};
 /// exponent.
 const MAX_WITHOUT_EXPONENT: f64 = 1e15;
 
-/// Decimals of a quality. Screens and reports show the same number of decimals, so that qualities can be compared.
+/// Number of decimals of a quality. Screens and reports show the same number of decimals, so that qualities can be
+/// compared.
 pub const QUALITY_DECIMALS: usize = 3;
 
 /// Formats a number with thousands separators and a fixed number of decimals, for example `1,234,567.5`. Numbers above

@@ -1,6 +1,6 @@
 //! Authorization of SQL statements (docs/formats/database.md#queries). Statements may read visible tables and call
-//! ordinary functions. Statements may read internal tables only through a view. The decision depends on the actions of a
-//! statement, not on its text.
+//! ordinary functions. Statements may read internal tables only through a view. The decision depends on the actions of
+//! a statement, not on its text.
 
 use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, BTreeSet};

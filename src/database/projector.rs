@@ -270,7 +270,8 @@ impl FactsPool {
 
 impl ProjectionWriter<'_> {
     /// Processes jobs until the queue is closed. Entries are written only when a week or tool call is complete. The
-    /// simulation can then use all processors, and readers of a database in memory wait for at most one short transaction.
+    /// simulation can then use all processors, and readers of a database in memory wait for at most one short
+    /// transaction.
     fn run(mut self, queue: &Receiver<WriterJob>) {
         let mut pending: Vec<ProjectionEntry> = Vec::new();
         loop {
@@ -366,8 +367,8 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also returns
-/// the position of the database.
+/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also
+/// returns the position of the database.
 ///
 /// # Errors
 /// The database does not exist, or is not the database of a run.

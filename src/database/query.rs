@@ -2,9 +2,9 @@
 //!
 //! A statement is first compiled against the released schema (`released_schema.rs`), which contains no hidden names.
 //! The query connection
-//! is read-only. An authorizer (`guard.rs`) allows the visible tables and ordinary functions. Limits restrict the size of
-//! statements, values and results, and a progress handler interrupts queries that take too much time or memory. Rejections
-//! depend on what a statement does, not on its text.
+//! is read-only. An authorizer (`guard.rs`) allows the visible tables and ordinary functions. Limits restrict the size
+//! of statements, values and results, and a progress handler interrupts queries that take too much time or memory.
+//! Rejections depend on what a statement does, not on its text.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,8 +36,8 @@ use super::tokens::tokenize;
 /// An error that a query returned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {
-    /// Error code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, [`SQL_CANCELLED`],
-    /// `sql_error`.
+    /// Error code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`,
+    /// [`SQL_CANCELLED`], `sql_error`.
     pub code: &'static str,
     /// Error message with suggestions for the user.
     pub message: String,

@@ -54,8 +54,8 @@ pub(super) struct CheckedStatement {
     /// Whether the statement is an EXPLAIN QUERY PLAN.
     pub is_plan: bool,
     /// Columns, by table, that are copied to an indexed temporary table before the statement runs. A RIGHT or FULL
-    /// JOIN needs a copy of every table, because the engine cannot search a view in such a join. A correlated subquery needs a
-    /// copy of `issues`, because a stored index of issues would slow down every week.
+    /// JOIN needs a copy of every table, because the engine cannot search a view in such a join. A correlated subquery
+    /// needs a copy of `issues`, because a stored index of issues would slow down every week.
     pub copied: ColumnsByTable,
     /// Names of the tables that the statement reads.
     pub tables: Vec<String>,
@@ -63,7 +63,8 @@ pub(super) struct CheckedStatement {
     pub program: Option<Program>,
 }
 
-/// The compiled program of a statement. Equal programs read the same columns, even if the statements spell names differently.
+/// The compiled program of a statement. Equal programs read the same columns, even if the statements spell names
+/// differently.
 pub(super) type Program = Vec<Vec<Value>>;
 
 impl ReleasedSchema {

@@ -65,7 +65,8 @@ impl<'a> Token<'a> {
     }
 }
 
-/// Returns all tokens of a statement, without spaces and comments. An unterminated token extends to the end of the text.
+/// Returns all tokens of a statement, without spaces and comments. An unterminated token extends to the end of the
+/// text.
 pub(super) fn tokenize(sql: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;

@@ -1,17 +1,17 @@
 //! What the record shows about a thread that ended without a deal.
 //!
-//! An enterprise that declines sends no message (docs/mechanics/enterprise/outcomes.md#silence-of-the-account). The facts
-//! follow from the turns of the thread and from the subscription, which every player can query.
+//! An enterprise that declines sends no message (docs/mechanics/enterprise/outcomes.md#silence-of-the-account). The
+//! facts follow from the turns of the thread and from the subscription, which every player can query.
 
 use super::thread::{first_plan_in, other_plan_in};
 use super::turn::{Turn, format_offer_lines};
 use novamind_base::formatting::{dollars_and_cents, percent};
 use novamind_session::identifiers::Plan;
 
-/// Parameter with the lowest number of turns that an enterprise can have.
+/// Name of the parameter that sets the lowest number of turns that an enterprise can have.
 pub const MIN_TURNS_PARAMETER: &str = "customer_generation.max_negotiation_turns_min";
 
-/// Words of a message that names alternatives, a budget or a deadline.
+/// Phrases that show that a sentence is about alternatives, a budget or a deadline.
 const STATEMENT_WORDS: [&str; 12] = [
     "alternative",
     "vendor",
@@ -62,11 +62,11 @@ pub struct LostThread {
 }
 
 impl LostThread {
-    /// Returns how a thread of a kind was lost. Returns `None` if the thread ended with a deal or a rejection by the
-    /// player, or if the enterprise can still answer. The thread must not be waiting for the player.
+    /// Returns how a thread of kind `kind` was lost. Returns `None` if the thread ended with a deal or a rejection by
+    /// the player, or if the enterprise can still answer. The thread must not be waiting for the player.
     ///
-    /// `min_turns` is the lowest number of turns that an enterprise can have, or `None` in runs whose player must not
-    /// know more than the texts of the tools.
+    /// `min_turns` is the lowest number of turns that an enterprise can have, or `None` in runs whose player may know
+    /// only what the tool texts state.
     pub fn from_turns(
         turns: &[Turn],
         kind: &str,
@@ -215,7 +215,7 @@ fn statements(turns: &[Turn]) -> Vec<String> {
     quoted.take(MAX_STATEMENTS).collect()
 }
 
-/// Splits a text after each punctuation mark that a space follows. The dot in a price is no end of a sentence.
+/// Splits a text after each punctuation mark that a space follows. A dot in a price does not end a sentence.
 fn sentences(text: &str) -> Vec<&str> {
     let (mut found, mut start) = (Vec::new(), 0);
     let marks = text.match_indices(['.', '?', '!']).map(|(at, _)| at + 1);

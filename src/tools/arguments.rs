@@ -1,4 +1,5 @@
-//! Converts JSON arguments to typed values, with the rejections that all tools share (docs/interfaces/tools.md#arguments).
+//! Converts JSON arguments to typed values, with the rejections that all tools share
+//! (docs/interfaces/tools.md#arguments).
 
 use std::sync::Arc;
 

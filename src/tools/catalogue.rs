@@ -30,7 +30,8 @@ pub trait AnyTool: Sync {
     /// Returns the specification of the tool.
     fn spec(&self) -> &'static ToolSpec;
 
-    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without settings.
+    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without
+    /// settings.
     fn current_arguments(&self, settings: &Settings) -> Map<String, Value>;
 
     /// Plans a call with these arguments, and returns its effect and result.

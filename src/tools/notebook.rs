@@ -1,6 +1,7 @@
 //! The notebook of a run: named calculations for the dashboard, and scripts.
 //!
-//! Calculations and scripts are SQL statements or Python programs. Neither calculations nor scripts affect the simulation.
+//! Calculations and scripts are SQL statements or Python programs. Neither calculations nor scripts affect the
+//! simulation.
 
 use serde::{Deserialize, Serialize};
 

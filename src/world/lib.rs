@@ -4,9 +4,9 @@
 //! of the state that it changes. Each formula is a small pure function whose tests contain check values
 //! (`docs/mechanics/README.md`).
 //!
-//! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`, `quota`, `series`;
-//! `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`; `enterprise`; `market`;
-//! `fixed_inputs`, `state`; `command`, `day`.
+//! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`,
+//! `quota`, `series`; `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`;
+//! `enterprise`; `market`; `fixed_inputs`, `state`; `command`, `day`.
 
 pub mod canonical;
 pub mod command;

@@ -67,7 +67,8 @@ pub struct Promotion {
     pub by_group_plan: IndexMap<Group, PerPlan>,
 }
 
-/// Discounts for a lead's choice and first bill, dollars per month. The discounts of all scopes are added, with a minimum of 0.
+/// Discounts for a lead's choice and first bill, dollars per month. The discounts of all scopes are added, with a
+/// minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct LeadPromotion {
     /// Discount for every lead.

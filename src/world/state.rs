@@ -188,7 +188,8 @@ mod tests {
         }
     }
 
-    /// Every stored byte is hashed: after changing any canonical byte, restoring either fails or returns a different state.
+    /// Every stored byte is hashed: after changing any canonical byte, restoring either fails or returns a different
+    /// state.
     #[test]
     fn part_hashes_cover_every_byte_once() {
         let world = busy_company();

@@ -127,7 +127,8 @@ fn parse_deal(element: &Value, path: &str, view: &ToolContext<'_>) -> Result<Dea
     })
 }
 
-/// Converts a deal to an offer of the simulator. The customer must be an enterprise with an open thread or a subscription.
+/// Converts a deal to an offer of the simulator. The customer must be an enterprise with an open thread or a
+/// subscription.
 fn to_offer_draft(
     deal: Deal,
     view: &ToolContext<'_>,

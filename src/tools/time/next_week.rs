@@ -8,7 +8,8 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `next_week`. The session implements the tool; `NextWeek` documents the tool and checks rationale and forecasts.
+/// The tool `next_week`. The session implements the tool; `NextWeek` documents the tool and checks rationale and
+/// forecasts.
 pub struct NextWeek;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -1,4 +1,5 @@
-//! Observation of a day during its simulation. Observers cannot change the world, so an observed day has the same result.
+//! Observation of a day during its simulation. Observers cannot change the world, so an observed day has the same
+//! result.
 
 use crate::context::DayContext;
 use crate::customers::Customers;
@@ -15,7 +16,7 @@ use crate::reputation::{ReputationContribution, ReputationWrite};
 use crate::retention::renewal::RenewalContext;
 use crate::state::World;
 
-/// An observer of a day's simulation. The methods with a block are called on any thread and in any order.
+/// An observer of a day's simulation. Methods that receive a block are called on any thread and in any order.
 pub trait DayObserver: Send + Sync {
     /// Called at the start of the day, with the world and the values that are fixed for the day.
     fn on_morning(&self, _world: &World, _morning: &Morning, _params: &Params) {}

@@ -80,7 +80,8 @@ pub struct EnterpriseDayResult {
 }
 
 impl Enterprise {
-    /// Opens the thread of a new lead with one turn by the system. Adds a notification that does not name the enterprise.
+    /// Opens the thread of a new lead with one turn by the system. Adds a notification that does not name the
+    /// enterprise.
     pub fn open_lead_thread(&mut self, day: u32, company: EnterpriseCustomer, facts: &mut Facts) {
         let seats = match &company.status {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.seats as u32,

@@ -330,7 +330,7 @@ fn record_channels(
     }
 }
 
-/// Returns the individual leads, each with its group, sequence number and customer number.
+/// Returns the individual leads, each with its customer number.
 fn individual_leads(leads_by_run: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
     leads_by_run
         .iter()
@@ -525,7 +525,7 @@ mod tests {
         let expectation = Expectation { quality: 0.25, c_max: 2.0 };
         let (drifted, _) = curve_and_demand_with(expectation, &traits, &params);
         let values = |curve: Curve| (curve.q_min, curve.q_max, curve.c_max);
-        assert_eq!(values(drifted), (0.35, 0.8, 52.0), "the curve with which the lead decides");
+        assert_eq!(values(drifted), (0.35, 0.8, 52.0), "the curve that the lead uses to decide");
         assert_eq!(values(stored_curve(&traits, &drifted, &params)), (0.35, 0.8, 52.0));
         params.fidelity.drift_counted = DriftCounted::Once;
         assert_eq!(values(stored_curve(&traits, &drifted, &params)), (0.1, 0.55, 50.0));

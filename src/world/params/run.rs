@@ -209,7 +209,8 @@ pub enum UsageQuota {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftCounted {
-    /// The drift is added when the customer is created and again whenever the curve is read, as in the released simulator.
+    /// The drift is added when the customer is created and again whenever the curve is read, as in the released
+    /// simulator.
     EveryRead,
     /// The drift is added only once.
     Once,

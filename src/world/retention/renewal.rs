@@ -240,7 +240,8 @@ pub fn ongoing_discount(
     settings.promotion.sum(customer, group, plan).max(params.promotions.promotion_min)
 }
 
-/// Switches a subscriber to a different plan at today's terms. Tenure continues. Returns whether the switch is an upgrade.
+/// Switches a subscriber to a different plan at today's terms. Tenure continues. Returns whether the switch is an
+/// upgrade.
 fn switch_plan(
     group: Group,
     block: &mut Block,

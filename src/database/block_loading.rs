@@ -34,7 +34,8 @@ pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
 
 /// Source of the packed days that a query reads.
 pub(super) enum BlockSource {
-    /// The writer's store, with a gate that is closed while a commit and its blocks become visible together.
+    /// The writer's store, and a lock that excludes readers while a transaction commits, so that its rows and blocks
+    /// become visible together.
     Writer(SharedStore, Arc<RwLock<()>>),
     /// A file without a writer in this process. The packed days of a table are loaded when a statement first names the
     /// table.

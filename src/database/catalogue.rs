@@ -19,7 +19,7 @@ pub struct Table {
     pub written: String,
     /// Names of the key columns.
     pub key: Vec<String>,
-    /// Whether the table has further columns in the released simulator, which no query may read.
+    /// Whether the table has further columns in the released simulator that no query may read.
     #[serde(default, skip_serializing)]
     pub(super) has_hidden_columns: bool,
     /// Names of the columns in the order of release 2; empty if the columns of both releases are the same.

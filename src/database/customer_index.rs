@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::packing::{PackedDay, RowRun};
 
-/// Maximum total size in bytes of the indexes built for a statement on a table.
+/// Maximum total size in bytes of the indexes of a table that are built for one statement.
 const MAX_INDEX_BYTES: usize = 256 << 20;
 
 /// Rows of a range of days, grouped by customer. The rows of a customer are in table order.

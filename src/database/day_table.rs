@@ -472,8 +472,8 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
     }
 }
 
-/// Returns the number with which a numeric column compares a text: the parsed value of the text, or a value greater
-/// than every number.
+/// Returns the number to use when a numeric column is compared with `text`: the parsed value, or infinity if the text
+/// is not a number.
 pub(super) fn comparison_number(text: &str) -> f64 {
     let text = text.trim_matches([' ', '\t', '\n', '\r', '\u{b}', '\u{c}']);
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte));

@@ -48,7 +48,7 @@ pub fn tenure_bonus(days_subscribed: u32, params: &Params) -> f64 {
 }
 
 /// Precomputed tenure bonuses by days since the start of the subscription. Computing the logarithm for every
-/// subscriber would dominate the time of a day.
+/// subscriber would dominate the time that a simulated day takes.
 #[derive(Debug, Clone, Default)]
 pub struct TenureTable(Vec<f64>);
 

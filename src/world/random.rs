@@ -56,7 +56,7 @@ parts! {
     InvoluntaryMu = "involuntary_mu",
     /// (day, group, block): selection of the subscribers whose payment fails permanently.
     InvoluntaryRoll = "involuntary_roll",
-    /// (day, group, n, thread): size of a reputation damage. The thread is 0 for individuals.
+    /// (day, group, n, thread): amount of reputation damage. The thread is 0 for individuals.
     ReputationEvent = "reputation_event",
     /// (group, n): traits and profile of a customer.
     Traits = "traits",

@@ -213,8 +213,8 @@ impl Promotion {
 }
 
 impl LeadPromotion {
-    /// Returns the sum of all discounts for a lead, LP(g, ch), before the minimum of 0 is applied. Without a channel,
-    /// channel discounts do not count.
+    /// Returns the sum of all discounts for a lead, LP(g, ch), before the minimum of 0 is applied. If there is no
+    /// channel, channel discounts do not count.
     pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
         let by_channel = channel.map_or(0.0, |channel| {
             value_or_zero(&self.by_channel, &channel)

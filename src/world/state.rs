@@ -39,7 +39,7 @@ canonical! {
     World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise }
 }
 
-/// The hash of one part of the state, with which differences between runs are located.
+/// The hash of one part of the state. A comparison of these hashes locates differences between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartHash {
     /// Name of the part of the state.

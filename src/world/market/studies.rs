@@ -1,4 +1,4 @@
-//! Market studies of groups, which are paid immediately and completed some days later
+//! Market studies of groups, which are paid for immediately and completed some days later
 //! (docs/mechanics/market/discovery.md).
 
 use super::Market;

@@ -17,7 +17,7 @@ parameters! {
         pub probability: f64 where 0.0..=1.0,
         /// Shortest duration of a surge, in days.
         pub duration_days_low: u32 where 1.0..=10_000.0,
-        /// Longest duration of a surge plus one, in days.
+        /// One more than the longest duration of a surge, in days.
         pub duration_days_high_exclusive: u32 where 1.0..=10_001.0,
         /// Minimum factor by which a surge multiplies leads.
         pub multiplier_base: f64 where 0.0..=1e6,
@@ -29,7 +29,7 @@ parameters! {
     pub struct Leads {
         /// Acquisition cost per lead in dollars, whether or not the lead signs up.
         pub lead_acquisition_cost: f64 where 0.0..=1e9,
-        /// Dollars to which channel yields refer: a yield is the number of leads per this amount.
+        /// Amount in dollars to which channel yields refer: a yield is the number of leads that this amount brings.
         pub ad_spend_unit: f64 where POSITIVE..=1e12,
         /// Saturation factor of a market without subscribers.
         pub saturation_base: f64,

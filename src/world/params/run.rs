@@ -86,9 +86,9 @@ parameters! {
 pub enum HorizonRule {
     /// The run ends on the last day of its length. The last week can be shorter.
     Exact,
-    /// The length is rounded down to whole weeks, as by the packaged agent runners of the released simulator.
+    /// The length is rounded down to whole weeks, as the packaged agent runners of the released simulator do.
     WholeWeeksBelow,
-    /// The last week is simulated completely, as by the command line of the released simulator.
+    /// The last week is simulated completely, as the command line of the released simulator does.
     WholeWeeksAbove,
 }
 
@@ -102,8 +102,8 @@ pub struct Horizon {
 }
 
 impl Run {
-    /// Returns the horizon of a run with a length of `days`. The horizon of `last_day` has the same last day, and the
-    /// horizon of `total_days` is the same.
+    /// Returns the horizon of a run with a length of `days`. A run with the length `last_day` of the result has the
+    /// same last day, and a run with the length `total_days` of the result has the same horizon.
     pub fn horizon(&self, days: u32) -> Horizon {
         let week = self.days_per_week;
         match self.horizon_rule {

@@ -1,4 +1,4 @@
-//! The comparison of plans with which an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
+//! The comparison of plans that determines whether an individual stays (`docs/mechanics/retention/renewal.md`).
 
 use super::renewal::{RenewalContext, ongoing_discount};
 use crate::context::DayContext;

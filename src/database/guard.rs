@@ -175,8 +175,8 @@ pub(super) struct InnerViews {
 }
 
 impl InnerViews {
-    /// Returns statements that replace a view with a temporary table of the read columns. Returns `None` if the
-    /// visible table is not a view.
+    /// Returns statements that replace a view with a temporary table that contains the columns in `read`. Returns
+    /// `None` if the visible table is not a view.
     pub fn copy_statements(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
         let table =
             catalogue::table(self.interface, name).filter(|table| self.names.contains(&table.name))?;
@@ -199,7 +199,7 @@ impl InnerViews {
     }
 }
 
-/// The column by which statements join tables.
+/// The column on which statements join tables.
 pub(super) const CUSTOMER_ID: &str = "customer_id";
 
 /// The authorizer that allows or denies the actions of statements.

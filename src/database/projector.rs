@@ -90,8 +90,8 @@ impl SharedFailure {
 }
 
 impl Projector {
-    /// Starts a projector on a database. Continues an existing database if `known` accepts its position. Otherwise,
-    /// creates a new database that stores `owner`, the number of its run.
+    /// Starts a projector on a database. Continues an existing database if `accepts_position` returns true for its
+    /// position. Otherwise, creates a new database that stores `owner`, the number of its run.
     ///
     /// # Errors
     /// The database can neither be read nor created.
@@ -307,8 +307,8 @@ impl ProjectionWriter<'_> {
     ) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Without a write-ahead log, close the gate first. Otherwise, a reader that passed the gate and the writer at
-        // the gate would wait for each other.
+        // Without a write-ahead log, acquire the gate's write lock before the transaction starts. Otherwise, a reader
+        // with the read lock would wait for the transaction while the writer waits for the write lock.
         let early = (!self.readers_are_not_blocked).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {

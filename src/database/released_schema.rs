@@ -108,7 +108,7 @@ impl ReleasedSchema {
         })
     }
 
-    /// Returns the reason of the last rejection.
+    /// Returns the reason for the last rejection.
     pub fn last_rejection(&self) -> RejectionReason {
         match (self.last_rejection.get(), &self.with_hidden_columns) {
             (RejectionReason::None, Some(checker)) => checker.last_rejection(),
@@ -116,7 +116,7 @@ impl ReleasedSchema {
         }
     }
 
-    /// Clears the reason of the last rejection.
+    /// Clears the reason for the last rejection.
     pub fn clear_rejection(&self) {
         self.last_rejection.clear();
         if let Some(checker) = &self.with_hidden_columns {

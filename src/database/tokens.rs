@@ -1,4 +1,4 @@
-//! Splits a statement into tokens in the same way as the engine: names, texts, numbers and symbols.
+//! Splits a statement into tokens, as the engine does: names, texts, numbers and symbols.
 
 use std::borrow::Cow;
 use std::ops::Range;

@@ -94,7 +94,9 @@ fn unanswered(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
     let end = subscription.end_day.filter(|_| kind == "new_lead");
     let end = end.map_or(String::new(), |day| format!(": the thread ended on day {day}"));
     let mut facts: Vec<String> = asked_price(turns)
-        .map(|(day, plan, price)| format!("It asked {} on day {day}.", price_text(plan, price)))
+        .map(|(day, plan, price)| {
+            format!("It asked for a price of {} on day {day}.", price_text(plan, price))
+        })
         .into_iter()
         .collect();
     facts.extend(statements(turns));
@@ -166,7 +168,9 @@ fn price_fact(turns: &[Turn], last: &Turn) -> String {
               used up, or if it sees less quality than before."
             .to_owned(),
     };
-    format!("It asked {} on day {day}. {compared}", price_text(plan, asked)).trim_end().to_owned()
+    format!("It asked for a price of {} on day {day}. {compared}", price_text(plan, asked))
+        .trim_end()
+        .to_owned()
 }
 
 /// Compares the last offer with what the enterprise wanted to change about its subscription.
@@ -283,7 +287,7 @@ mod tests {
         assert_eq!(cause, LossCause::Declined);
         for part in [
             "Acme #7 declined your offer B $25.00 of day 21 on day 26, without a message.",
-            "It asked $20.00 for plan B on day 18. Your offer was $5.00 (25%) higher.",
+            "It asked for a price of $20.00 for plan B on day 18. Your offer was $5.00 (25%) higher.",
             "It wrote on day 18: “We compared your proposal with our budget.”",
             "Your offer came 3 days after its message of day 18.",
             "the last of your 2 offers, in turn 3",
@@ -339,7 +343,7 @@ mod tests {
             text.contains("no answer from you to its message of day 18: the thread ended on day 25."),
             "{text}"
         );
-        assert!(text.contains("It asked $20.00 for plan B on day 18."), "{text}");
+        assert!(text.contains("It asked for a price of $20.00 for plan B on day 18."), "{text}");
         let cancelled =
             Subscription { status: "cancelled".to_owned(), end_day: Some(90), ..Subscription::default() };
         assert!(

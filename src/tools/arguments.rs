@@ -148,7 +148,7 @@ pub fn text_argument<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str
     }
 }
 
-/// A number in the notation of the caller, which distinguishes 80 from 80.0.
+/// A number that keeps the notation of the caller, so that 80 differs from 80.0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SentNumber {
     /// Value of the number.
@@ -195,7 +195,7 @@ pub fn wrong_type_rejection(field: &str, expected: &str) -> Rejection {
 pub struct AmountRule {
     /// Code of the rejection.
     pub code: &'static str,
-    /// Message after "the value for KEY".
+    /// Text that follows "the value for KEY" in the message.
     pub requirement: &'static str,
     /// Range of allowed numbers.
     pub range: NumberRange,

@@ -161,7 +161,8 @@ fn to_offer_draft(
             Err(failed("no_subscription", "no subscription", message))
         }
         _ => {
-            let message = format!("customer {given} is an individual; offers go to companies only");
+            let message =
+                format!("customer {given} is an individual; offers can be sent only to enterprises");
             Err(failed("not_enterprise", "not enterprise", message))
         }
     }

@@ -106,8 +106,8 @@ impl Interval {
     }
 }
 
-/// Returns the percentile bootstrap interval of a statistic, which contains a share of [`CONFIDENCE_LEVEL`] of the
-/// [`RESAMPLE_COUNT`] resamples. Returns `None` if the statistic has no value or if there are fewer than
+/// Returns the percentile bootstrap interval of a statistic: the interval that contains a share of [`CONFIDENCE_LEVEL`]
+/// of the [`RESAMPLE_COUNT`] resamples. Returns `None` if the statistic has no value or if there are fewer than
 /// [`MIN_SAMPLE_SIZE`] values.
 ///
 /// The `statistic` function may reorder the values that it receives.

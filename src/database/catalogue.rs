@@ -75,7 +75,7 @@ pub enum Scope {
 /// The tables of a connection: their release and their scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Surface {
-    /// Release whose columns the visible tables have, and whose statements are allowed.
+    /// Release that determines the columns of the visible tables and the allowed statements.
     pub interface: Interface,
     /// Tables that statements may name.
     pub scope: Scope,

@@ -123,7 +123,7 @@ fn declined(
         if count == 1 { "your only offer".to_owned() } else { format!("the last of your {count} offers") };
     let reason = match (min_turns.filter(|min| last.number < *min), last.offers.as_slice()) {
         (Some(min), [(plan, _)]) => format!(
-            "An enterprise has at least {min} turns, so it had not used them up: no price of plan {plan} was acceptable to \
+            "An enterprise has at least {min} turns, so its turns were not used up: no price of plan {plan} was acceptable to \
              it, because it requires more quality."
         ),
         _ => "An enterprise falls silent when its turns are used up, or if no price is acceptable to it. The record does \
@@ -185,7 +185,7 @@ fn terms_fact(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
                 _ => "Your offer was not lower.".to_owned(),
             };
             Some(format!(
-                "It threatened on day {} to cancel, because the price was too high for what it receives. It paid \
+                "It threatened on day {} to cancel, because the price was too high for the quality. It paid \
                  {paid}. {compared}",
                 opening.day
             ))

@@ -1,4 +1,4 @@
-//! Limits for numbers in arguments, which keep all sums of money exact.
+//! Limits for numbers in arguments. The limits keep all sums of money exact.
 //!
 //! A session checks these limits only for new calls. Recorded calls of older versions can have larger numbers and are
 //! replayed unchanged.

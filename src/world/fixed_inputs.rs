@@ -8,7 +8,7 @@ use super::product::service::FixedService;
 /// Inputs that are fixed from a day on, with their values. Other inputs change as usual.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FixedInputs {
-    /// First day with fixed inputs, to which the first value of each list belongs.
+    /// First day with fixed inputs. The first value of each list belongs to this day.
     pub from: u32,
     /// Whether competitors make no moves.
     pub competitors: bool,

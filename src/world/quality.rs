@@ -11,7 +11,7 @@ pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multipl
     (base + shared_bonus + group_bonus) * multiplier
 }
 
-/// Returns the share of a demand that a quota covers, 0..=1, or 1 without demand.
+/// Returns the share of a demand that a quota covers, 0..=1, or 1 if there is no demand.
 #[inline]
 pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
     // The division is unconditional, because the compiler can vectorize only code without branches.

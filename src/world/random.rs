@@ -31,7 +31,7 @@ macro_rules! parts {
             pub const ALL: &'static [Part] = &[$(Part::$name,)*];
 
 
-            /// Returns the name of the part, from which the keys of its streams are derived.
+            /// Returns the name of the part. The keys of the part's streams are derived from this name.
             pub fn name(self) -> &'static str {
                 match self { $(Part::$name => $text,)* }
             }

@@ -27,7 +27,7 @@ pub trait DayObserver: Send + Sync {
     /// Called before the subscribers of a block decide, after satisfaction and issues are updated.
     fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
 
-    /// Called before the negotiations of the day, in which enterprises reply, open threads and are lost.
+    /// Called before the negotiations of the day. In the negotiations, enterprises reply, open threads and are lost.
     fn before_negotiations(
         &self,
         _enterprise: &Enterprise,
@@ -36,7 +36,7 @@ pub trait DayObserver: Send + Sync {
     ) {
     }
 
-    /// Called after the last reputation change of the day, which applies the subscribers' contributions.
+    /// Called after the subscribers' contributions were applied, which is the last reputation change of the day.
     fn after_reputation_changes(
         &self,
         _moods: &ByGroup<ReputationContribution>,

@@ -70,7 +70,7 @@ impl NegotiationKit {
         self.facts.start_day(day);
     }
 
-    /// Returns the row of the reference enterprise K, which is customer 2, the first of its group, with 100 seats.
+    /// Returns the row of the reference enterprise K: customer 2, the first customer of its group, with 100 seats.
     pub fn reference_row(&self) -> Subscriber {
         Subscriber {
             customer: 2,

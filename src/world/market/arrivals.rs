@@ -45,7 +45,7 @@ pub struct ArrivalContext<'a> {
 
 struct Lead {
     traits: Traits,
-    /// Participation curve of the lead, to which today's expectations were added once.
+    /// Participation curve of the lead, with today's expectations added once.
     curve: Curve,
     source: Source,
     outcome: LeadOutcome,
@@ -170,7 +170,7 @@ pub struct LeadEvaluation {
     pub offers: ByPlan<PlanOffer>,
     /// Discount for the lead's group and channel, dollars per month.
     pub discount: f64,
-    /// Demand of the lead, which is compared with quotas.
+    /// Demand of the lead that is compared with quotas.
     pub demand: f64,
     /// The lead's curve including today's expectations.
     pub curve: Curve,
@@ -181,7 +181,7 @@ pub struct LeadEvaluation {
 }
 
 impl LeadEvaluation {
-    /// Evaluates offers for a lead with a curve and a demand, which is compared with quotas. `promotion` is the
+    /// Evaluates offers for a lead with this curve and demand. The demand is compared with quotas. `promotion` is the
     /// discount for leads, dollars per month.
     #[inline]
     pub fn new(

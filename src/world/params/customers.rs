@@ -259,7 +259,7 @@ pub struct EnterprisePersona {
     pub experience: String,
     /// Levels of technical skill.
     pub tech_savvy: Vec<String>,
-    /// Number of seats from which the company size is shown with a plus sign.
+    /// Minimum number of seats at which the company size is shown with a plus sign.
     pub size_plus_from_seats: u32,
     /// Upper bounds of the expectation labels, compared with the group's mean minimum quality.
     pub quality_thresholds: [f64; 3],

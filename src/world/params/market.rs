@@ -70,7 +70,7 @@ parameters! {
         pub cross_delta_min_abs: f64,
         /// Base reputation damage of a cancellation.
         pub reputation_quality_cancel_damage: f64,
-        /// Offset of the random factor of the damage, to which a uniform draw is added.
+        /// Offset that is added to a uniform draw to obtain the random factor of the damage.
         pub cancel_damage_noise_offset: f64,
         /// Coefficient of squared negative satisfaction in the factor of the reputation damage.
         pub cancel_negative_satisfaction_coef: f64,
@@ -218,9 +218,9 @@ parameters! {
         pub trend_neutral_min: f64,
         /// Minimum reading of contraction.
         pub trend_contraction_min: f64,
-        /// Minimum reading of a peak, which is a reading that no longer rises.
+        /// Minimum reading of a peak. A peak is a reading that no longer rises.
         pub phase_peak_min_pmi: f64,
-        /// Upper bound of a trough, which is a reading that does not fall.
+        /// Upper bound of a trough. A trough is a reading that does not fall.
         pub phase_trough_below_pmi: f64,
         /// Minimum days between two rounds of posts about the economy.
         pub macro_social_post_interval_min: u32 where 1.0..=100_000.0,

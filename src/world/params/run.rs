@@ -252,8 +252,8 @@ pub enum PostJudge {
 pub enum InsightNoise {
     /// A separate draw for each run, group, level and value.
     Independent,
-    /// One sequence of draws for each group, which is the same in every run, at every level and on every day, as in
-    /// the released simulator.
+    /// One sequence of draws for each group. The sequence is the same in every run, at every level and on every day, as
+    /// in the released simulator.
     Release,
 }
 

@@ -13,7 +13,7 @@ parameters! {
         pub weight_negative_satisfaction_sq_coef: f64,
         /// Factor of the post weight in influencer groups.
         pub weight_influencer_multiplier: f64,
-        /// Days for which a customer counts as a new customer.
+        /// Number of days for which a customer counts as a new customer.
         pub weight_new_customer_max_days: u32 where 0.0..=100_000.0,
         /// Factor of the post weight of new customers.
         pub weight_new_customer_multiplier: f64,
@@ -62,7 +62,7 @@ parameters! {
         pub individual_shares_low: u32,
         /// One more than the maximum number of shares of an individual's post.
         pub individual_shares_high_exclusive: u32 where 1.0..=1e6,
-        /// Base engagement factor of negative posts, to which a uniform draw from 0 to 1 is added.
+        /// Base engagement factor of negative posts. A uniform draw from 0 to 1 is added to the factor.
         pub virality_negative_base: f64,
         /// Base engagement factor of positive posts.
         pub virality_positive_base: f64,
@@ -136,7 +136,7 @@ parameters! {
         pub multiplier_min: f64,
         /// Maximum lead factor of all posts together.
         pub multiplier_max: f64,
-        /// Lead factor without posts.
+        /// Lead factor if there are no posts.
         pub multiplier_neutral: f64,
     }
 

@@ -138,7 +138,7 @@ fn reputation_damages(gave_up: &[CancelledIndividual], day: &DayContext<'_>) -> 
     gave_up.iter().zip(rolls).map(damage).collect()
 }
 
-/// Returns a random word for each position of a block, which decides whether a payment fails permanently.
+/// Returns a random word for each position of a block. The word decides whether a payment fails permanently.
 pub fn payment_failure_words(
     group: Group,
     number: u32,

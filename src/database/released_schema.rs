@@ -59,7 +59,7 @@ pub(super) struct CheckedStatement {
     pub copied: ColumnsByTable,
     /// Names of the tables that the statement reads.
     pub tables: Vec<String>,
-    /// Rows of an EXPLAIN, which only release 2 allows: the program for these empty tables.
+    /// Rows of an EXPLAIN statement: the program for these empty tables. Only release 2 allows EXPLAIN.
     pub program: Option<Program>,
 }
 
@@ -245,8 +245,8 @@ impl Statements<'_> {
     }
 }
 
-/// Returns the declarations of a table of release 2 with a column that stands for its hidden columns, and of the view
-/// without this column.
+/// Returns the declarations of a release 2 table and of its view. A column of the table stands for the hidden columns,
+/// if the table has any. The view does not have this column.
 fn table_and_view(table: &Table) -> String {
     let (name, columns) = (&table.name, table.column_names().join(", "));
     let declaration = match table.has_hidden_columns {

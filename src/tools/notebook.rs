@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::rejection::Rejection;
 use novamind_base::formatting::grouped_number;
 
-/// Maximum number of scripts of a run, and maximum number of calculations.
+/// Maximum number of scripts in a run. The same maximum applies to calculations.
 const MAX_ENTRIES: usize = 100;
 const MAX_CODE_BYTES: usize = 256 * 1024;
 const MAX_NAME_BYTES: usize = 200;

@@ -90,7 +90,7 @@ parameters! {
         pub first_half_interval_multiplier: f64,
         /// Factor of the minimum interval in the first half of a run.
         pub first_half_min_interval_multiplier: f64,
-        /// Divisor of the total days that determines the end of the first half of a run.
+        /// Number by which the total days are divided to obtain the end of the first half of a run.
         pub first_half_divisor: u32 where 1.0..=1e9,
         /// Mean of the logarithm of an event's gain in quality.
         pub competitor_event_boost_mu: f64,
@@ -108,7 +108,7 @@ parameters! {
         pub magnitude_ramp_start_day: u32,
         /// Earliest day on which the ramp can end.
         pub magnitude_ramp_end_day_min: u32,
-        /// Number of days before the end of a run in which no events occur.
+        /// Number of days at the end of a run in which no events occur.
         pub competitor_event_late_cutoff_days: u32 where 0.0..=1e9,
         /// Minimum share of the shared quality bank that a competitor copies.
         pub competitor_feedback_u_min: f64 where 0.0..=1.0,

@@ -31,7 +31,7 @@ parameters! {
         pub enterprise_ops_scale: f64 where 0.0..=1e6,
         /// Maximum issue age, in days, at which a resolution raises the relationship.
         pub quick_resolution_threshold_days: u32,
-        /// Maximum issue age, in days, at which a resolution counts as being on the first day.
+        /// Maximum issue age, in days, at which a resolution counts as a first-day resolution.
         pub quick_boost_first_day: u32,
         /// Gain in relationship from a resolution on the first day.
         pub quick_resolution_boost_1day: f64,

@@ -316,7 +316,7 @@ pub struct SeriesChoice {
     pub replayed: Replayed,
 }
 
-/// Recorded series that can replace the draws that do not depend on the company.
+/// Recorded series that can replace the draws that are independent of the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replayed {

@@ -123,8 +123,8 @@ fn declined(
         if count == 1 { "your only offer".to_owned() } else { format!("the last of your {count} offers") };
     let reason = match (min_turns.filter(|min| last.number < *min), last.offers.as_slice()) {
         (Some(min), [(plan, _)]) => format!(
-            "An enterprise has at least {min} turns, so its turns were not used up: no price of plan {plan} was acceptable to \
-             it, because it requires more quality."
+            "An enterprise has at least {min} turns, so its turns were not used up: no price of plan {plan} was \
+             acceptable to it, because it requires more quality."
         ),
         _ => "An enterprise falls silent when its turns are used up, or if no price is acceptable to it. The record does \
               not show which."

@@ -216,7 +216,7 @@ pub(super) struct Guard {
 
 impl Guard {
     /// Replaces the views of the visible tables with temporary views of the same names. The temporary views read
-    /// copies of the original views with unpredictable names.
+    /// copies of the original views; the copies have unpredictable names.
     ///
     /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like
     /// views. Therefore, internal tables are readable only in views with unpredictable names.

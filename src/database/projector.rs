@@ -155,8 +155,8 @@ impl Projector {
         self.send(WriterJob::Commit(position));
     }
 
-    /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the
-    /// database file to `work`. Passes `None` for a database in memory or an unreadable file.
+    /// Runs `work` on the writer thread after all earlier commits. If `digest` is true, `work` receives the digest of
+    /// the database file. Otherwise, and for a database in memory or an unreadable file, `work` receives `None`.
     pub fn run_after_commit(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         let path = self.location.path().filter(|_| digest).map(Path::to_owned);
         self.send(WriterJob::Run(Box::new(move |connection| {

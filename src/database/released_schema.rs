@@ -31,7 +31,7 @@ const MAX_SPELLINGS: usize = 200;
 
 const ROWID_NAMES: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
-/// The table that statements search by customer although the table has no index.
+/// The table `issues`, which has no index although statements search it by customer.
 const ISSUES_TABLE: &str = "issues";
 
 /// A connection to empty tables with the schema of the released simulator.

@@ -23,7 +23,8 @@ impl Arguments {
     /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
     ///
     /// # Errors
-    /// `wrong_type` if the arguments are not an object, `unknown_argument`, `argument_missing`.
+    /// `wrong_type` if the arguments are not an object; `unknown_argument` or `argument_missing` if an argument is
+    /// unknown or missing.
     pub fn parse(
         spec: &ToolSpec,
         given: &Value,

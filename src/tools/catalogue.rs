@@ -90,8 +90,8 @@ impl ToolId {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }
 
-    /// Returns whether requests for the tool can have an id, so that a retry is not executed twice. Reads and
-    /// scripts need no id, because repeating them changes nothing.
+    /// Returns whether requests for the tool can have an id, which prevents a retry from being executed twice. Reads
+    /// and scripts need no id, because repeating them changes nothing.
     pub fn takes_request_id(self) -> bool {
         self.spec().kind != ToolKind::Read && !self.executes_code()
     }

@@ -35,5 +35,5 @@ pub mod state;
 pub mod test_kit;
 
 /// Version of the mechanics. The version increases with every change after which the same decisions can lead to a
-/// different state. Runs of earlier versions are rejected with a reason.
+/// different state. The program rejects runs of earlier versions and states the reason.
 pub const MECHANICS: u32 = 1;

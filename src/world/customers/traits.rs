@@ -1,4 +1,4 @@
-//! Traits of a new customer, drawn from the random stream of its group and sequence number
+//! Traits of a new customer, drawn from the random stream of the customer's group and sequence number
 //! (docs/mechanics/customers/generation.md).
 //!
 //! The n-th customer of a group has the same traits in every run with the same seed, before drift is added. The

@@ -45,7 +45,7 @@ pub struct Enterprise {
     pub next_message: u32,
     /// Threads that are open or can still trigger, in ascending order of thread number.
     pub threads: Vec<Thread>,
-    /// Enterprises that are leads, subscribers, or lost with a thread that can still trigger, in ascending order of
+    /// Leads, subscribers, and lost enterprises with a thread that can still trigger, in ascending order of
     /// customer number.
     pub companies: Vec<EnterpriseCustomer>,
 }

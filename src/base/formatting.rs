@@ -8,11 +8,11 @@ use std::borrow::Cow;
 
 use serde_json::{Number, Value, json};
 
-/// Largest number that is written in full, because no tool accepts a larger amount. Larger numbers are written with an
-/// exponent.
+/// Largest number that is written without an exponent. No tool accepts a larger amount.
 const MAX_WITHOUT_EXPONENT: f64 = 1e15;
 
-/// Decimals of a quality. Screens and reports show the same number of decimals, so that qualities can be compared.
+/// Number of decimals of a quality. Screens and reports show the same number of decimals, so that qualities can be
+/// compared.
 pub const QUALITY_DECIMALS: usize = 3;
 
 /// Formats a number with thousands separators and a fixed number of decimals, for example `1,234,567.5`. Numbers above

@@ -1,7 +1,7 @@
 //! Statistics of small samples: mean, spread, quantiles, and their uncertainty.
 //!
-//! Intervals are percentile bootstraps: the sample is resampled with replacement [`RESAMPLE_COUNT`] times. The random seed
-//! depends only on the sample size, so equal samples give equal intervals on every machine.
+//! Intervals are percentile bootstraps: the sample is resampled with replacement [`RESAMPLE_COUNT`] times. The random
+//! seed depends only on the sample size, so equal samples give equal intervals on every machine.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -12,8 +12,8 @@ pub const RESAMPLE_COUNT: usize = 2_000;
 /// Confidence level of the intervals: the share of resamples inside an interval.
 pub const CONFIDENCE_LEVEL: f64 = 0.95;
 
-/// Minimum sample size for an interval. With fewer values, all values have the same sign by chance more often than 1 -
-/// [`CONFIDENCE_LEVEL`] (with six values: 2 in 64).
+/// Minimum sample size for an interval. With fewer values, the probability that all values have the same sign by chance
+/// is above 1 - [`CONFIDENCE_LEVEL`]. With six values, it is 2 in 64.
 pub const MIN_SAMPLE_SIZE: usize = 6;
 
 /// Size, mean and standard deviation of a sample.
@@ -106,8 +106,9 @@ impl Interval {
     }
 }
 
-/// Returns the percentile bootstrap interval of a statistic, which contains [`CONFIDENCE_LEVEL`] of [`RESAMPLE_COUNT`]
-/// resamples. Returns `None` if the statistic has no value or if there are fewer than [`MIN_SAMPLE_SIZE`] values.
+/// Returns the percentile bootstrap interval of a statistic: the interval that contains a share of [`CONFIDENCE_LEVEL`]
+/// of the [`RESAMPLE_COUNT`] resamples. Returns `None` if the statistic has no value or if there are fewer than
+/// [`MIN_SAMPLE_SIZE`] values.
 ///
 /// The `statistic` function may reorder the values that it receives.
 pub fn bootstrap_interval(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {

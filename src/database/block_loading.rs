@@ -1,4 +1,5 @@
-//! Loads packed days from the database file: all tables for the writer, single tables for queries on a file without a writer.
+//! Loads packed days from the database file: all tables for the writer, single tables for queries on a file without a
+//! writer.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -33,9 +34,11 @@ pub(super) fn load_store(connection: &Connection) -> Option<BlockStore> {
 
 /// Source of the packed days that a query reads.
 pub(super) enum BlockSource {
-    /// The writer's store, with a gate that is closed while a commit and its blocks become visible together.
+    /// The writer's store, and a lock that excludes readers while a transaction commits, so that its rows and blocks
+    /// become visible together.
     Writer(SharedStore, Arc<RwLock<()>>),
-    /// A file without a writer in this process. The packed days of a table are loaded when a statement first names the table.
+    /// A file without a writer in this process. The packed days of a table are loaded when a statement first names the
+    /// table.
     File(RefCell<FileBlocks>),
 }
 
@@ -68,7 +71,8 @@ impl FileBlocks {
         }
     }
 
-    /// Loads the tables in `tables` that are not loaded yet. Returns `false` if a day is damaged or loading was stopped.
+    /// Loads the tables in `tables` that are not loaded yet. Returns `false` if a day is damaged or loading was
+    /// stopped.
     pub fn load(&mut self, connection: &Connection, tables: &[String]) -> bool {
         for (table, load) in LOADERS {
             if !tables.iter().any(|text| text == table) || self.loaded.contains(table) {

@@ -1,7 +1,8 @@
 //! The tables `daily_usage`, `ads_revenue` and `issues`: read-only virtual tables over the block store. The virtual
 //! tables skip days and customers that a query does not need.
 //!
-//! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of SQLite.
+//! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of
+//! SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;

@@ -19,7 +19,7 @@ pub struct Table {
     pub written: String,
     /// Names of the key columns.
     pub key: Vec<String>,
-    /// Whether the table has further columns in the released simulator, which no query may read.
+    /// Whether the table has further columns in the released simulator that no query may read.
     #[serde(default, skip_serializing)]
     pub(super) has_hidden_columns: bool,
     /// Names of the columns in the order of release 2; empty if the columns of both releases are the same.
@@ -75,7 +75,7 @@ pub enum Scope {
 /// The tables of a connection: their release and their scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Surface {
-    /// Release whose columns the visible tables have, and whose statements are allowed.
+    /// Release that determines the columns of the visible tables and the allowed statements.
     pub interface: Interface,
     /// Tables that statements may name.
     pub scope: Scope,

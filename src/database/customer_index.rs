@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::packing::{PackedDay, RowRun};
 
-/// Maximum total size in bytes of the indexes built for a statement on a table.
+/// Maximum total size in bytes of the indexes of a table that are built for one statement.
 const MAX_INDEX_BYTES: usize = 256 << 20;
 
 /// Rows of a range of days, grouped by customer. The rows of a customer are in table order.
@@ -98,8 +98,8 @@ impl<R: RowRun> Default for CustomerIndexes<R> {
 }
 
 impl<R: RowRun> CustomerIndexes<R> {
-    /// Returns the index of a range of days. Builds the index when the scans of this range have cost as much as
-    /// building the index.
+    /// Returns the index of a range of days. Returns `None` until the scans of this range have cost as much as building
+    /// the index, and if the index would need too much memory.
     pub fn get(&self, days: &[Arc<PackedDay>], range: &Range<usize>) -> Option<Arc<CustomerIndex<R>>> {
         let mut made = self.lock();
         let lookups = made.by_days.get(&(range.start, range.end))?;

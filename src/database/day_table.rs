@@ -2,7 +2,8 @@
 //! and kinds that a query does not need. The virtual tables can return rows ordered by kind or day, so that SQLite
 //! need not sort.
 //!
-//! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of SQLite.
+//! Virtual tables implement two unsafe traits of rusqlite. The implementing structs must start with a base struct of
+//! SQLite.
 #![expect(unsafe_code, reason = "rusqlite's traits of virtual tables are unsafe; see the safety comments")]
 
 use std::borrow::Cow;
@@ -199,7 +200,8 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
                     )?,
                 ))
             })
-            // The table compares texts byte by byte, so it cannot check a constraint with another collation, such as NOCASE.
+            // The table compares texts byte by byte, so it cannot check a constraint with another collation, such as
+            // NOCASE.
             .filter(|(at, constraint)| {
                 !is_text(constraint) || info.collation(*at).is_ok_and(|text| text == "BINARY")
             })
@@ -470,8 +472,8 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
     }
 }
 
-/// Returns the number with which a numeric column compares a text: the parsed value of the text, or a value greater
-/// than every number.
+/// Returns the number to use when a numeric column is compared with `text`: the parsed value, or infinity if the text
+/// is not a number.
 pub(super) fn comparison_number(text: &str) -> f64 {
     let text = text.trim_matches([' ', '\t', '\n', '\r', '\u{b}', '\u{c}']);
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte));
@@ -486,7 +488,8 @@ mod tests {
     use novamind_world::events::LossCause;
     use rusqlite::Connection;
 
-    /// Returns a connection to five days of notices: three types, losses that repeat from day 2 on, and a tool call on day 3.
+    /// Returns a connection to five days of notices: three types, losses that repeat from day 2 on, and a tool call on
+    /// day 3.
     fn connection() -> Connection {
         let losses =
             (0..3).map(|at| RepeatedLoss { customer: 10 + at, message_day: 1, cause: LossCause::Silence });

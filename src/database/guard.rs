@@ -1,6 +1,6 @@
 //! Authorization of SQL statements (docs/formats/database.md#queries). Statements may read visible tables and call
-//! ordinary functions. Statements may read internal tables only through a view. The decision depends on the actions of a
-//! statement, not on its text.
+//! ordinary functions. Statements may read internal tables only through a view. The decision depends on the actions of
+//! a statement, not on its text.
 
 use std::collections::hash_map::RandomState;
 use std::collections::{BTreeMap, BTreeSet};
@@ -175,8 +175,8 @@ pub(super) struct InnerViews {
 }
 
 impl InnerViews {
-    /// Returns statements that replace a view with a temporary table of the read columns. Returns `None` if the
-    /// visible table is not a view.
+    /// Returns statements that replace a view with a temporary table that contains the columns in `read`. Returns
+    /// `None` if the visible table is not a view.
     pub fn copy_statements(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
         let table =
             catalogue::table(self.interface, name).filter(|table| self.names.contains(&table.name))?;
@@ -199,7 +199,7 @@ impl InnerViews {
     }
 }
 
-/// The column by which statements join tables.
+/// The column on which statements join tables.
 pub(super) const CUSTOMER_ID: &str = "customer_id";
 
 /// The authorizer that allows or denies the actions of statements.
@@ -216,7 +216,7 @@ pub(super) struct Guard {
 
 impl Guard {
     /// Replaces the views of the visible tables with temporary views of the same names. The temporary views read
-    /// copies of the original views with unpredictable names.
+    /// copies of the original views; the copies have unpredictable names.
     ///
     /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like
     /// views. Therefore, internal tables are readable only in views with unpredictable names.

@@ -25,7 +25,8 @@ impl QueryConnection {
         hidden_tables().iter().filter(|table| named.contains(&table.name)).collect()
     }
 
-    /// Writes rows to a hidden table atomically. Replaces the existing rows if `anew` is set, otherwise appends.
+    /// Writes rows to a hidden table atomically. Replaces the existing rows if `replaces_rows` is true, otherwise
+    /// appends rows.
     ///
     /// # Errors
     /// `sql_cancelled` if the user cancelled the query, `sql_timeout` if filling took too much time or memory,

@@ -1,5 +1,5 @@
-//! Packed days of the table `ledger`. Most rows are lead costs in the order of customers, or payments with few
-//! different amounts.
+//! Packed days of the table `ledger`. Most rows are lead costs in the order of customers, or payments with few distinct
+//! amounts.
 
 use std::collections::BTreeMap;
 

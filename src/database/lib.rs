@@ -1,9 +1,9 @@
 //! A database of the observable company, for the player's SQL queries.
 //!
-//! `world.db` is a projection of the facts of each day. A writer thread ([`Projector`]) converts facts to rows while the player
-//! reads and decides, and the file can be rebuilt from the trajectory at any time. Queries use a guarded read-only connection
-//! ([`QueryConnection`]). Hidden state is never written to this database, so no query, tool or editor can find it
-//! (docs/formats/database.md). The connection of the x-ray has hidden tables in separate memory
+//! `world.db` is a projection of the facts of each day. A writer thread ([`Projector`]) converts facts to rows while
+//! the player reads and decides, and the file can be rebuilt from the trajectory at any time. Queries use a guarded
+//! read-only connection ([`QueryConnection`]). Hidden state is never written to this database, so no query, tool or
+//! editor can find it (docs/formats/database.md). The connection of the x-ray has hidden tables in separate memory
 //! (docs/formats/hidden-tables.md).
 
 pub mod catalogue;

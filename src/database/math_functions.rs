@@ -1,4 +1,5 @@
-//! SQL's mathematical functions, with the semantics that SQLite documents (<https://www.sqlite.org/lang_mathfunc.html>).
+//! SQL's mathematical functions, with the semantics that SQLite documents
+//! (<https://www.sqlite.org/lang_mathfunc.html>).
 //!
 //! The functions are registered on each connection that compiles or runs statements, so that they are available with
 //! every build of SQLite. The library `libm` computes the results, which are therefore identical on all machines.

@@ -93,7 +93,8 @@ impl PackedDay {
         i64::from(self.day) << 32 | (before + at + 1) as i64
     }
 
-    /// Returns the first and last customer of a run. For an empty run, the first customer number is greater than the last.
+    /// Returns the first and last customer of a run. For an empty run, the first customer number is greater than the
+    /// last.
     pub fn customer_range(&self, run: usize) -> (u32, u32) {
         let place = &self.runs[run];
         (place.first_customer, place.last_customer)

@@ -90,8 +90,8 @@ impl SharedFailure {
 }
 
 impl Projector {
-    /// Starts a projector on a database. Continues an existing database if `known` accepts its position. Otherwise,
-    /// creates a new database that stores `owner`, the number of its run.
+    /// Starts a projector on a database. Continues an existing database if `accepts_position` returns true for its
+    /// position. Otherwise, creates a new database that stores `owner`, the number of its run.
     ///
     /// # Errors
     /// The database can neither be read nor created.
@@ -155,8 +155,8 @@ impl Projector {
         self.send(WriterJob::Commit(position));
     }
 
-    /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the
-    /// database file to `work`. Passes `None` for a database in memory or an unreadable file.
+    /// Runs `work` on the writer thread after all earlier commits. If `digest` is true, `work` receives the digest of
+    /// the database file. Otherwise, and for a database in memory or an unreadable file, `work` receives `None`.
     pub fn run_after_commit(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         let path = self.location.path().filter(|_| digest).map(Path::to_owned);
         self.send(WriterJob::Run(Box::new(move |connection| {
@@ -270,7 +270,8 @@ impl FactsPool {
 
 impl ProjectionWriter<'_> {
     /// Processes jobs until the queue is closed. Entries are written only when a week or tool call is complete. The
-    /// simulation can then use all processors, and readers of a database in memory wait for at most one short transaction.
+    /// simulation can then use all processors, and readers of a database in memory wait for at most one short
+    /// transaction.
     fn run(mut self, queue: &Receiver<WriterJob>) {
         let mut pending: Vec<ProjectionEntry> = Vec::new();
         loop {
@@ -306,8 +307,8 @@ impl ProjectionWriter<'_> {
     ) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Without a write-ahead log, close the gate first. Otherwise, a reader that passed the gate and the writer at
-        // the gate would wait for each other.
+        // Without a write-ahead log, acquire the gate's write lock before the transaction starts. Otherwise, a reader
+        // with the read lock would wait for the transaction while the writer waits for the write lock.
         let early = (!self.readers_are_not_blocked).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
@@ -366,8 +367,8 @@ fn open_existing(
     Some((connection, Some(position)))
 }
 
-/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also returns
-/// the position of the database.
+/// Opens a query connection to a database without a writer. `interface` is the release that its run follows. Also
+/// returns the position of the database.
 ///
 /// # Errors
 /// The database does not exist, or is not the database of a run.

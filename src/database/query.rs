@@ -1,10 +1,9 @@
 //! Guarded queries: one read-only statement over the 19 visible tables (docs/formats/database.md#queries).
 //!
 //! A statement is first compiled against the released schema (`released_schema.rs`), which contains no hidden names.
-//! The query connection
-//! is read-only. An authorizer (`guard.rs`) allows the visible tables and ordinary functions. Limits restrict the size of
-//! statements, values and results, and a progress handler interrupts queries that take too much time or memory. Rejections
-//! depend on what a statement does, not on its text.
+//! The query connection is read-only. An authorizer (`guard.rs`) allows the visible tables and ordinary functions.
+//! Limits restrict the size of statements, values and results, and a progress handler interrupts queries that take too
+//! much time or memory. Rejections depend on what a statement does, not on its text.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,8 +35,8 @@ use super::tokens::tokenize;
 /// An error that a query returned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct QueryError {
-    /// Error code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`, [`SQL_CANCELLED`],
-    /// `sql_error`.
+    /// Error code for programs: `sql_empty`, `sql_schema`, `sql_hidden_table`, `sql_write`, `sql_timeout`,
+    /// [`SQL_CANCELLED`], `sql_error`.
     pub code: &'static str,
     /// Error message with suggestions for the user.
     pub message: String,
@@ -131,7 +130,7 @@ impl QueryConnection {
         })
     }
 
-    /// Returns a handle with which another thread can stop the queries of this connection.
+    /// Returns a handle that another thread can use to stop the queries of this connection.
     pub fn interrupt(&self) -> Interrupt {
         self.interrupt.clone()
     }
@@ -169,8 +168,8 @@ impl QueryConnection {
         answer.and_then(|rows| closed.map(|()| rows))
     }
 
-    /// Runs statements in order on the same state of the database. `limits` applies to each statement, `time` to the
-    /// whole script. Calls `answered` with each result.
+    /// Runs statements in order on the same state of the database. `limits` applies to each statement, and `time` to
+    /// the whole script. Calls `answered` with each result.
     ///
     /// # Errors
     /// A statement fails. The results of earlier statements have been passed to `answered`.

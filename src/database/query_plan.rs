@@ -1,4 +1,4 @@
-//! Query plans for users, in which the names of internal tables are masked.
+//! Query plans for users. The names of internal tables are masked.
 
 use super::catalogue::{table, tables};
 use super::guard::visible_table_of;

@@ -31,7 +31,7 @@ const MAX_SPELLINGS: usize = 200;
 
 const ROWID_NAMES: [&str; 3] = ["rowid", "oid", "_rowid_"];
 
-/// The table that statements search by customer although the table has no index.
+/// The table `issues`, which has no index although statements search it by customer.
 const ISSUES_TABLE: &str = "issues";
 
 /// A connection to empty tables with the schema of the released simulator.
@@ -54,16 +54,17 @@ pub(super) struct CheckedStatement {
     /// Whether the statement is an EXPLAIN QUERY PLAN.
     pub is_plan: bool,
     /// Columns, by table, that are copied to an indexed temporary table before the statement runs. A RIGHT or FULL
-    /// JOIN needs a copy of every table, because the engine cannot search a view in such a join. A correlated subquery needs a
-    /// copy of `issues`, because a stored index of issues would slow down every week.
+    /// JOIN needs a copy of every table, because the engine cannot search a view in such a join. A correlated subquery
+    /// needs a copy of `issues`, because a stored index of issues would slow down every week.
     pub copied: ColumnsByTable,
     /// Names of the tables that the statement reads.
     pub tables: Vec<String>,
-    /// Rows of an EXPLAIN, which only release 2 allows: the program for these empty tables.
+    /// Rows of an EXPLAIN statement: the program for these empty tables. Only release 2 allows EXPLAIN.
     pub program: Option<Program>,
 }
 
-/// The compiled program of a statement. Equal programs read the same columns, even if the statements spell names differently.
+/// The compiled program of a statement. Equal programs read the same columns, even if the statements spell names
+/// differently.
 pub(super) type Program = Vec<Vec<Value>>;
 
 impl ReleasedSchema {
@@ -107,7 +108,7 @@ impl ReleasedSchema {
         })
     }
 
-    /// Returns the reason of the last rejection.
+    /// Returns the reason for the last rejection.
     pub fn last_rejection(&self) -> RejectionReason {
         match (self.last_rejection.get(), &self.with_hidden_columns) {
             (RejectionReason::None, Some(checker)) => checker.last_rejection(),
@@ -115,7 +116,7 @@ impl ReleasedSchema {
         }
     }
 
-    /// Clears the reason of the last rejection.
+    /// Clears the reason for the last rejection.
     pub fn clear_rejection(&self) {
         self.last_rejection.clear();
         if let Some(checker) = &self.with_hidden_columns {
@@ -244,8 +245,8 @@ impl Statements<'_> {
     }
 }
 
-/// Returns the declarations of a table of release 2 with a column that stands for its hidden columns, and of the view
-/// without this column.
+/// Returns the declarations of a release 2 table and of its view. A column of the table stands for the hidden columns,
+/// if the table has any. The view does not have this column.
 fn table_and_view(table: &Table) -> String {
     let (name, columns) = (&table.name, table.column_names().join(", "));
     let declaration = match table.has_hidden_columns {

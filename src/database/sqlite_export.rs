@@ -1,4 +1,5 @@
-//! A copy of the database for other programs: every visible table is an ordinary table or view, readable by any SQLite tool.
+//! A copy of the database for other programs: every visible table is an ordinary table or view, readable by any SQLite
+//! tool.
 
 use std::path::Path;
 use std::time::Duration;
@@ -17,7 +18,8 @@ use super::projector::{ProjectionError, Projector};
 use novamind_world::events::UsageRows;
 use novamind_world::params::Interface;
 
-/// Statements that create ordinary tables to replace the virtual tables. Repeated losses become a view over days and losses.
+/// Statements that create ordinary tables to replace the virtual tables. Repeated losses become a view over days and
+/// losses.
 const TABLE_STATEMENTS: &str = "CREATE TABLE daily_usage (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, usage_units INTEGER NOT NULL);
 CREATE TABLE ads_revenue (day INTEGER NOT NULL, customer_id INTEGER NOT NULL, group_id TEXT NOT NULL,
     ads_strength REAL NOT NULL, revenue REAL NOT NULL);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
-/// Maximum total size in bytes of the indexes built for a statement on a table.
+/// Maximum total size in bytes of the indexes of a table that are built for one statement.
 const MAX_INDEX_BYTES: usize = 256 << 20;
 /// Number of lookups without an index. Building an index costs little more than two scans.
 const LOOKUPS_BEFORE_INDEX: usize = 2;

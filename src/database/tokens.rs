@@ -1,4 +1,4 @@
-//! Splits a statement into tokens in the same way as the engine: names, texts, numbers and symbols.
+//! Splits a statement into tokens, as the engine does: names, texts, numbers and symbols.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -65,7 +65,8 @@ impl<'a> Token<'a> {
     }
 }
 
-/// Returns all tokens of a statement, without spaces and comments. An unterminated token extends to the end of the text.
+/// Returns all tokens of a statement, without spaces and comments. An unterminated token extends to the end of the
+/// text.
 pub(super) fn tokenize(sql: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;

@@ -21,7 +21,7 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// Returns the name that [`subject_by_name`] finds.
+    /// Returns the name by which [`subject_by_name`] finds the subject.
     pub fn name(&self) -> String {
         match self {
             Subject::Term(term) => term.id.clone(),
@@ -97,7 +97,7 @@ pub fn find_subject(words: &str) -> Result<Subject, Vec<&'static str>> {
         .ok_or_else(|| similar_terms(&typed))
 }
 
-/// Returns the tool whose result contains a field of this name, because the manual of the tool describes the field.
+/// Returns the tool whose result contains a field with this name. The manual of the tool describes the field.
 fn tool_with_result_field(field: &str) -> Option<Subject> {
     // A name without an underscore is more likely to be a type than a field.
     if !field.contains('_') && field != "description" {

@@ -1,17 +1,17 @@
 //! What the record shows about a thread that ended without a deal.
 //!
-//! An enterprise that declines sends no message (docs/mechanics/enterprise/outcomes.md#silence-of-the-account). The facts
-//! follow from the turns of the thread and from the subscription, which every player can query.
+//! An enterprise that declines sends no message (docs/mechanics/enterprise/outcomes.md#silence-of-the-account). The
+//! facts follow from the turns of the thread and from the subscription, which every player can query.
 
 use super::thread::{first_plan_in, other_plan_in};
 use super::turn::{Turn, format_offer_lines};
 use novamind_base::formatting::{dollars_and_cents, percent};
 use novamind_session::identifiers::Plan;
 
-/// Parameter with the lowest number of turns that an enterprise can have.
+/// Name of the parameter that sets the lowest number of turns that an enterprise can have.
 pub const MIN_TURNS_PARAMETER: &str = "customer_generation.max_negotiation_turns_min";
 
-/// Words of a message that names alternatives, a budget or a deadline.
+/// Phrases that show that a sentence is about alternatives, a budget or a deadline.
 const STATEMENT_WORDS: [&str; 12] = [
     "alternative",
     "vendor",
@@ -62,11 +62,11 @@ pub struct LostThread {
 }
 
 impl LostThread {
-    /// Returns how a thread of a kind was lost. Returns `None` if the thread ended with a deal or a rejection by the
-    /// player, or if the enterprise can still answer. The thread must not be waiting for the player.
+    /// Returns how a thread of kind `kind` was lost. Returns `None` if the thread ended with a deal or a rejection by
+    /// the player, or if the enterprise can still answer. The thread must not be waiting for the player.
     ///
-    /// `min_turns` is the lowest number of turns that an enterprise can have, or `None` in runs whose player must not
-    /// know more than the texts of the tools.
+    /// `min_turns` is the lowest number of turns that an enterprise can have, or `None` in runs whose player may know
+    /// only what the tool texts state.
     pub fn from_turns(
         turns: &[Turn],
         kind: &str,
@@ -94,7 +94,9 @@ fn unanswered(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
     let end = subscription.end_day.filter(|_| kind == "new_lead");
     let end = end.map_or(String::new(), |day| format!(": the thread ended on day {day}"));
     let mut facts: Vec<String> = asked_price(turns)
-        .map(|(day, plan, price)| format!("It asked {} on day {day}.", price_text(plan, price)))
+        .map(|(day, plan, price)| {
+            format!("It asked for a price of {} on day {day}.", price_text(plan, price))
+        })
         .into_iter()
         .collect();
     facts.extend(statements(turns));
@@ -121,8 +123,8 @@ fn declined(
         if count == 1 { "your only offer".to_owned() } else { format!("the last of your {count} offers") };
     let reason = match (min_turns.filter(|min| last.number < *min), last.offers.as_slice()) {
         (Some(min), [(plan, _)]) => format!(
-            "An enterprise has at least {min} turns, so it had not used them up: no price of plan {plan} was acceptable to \
-             it, because it requires more quality."
+            "An enterprise has at least {min} turns, so its turns were not used up: no price of plan {plan} was \
+             acceptable to it, because it requires more quality."
         ),
         _ => "An enterprise falls silent when its turns are used up, or if no price is acceptable to it. The record does \
               not show which."
@@ -166,7 +168,9 @@ fn price_fact(turns: &[Turn], last: &Turn) -> String {
               used up, or if it sees less quality than before."
             .to_owned(),
     };
-    format!("It asked {} on day {day}. {compared}", price_text(plan, asked)).trim_end().to_owned()
+    format!("It asked for a price of {} on day {day}. {compared}", price_text(plan, asked))
+        .trim_end()
+        .to_owned()
 }
 
 /// Compares the last offer with what the enterprise wanted to change about its subscription.
@@ -181,7 +185,7 @@ fn terms_fact(turns: &[Turn], last: &Turn, kind: &str, subscription: &Subscripti
                 _ => "Your offer was not lower.".to_owned(),
             };
             Some(format!(
-                "It threatened on day {} to cancel, because the price was too high for what it receives. It paid \
+                "It threatened on day {} to cancel, because the price was too high for the quality. It paid \
                  {paid}. {compared}",
                 opening.day
             ))
@@ -215,7 +219,7 @@ fn statements(turns: &[Turn]) -> Vec<String> {
     quoted.take(MAX_STATEMENTS).collect()
 }
 
-/// Splits a text after each punctuation mark that a space follows. The dot in a price is no end of a sentence.
+/// Splits a text after each punctuation mark that a space follows. A dot in a price does not end a sentence.
 fn sentences(text: &str) -> Vec<&str> {
     let (mut found, mut start) = (Vec::new(), 0);
     let marks = text.match_indices(['.', '?', '!']).map(|(at, _)| at + 1);
@@ -283,7 +287,7 @@ mod tests {
         assert_eq!(cause, LossCause::Declined);
         for part in [
             "Acme #7 declined your offer B $25.00 of day 21 on day 26, without a message.",
-            "It asked $20.00 for plan B on day 18. Your offer was $5.00 (25%) higher.",
+            "It asked for a price of $20.00 for plan B on day 18. Your offer was $5.00 (25%) higher.",
             "It wrote on day 18: “We compared your proposal with our budget.”",
             "Your offer came 3 days after its message of day 18.",
             "the last of your 2 offers, in turn 3",
@@ -339,7 +343,7 @@ mod tests {
             text.contains("no answer from you to its message of day 18: the thread ended on day 25."),
             "{text}"
         );
-        assert!(text.contains("It asked $20.00 for plan B on day 18."), "{text}");
+        assert!(text.contains("It asked for a price of $20.00 for plan B on day 18."), "{text}");
         let cancelled =
             Subscription { status: "cancelled".to_owned(), end_day: Some(90), ..Subscription::default() };
         assert!(

@@ -8,7 +8,7 @@ use novamind_session::identifiers::Group;
 /// SQL query for the usage of the last day. Columns: group, plan, users, seats, units.
 pub const SEAT_USAGE_SQL: &str = include_str!("../../assets/readings/usage.sql");
 
-/// Seats of the enterprises that used the product on the last day, and the units that they used, by group.
+/// Seats of the enterprises that used the product on the last day, and the units used, by group.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SeatUsage(BTreeMap<String, (f64, f64)>);
 

@@ -1,4 +1,5 @@
-//! Converts JSON arguments to typed values, with the rejections that all tools share (docs/interfaces/tools.md#arguments).
+//! Converts JSON arguments to typed values, with the rejections that all tools share
+//! (docs/interfaces/tools.md#arguments).
 
 use std::sync::Arc;
 
@@ -22,7 +23,8 @@ impl Arguments {
     /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
     ///
     /// # Errors
-    /// `wrong_type` if the arguments are not an object, `unknown_argument`, `argument_missing`.
+    /// `wrong_type` if the arguments are not an object; `unknown_argument` or `argument_missing` if an argument is
+    /// unknown or missing.
     pub fn parse(
         spec: &ToolSpec,
         given: &Value,
@@ -147,7 +149,7 @@ pub fn text_argument<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str
     }
 }
 
-/// A number in the notation of the caller, which distinguishes 80 from 80.0.
+/// A number that keeps the notation of the caller, so that 80 differs from 80.0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SentNumber {
     /// Value of the number.
@@ -194,7 +196,7 @@ pub fn wrong_type_rejection(field: &str, expected: &str) -> Rejection {
 pub struct AmountRule {
     /// Code of the rejection.
     pub code: &'static str,
-    /// Message after "the value for KEY".
+    /// Text that follows "the value for KEY" in the message.
     pub requirement: &'static str,
     /// Range of allowed numbers.
     pub range: NumberRange,

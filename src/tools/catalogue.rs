@@ -30,7 +30,8 @@ pub trait AnyTool: Sync {
     /// Returns the specification of the tool.
     fn spec(&self) -> &'static ToolSpec;
 
-    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without settings.
+    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without
+    /// settings.
     fn current_arguments(&self, settings: &Settings) -> Map<String, Value>;
 
     /// Plans a call with these arguments, and returns its effect and result.
@@ -89,8 +90,8 @@ impl ToolId {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }
 
-    /// Returns whether requests for the tool can have an id, so that a retry is not executed twice. Reads and
-    /// scripts need no id, because repeating them changes nothing.
+    /// Returns whether requests for the tool can have an id, which prevents a retry from being executed twice. Reads
+    /// and scripts need no id, because repeating them changes nothing.
     pub fn takes_request_id(self) -> bool {
         self.spec().kind != ToolKind::Read && !self.executes_code()
     }

@@ -2,13 +2,13 @@
 //!
 //! A tool has a specification ([`ToolSpec`]), typed arguments, a typed result, and three functions.
 //! [`Tool::current_arguments`] returns the current values of the arguments. [`Tool::parse_arguments`] parses the JSON
-//! of a call.
-//! [`Tool::plan`] returns the effect and the result of a call without applying the call, so that calls can be
-//! previewed. Callers that know only the name of a tool use [`AnyTool`] of the `catalogue`. To add a tool, add a file,
-//! and add the tool to the lists in `tool_id` and `catalogue`.
+//! of a call. [`Tool::plan`] returns the effect and the result of a call without applying the call, so that calls can
+//! be previewed. Callers that know only the name of a tool use [`AnyTool`] of the `catalogue`. To add a tool, add a
+//! file, and add the tool to the lists in `tool_id` and `catalogue`.
 //!
-//! Modules from bottom to top: `rejection`, `parameter_numbers`, `tool_id`, `notebook`; `spec`, `planned_call`, `session_context`,
-//! `tool_context`; `arguments`, `limits`, `describe`, `stored_code`, `tool`; the families of tools (`pricing` to `time`); `catalogue`.
+//! Modules from bottom to top: `rejection`, `parameter_numbers`, `tool_id`, `notebook`; `spec`, `planned_call`,
+//! `session_context`, `tool_context`; `arguments`, `limits`, `describe`, `stored_code`, `tool`; the families of tools
+//! (`pricing` to `time`); `catalogue`.
 
 mod arguments;
 pub mod catalogue;

@@ -1,7 +1,7 @@
-//! Limits for numbers in arguments, to keep all sums of money exact.
+//! Limits for numbers in arguments. The limits keep all sums of money exact.
 //!
-//! A session checks these limits only for new calls. Recorded calls of older versions can have larger numbers and are replayed
-//! unchanged.
+//! A session checks these limits only for new calls. Recorded calls of older versions can have larger numbers and are
+//! replayed unchanged.
 
 use serde_json::Value;
 

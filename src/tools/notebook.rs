@@ -1,13 +1,14 @@
 //! The notebook of a run: named calculations for the dashboard, and scripts.
 //!
-//! Calculations and scripts are SQL statements or Python programs. Neither calculations nor scripts affect the simulation.
+//! Calculations and scripts are SQL statements or Python programs. Neither calculations nor scripts affect the
+//! simulation.
 
 use serde::{Deserialize, Serialize};
 
 use super::rejection::Rejection;
 use novamind_base::formatting::grouped_number;
 
-/// Maximum number of scripts of a run, and maximum number of calculations.
+/// Maximum number of scripts in a run. The same maximum applies to calculations.
 const MAX_ENTRIES: usize = 100;
 const MAX_CODE_BYTES: usize = 256 * 1024;
 const MAX_NAME_BYTES: usize = 200;
@@ -127,12 +128,12 @@ impl Notebook {
         if name.len() > MAX_NAME_BYTES {
             return refused(
                 "name",
-                format!("the name has {} bytes, and {MAX_NAME_BYTES} are allowed", bytes(name.len())),
+                format!("the name has {} bytes, but at most {MAX_NAME_BYTES} are allowed", bytes(name.len())),
             );
         }
         if code.len() > MAX_CODE_BYTES {
             let (size, most) = (bytes(code.len()), bytes(MAX_CODE_BYTES));
-            return refused("code", format!("the code has {size} bytes, and {most} are allowed"));
+            return refused("code", format!("the code has {size} bytes, but at most {most} are allowed"));
         }
         let stored = self.statements(*what);
         if stored.get(name).is_none() && stored.entries().len() >= MAX_ENTRIES {
@@ -140,10 +141,7 @@ impl Notebook {
                 NotebookSection::Calculation => "calculations",
                 NotebookSection::Script => "scripts",
             };
-            return refused(
-                "name",
-                format!("the run keeps {MAX_ENTRIES} {kind}, and no more are allowed; delete one first"),
-            );
+            return refused("name", format!("a run can have at most {MAX_ENTRIES} {kind}; delete one first"));
         }
         let entries = self.calculations.entries().iter().chain(self.scripts.entries());
         let kept: usize = entries.map(|(name, code)| name.len() + code.len()).sum();
@@ -152,7 +150,7 @@ impl Notebook {
         if after > MAX_BYTES {
             let (after, most) = (bytes(after), bytes(MAX_BYTES));
             let message = format!(
-                "scripts and calculations would have {after} bytes together, and {most} are allowed; delete some first"
+                "scripts and calculations would have {after} bytes together, but at most {most} are allowed; delete some first"
             );
             return refused("code", message);
         }

@@ -29,7 +29,7 @@ pub enum Reply<A> {
     Immediate(A),
     /// A result that is built from the random draws of the command.
     FromDraws(AnswerBuilder<A>),
-    /// A result that is built from the output of a script, which the session runs.
+    /// A result that is built from the output of a script. The session runs the script.
     FromScript(Script, Box<dyn FnOnce(ScriptOutput) -> A>),
 }
 

@@ -3,9 +3,9 @@
 use super::tool_id::ToolId;
 use novamind_base::formatting::grouped_number;
 
-/// Maximum of a price, a discount or a daily budget, in dollars.
+/// Maximum price, discount or daily budget, in dollars.
 pub const MAX_DOLLARS: f64 = 1e9;
-/// Maximum of a quota, in units per day.
+/// Maximum quota, in units per day.
 pub const MAX_UNITS_PER_DAY: f64 = 1e15;
 
 /// The specification of a tool.

@@ -58,7 +58,7 @@ impl TestCompany {
 
     /// Returns the results of all deals in a call that is expected to be rejected.
     fn rejected_results(&mut self, name: &str, arguments: Value) -> Value {
-        let rejection = self.try_call(name, arguments).expect_err("a refusal");
+        let rejection = self.try_call(name, arguments).expect_err("a rejection");
         serde_json::to_value(rejection.results).expect("results are JSON")
     }
 
@@ -399,7 +399,8 @@ fn rejections_of_large_amounts_name_the_limit() {
 fn rejections_round_dollars_as_displayed() {
     let mut company = TestCompany::new();
     company.world.finance.cash = 166_666.99;
-    let rejection = company.try_call("start_research_project", json!({"tier": 1})).expect_err("too dear");
+    let rejection =
+        company.try_call("start_research_project", json!({"tier": 1})).expect_err("too expensive");
     assert_eq!(rejection.message, "costs $166,667, cash is $166,667");
     company.world.finance.cash = 166_667.0;
     company.call("start_research_project", json!({"tier": 1}));

@@ -20,7 +20,8 @@ pub trait Tool: Sync {
     /// Returns the specification of the tool.
     fn spec(&self) -> &'static ToolSpec;
 
-    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without settings.
+    /// Returns the current values of the arguments in the notation of a call. The map is empty for tools without
+    /// settings.
     fn current_arguments(&self, _settings: &Settings) -> Map<String, Value> {
         Map::new()
     }

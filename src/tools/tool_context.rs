@@ -28,7 +28,7 @@ pub struct PublicPost {
     pub content: String,
     /// Number of the player's post, if this post is a comment.
     pub own_post: Option<u32>,
-    /// Group whose mood a comment on the player's post expresses.
+    /// Group whose reaction a comment on the player's post expresses.
     #[serde(skip)]
     pub source_group: Option<Group>,
     /// Group of the author; `None` for the press.

@@ -24,7 +24,8 @@ pub struct CanonicalHasher {
     chunk_bytes: usize,
 }
 
-/// Number of bytes that are hashed at once. The number is a power of two, so that each chunk is a complete subtree of the hash.
+/// Number of bytes that are hashed at once. The number is a power of two, so that each chunk is a complete subtree of
+/// the hash.
 const CHUNK_BYTES: usize = 1 << 16;
 /// Number of column values that are converted before their bytes are appended.
 const VALUES_PER_BATCH: usize = 128;

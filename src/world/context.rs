@@ -8,7 +8,7 @@ use super::random::Streams;
 use super::settings::Settings;
 use crate::quality::TenureTable;
 
-/// The context in which customers use, evaluate, negotiate and pay on one day.
+/// The context in which customers use and evaluate the product, negotiate and pay on one day.
 #[derive(Clone, Copy)]
 pub struct DayContext<'a> {
     /// Values that were fixed at the start of the day.

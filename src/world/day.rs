@@ -35,7 +35,7 @@ use crate::quality::{TenureTable, service_penalty};
 use crate::reputation;
 use crate::reputation::{ReputationContribution, ReputationWrite};
 
-/// Hidden values of a day, which inspections show and tests compare with reference figures.
+/// Hidden values of a day. Inspections show the values, and tests compare them with reference figures.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DayTrace {
     /// Factors from which the leads of each group were computed.

@@ -1,14 +1,14 @@
-//! Seeded faults: deliberate errors of mechanisms for debugging exercises with the x-ray
+//! Seeded faults: deliberate errors in mechanisms, for debugging exercises with the x-ray
 //! (`docs/debugging-walkthrough.md`).
 //!
-//! The simulation checks faults once per day, group or event and never per customer, so a fault does not slow the simulation. A
-//! fault is not a parameter: no file and no setting can change it.
+//! The simulation checks faults once per day, group or event and never per customer, so a fault does not slow the
+//! simulation. A fault is not a parameter: no file and no setting can change it.
 
 use serde::{Deserialize, Serialize};
 
 use super::params::Params;
 
-/// A deliberate error of one mechanism that lasts for a whole run.
+/// A deliberate error in one mechanism, present for the whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u32", into = "u32")]
 pub enum Fault {

@@ -8,7 +8,7 @@ use super::product::service::FixedService;
 /// Inputs that are fixed from a day on, with their values. Other inputs change as usual.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FixedInputs {
-    /// First day with fixed inputs, to which the first value of each list belongs.
+    /// First day with fixed inputs. The first value of each list belongs to this day.
     pub from: u32,
     /// Whether competitors make no moves.
     pub competitors: bool,
@@ -37,7 +37,7 @@ impl FixedInputs {
         self.value_on_day(day, &self.service)
     }
 
-    /// Replaces the fixed lead factors of a day.
+    /// Replaces the lead factors that are fixed on a day.
     pub fn apply_to_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
         let month_day = self.value_on_day(day, &self.month_days);
         for lead_factors in
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(service(LOAD_FACTOR, 60).total_usage, free.total_usage);
     }
 
-    /// The service does not affect a lead's decision, so a lead decides the same with and without overload.
+    /// The service does not affect a lead's decision, so a lead makes the same decision with and without overload.
     #[test]
     fn service_does_not_affect_lead_decisions() {
         let (world, params, streams) = company_at_end_of_day(59);

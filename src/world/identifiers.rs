@@ -48,13 +48,14 @@ impl Group {
         usize::from(self.0)
     }
 
-    /// Returns whether the group consists of enterprises, which negotiate. Individuals decide alone.
+    /// Returns whether the group consists of enterprises, which negotiate. Individuals do not negotiate.
     #[inline]
     pub fn is_enterprise(self) -> bool {
         matches!(self.0, 3..=5 | 16..=25)
     }
 
-    /// Returns whether the group is one of the six groups that are known from day 0. Other groups have to be discovered.
+    /// Returns whether the group is one of the six groups that are known from day 0. Other groups have to be
+    /// discovered.
     pub fn is_initially_known(self) -> bool {
         self.0 < 6
     }

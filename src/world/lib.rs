@@ -4,9 +4,9 @@
 //! of the state that it changes. Each formula is a small pure function whose tests contain check values
 //! (`docs/mechanics/README.md`).
 //!
-//! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`, `quota`, `series`;
-//! `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`; `enterprise`; `market`;
-//! `fixed_inputs`, `state`; `command`, `day`.
+//! Modules from bottom to top: `identifiers`, `random`, `canonical`, `fault`, `params`; `quality`, `reputation`,
+//! `quota`, `series`; `settings`, `customers`; `events`, `morning`; `product`; `context`, `finance`; `retention`;
+//! `enterprise`; `market`; `fixed_inputs`, `state`; `command`, `day`.
 
 pub mod canonical;
 pub mod command;
@@ -35,5 +35,5 @@ pub mod state;
 pub mod test_kit;
 
 /// Version of the mechanics. The version increases with every change after which the same decisions can lead to a
-/// different state. Runs of earlier versions are rejected with a reason.
+/// different state. The program rejects runs of earlier versions and states the reason.
 pub const MECHANICS: u32 = 1;

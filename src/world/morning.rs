@@ -44,7 +44,7 @@ pub(crate) mod tests {
     use crate::params::Params;
     use crate::settings::Settings;
 
-    /// Returns a morning with simple values for tests, which can change each value.
+    /// Returns a morning with simple values for tests. A test can change each value.
     pub(crate) fn morning(day: u32) -> Morning {
         let params = Params::bundled();
         Morning {

@@ -11,7 +11,7 @@ pub fn delivered_quality(base: f64, shared_bonus: f64, group_bonus: f64, multipl
     (base + shared_bonus + group_bonus) * multiplier
 }
 
-/// Returns the share of a demand that a quota covers, 0..=1, or 1 without demand.
+/// Returns the share of a demand that a quota covers, 0..=1, or 1 if there is no demand.
 #[inline]
 pub fn quota_factor(quota: f64, demand: f64, quality: &Quality) -> f64 {
     // The division is unconditional, because the compiler can vectorize only code without branches.
@@ -48,7 +48,7 @@ pub fn tenure_bonus(days_subscribed: u32, params: &Params) -> f64 {
 }
 
 /// Precomputed tenure bonuses by days since the start of the subscription. Computing the logarithm for every
-/// subscriber would dominate the time of a day.
+/// subscriber would dominate the time that a simulated day takes.
 #[derive(Debug, Clone, Default)]
 pub struct TenureTable(Vec<f64>);
 

@@ -31,7 +31,7 @@ macro_rules! parts {
             pub const ALL: &'static [Part] = &[$(Part::$name,)*];
 
 
-            /// Returns the name of the part, from which the keys of its streams are derived.
+            /// Returns the name of the part. The keys of the part's streams are derived from this name.
             pub fn name(self) -> &'static str {
                 match self { $(Part::$name => $text,)* }
             }
@@ -56,7 +56,7 @@ parts! {
     InvoluntaryMu = "involuntary_mu",
     /// (day, group, block): selection of the subscribers whose payment fails permanently.
     InvoluntaryRoll = "involuntary_roll",
-    /// (day, group, n, thread): size of a reputation damage. The thread is 0 for individuals.
+    /// (day, group, n, thread): amount of reputation damage. The thread is 0 for individuals.
     ReputationEvent = "reputation_event",
     /// (group, n): traits and profile of a customer.
     Traits = "traits",

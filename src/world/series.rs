@@ -1,5 +1,5 @@
-//! Recorded series of the released simulator that do not depend on the company's actions. A scenario can replay these
-//! series instead of drawing values (`docs/mechanics/randomness.md#recorded-series`).
+//! Recorded series from the released simulator. The series do not depend on the company's actions. A scenario can
+//! replay these series instead of drawing values (`docs/mechanics/randomness.md#recorded-series`).
 
 #[cfg(test)]
 mod tests;

@@ -67,7 +67,8 @@ pub struct Promotion {
     pub by_group_plan: IndexMap<Group, PerPlan>,
 }
 
-/// Discounts for a lead's choice and first bill, dollars per month. The discounts of all scopes are added, with a minimum of 0.
+/// Discounts for a lead's choice and first bill, dollars per month. The discounts of all scopes are added, with a
+/// minimum of 0.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct LeadPromotion {
     /// Discount for every lead.
@@ -212,8 +213,8 @@ impl Promotion {
 }
 
 impl LeadPromotion {
-    /// Returns the sum of all discounts for a lead, LP(g, ch), before the minimum of 0 is applied. Without a channel,
-    /// channel discounts do not count.
+    /// Returns the sum of all discounts for a lead, LP(g, ch), before the minimum of 0 is applied. If there is no
+    /// channel, channel discounts do not count.
     pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
         let by_channel = channel.map_or(0.0, |channel| {
             value_or_zero(&self.by_channel, &channel)

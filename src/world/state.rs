@@ -39,7 +39,7 @@ canonical! {
     World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise }
 }
 
-/// The hash of one part of the state, with which differences between runs are located.
+/// The hash of one part of the state. A comparison of these hashes locates differences between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartHash {
     /// Name of the part of the state.
@@ -188,7 +188,8 @@ mod tests {
         }
     }
 
-    /// Every stored byte is hashed: after changing any canonical byte, restoring either fails or returns a different state.
+    /// Every stored byte is hashed: after changing any canonical byte, restoring either fails or returns a different
+    /// state.
     #[test]
     fn part_hashes_cover_every_byte_once() {
         let world = busy_company();

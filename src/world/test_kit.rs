@@ -8,7 +8,7 @@ use crate::identifiers::{ByPlan, Channel, Group, Plan};
 use crate::quota::Quota;
 use crate::state::World;
 
-/// Returns a subscriber with simple values for tests, which can change each value.
+/// Returns a subscriber with simple values for tests. A test can change each value.
 pub fn subscriber(n: u32) -> Subscriber {
     Subscriber {
         n,

@@ -704,9 +704,9 @@ set_targeted_dev_spend {"targeted_spend": {"E1": 2000}}
     for part in [
         "plan B at $10.20 per seat: 30% of the list price $34.00, $898 a month, estimated margin after compute 22%",
         "\nnote: Clearbrook Lockstone #8, plan B at $34.00 per seat: 100% of the list price $34.00",
-        "received no answer from you to its message of day 49: the thread ended on day 56.\nIt asked $2.56 for plan B",
+        "received no answer from you to its message of day 49: the thread ended on day 56.\nIt asked for a price of $2.56 for plan B",
         "declined your offer B $60.00 of day 70 on day 77, without a message.\nIt named no price in this thread.",
-        "An enterprise has at least 2 turns, so it had not used them up: no price of plan B was acceptable to it",
+        "An enterprise has at least 2 turns, so its turns were not used up: no price of plan B was acceptable to it",
     ] {
         assert!(text.contains(part), "{part} in\n{text}");
     }

@@ -1,13 +1,12 @@
 //! Parser for the arguments of a command line in plain mode: `name=value` or bare values, with or without commas and
-//! parentheses
-//! (docs/interfaces/plain-mode.md#grammar).
+//! parentheses (docs/interfaces/plain-mode.md#grammar).
 
 use serde_json::Value;
 
 /// One argument of a command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Argument {
-    /// Name of a named argument.
+    /// Name of the argument, or `None` for a bare value.
     pub key: Option<String>,
     /// Value of the argument.
     pub value: Value,
@@ -15,7 +14,7 @@ pub struct Argument {
     pub column: usize,
 }
 
-/// A syntax error of a command line and its column.
+/// A syntax error in a command line, with its column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParseError {
     /// Description of the error.

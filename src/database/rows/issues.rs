@@ -38,7 +38,8 @@ impl IssueWriter {
         }
     }
 
-    /// Adds the issues of a day. Issues are resolved before the issue clock advances, and new issues are opened afterwards.
+    /// Adds the issues of a day. Issues are resolved before the issue clock advances, and new issues are opened
+    /// afterwards.
     pub fn write(&mut self, facts: &Facts) {
         let worked_on =
             facts.issues_aged || !facts.issues_opened.is_empty() || !facts.issues_resolved.is_empty();

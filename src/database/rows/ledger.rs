@@ -1,4 +1,5 @@
-//! Writes ledger entries to packed days. The entries of a day are numbered in this order: lead costs, payments, other entries.
+//! Writes ledger entries to packed days. The entries of a day are numbered in this order: lead costs, payments, other
+//! entries.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

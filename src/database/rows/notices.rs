@@ -87,7 +87,7 @@ impl NoticeWriter {
         !std::mem::replace(&mut self.is_loss_repeated[at], true)
     }
 
-    /// Returns the inbox day with this number. If the inbox already contains the day, it is the newest one.
+    /// Returns the inbox day with this number. If the inbox already contains the day, the day is the newest one.
     fn notice_day(&mut self, day: u32) -> &mut NoticeDay {
         let started = self.inbox.days.last().filter(|last| last.day == day);
         let anew = || started.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));

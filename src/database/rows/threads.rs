@@ -43,7 +43,8 @@ pub(super) fn update_contract_starts(transaction: &Transaction<'_>, facts: &Fact
     Ok(())
 }
 
-/// Returns the reason why a thread ends with this turn. Returns an empty text if the thread continues or ends unanswered.
+/// Returns the reason why a thread ends with this turn. Returns an empty text if the thread continues or ends
+/// unanswered.
 fn close_reason(turn: &ThreadTurn) -> &'static str {
     match turn.content {
         TurnContent::Acceptance(_) | TurnContent::Closing(_) => "accepted",
@@ -52,7 +53,8 @@ fn close_reason(turn: &ThreadTurn) -> &'static str {
     }
 }
 
-/// Returns the offer of a turn as JSON. Spaces are the same as in the released simulator, because users search this text.
+/// Returns the offer of a turn as JSON. Spaces are the same as in the released simulator, because users search this
+/// text.
 fn offer_json(content: &TurnContent) -> String {
     match content {
         TurnContent::Offer(offerings) => {

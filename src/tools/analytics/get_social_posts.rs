@@ -118,7 +118,7 @@ pub struct SocialPost {
 /// Author of a post of the social feed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PostAuthor {
-    /// Group whose mood a comment on the company's post expresses.
+    /// Group whose reaction a comment on the company's post expresses.
     pub source_group_id: Option<Group>,
     /// Group of the author; the press appears as the first group.
     pub group_id: Option<Group>,

@@ -222,8 +222,8 @@ fn check_customers(budgets: &PerCustomer, field: &str) -> Result<(), Rejection> 
     }
 }
 
-/// Returns the rejection of a call in the wording of release 2. Release 2 added fixed texts for `set_targeted_ops_spend`
-/// only, so other rejections are returned unchanged.
+/// Returns the rejection of a call in the wording of release 2. Release 2 added fixed texts for
+/// `set_targeted_ops_spend` only, so other rejections are returned unchanged.
 pub fn with_release_2_text(tool: ToolId, rejection: Rejection, arguments: &Value) -> Rejection {
     if tool != SPEC.id {
         return rejection;

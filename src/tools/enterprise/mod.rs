@@ -72,8 +72,8 @@ fn to_deal_result(fate: ElementOutcome) -> DealResult {
     }
 }
 
-/// Rejects a call if no element was sent. The rejection contains the reason of the first element and the results of
-/// all elements.
+/// Rejects a call if no element was sent. The rejection states why the first element was not sent, and contains the
+/// results of all elements.
 fn reject_if_all_failed(fates: Vec<ElementOutcome>) -> Result<DealResults, Rejection> {
     let refused = match fates.first() {
         Some(ElementOutcome::Failed(first))

@@ -123,7 +123,7 @@ fn parse_offering(given: &Value, at: usize, customer: i64, path: &str) -> Result
                 Some(price) => (map.get("plan"), price),
                 None => {
                     let message =
-                        "an offering needs price_per_seat, in dollars per seat and month".to_owned();
+                        "an offering needs price_per_seat, in dollars per seat per month".to_owned();
                     return Err(failed("offering_no_price", "missing price", message));
                 }
             }

@@ -127,7 +127,8 @@ fn parse_deal(element: &Value, path: &str, view: &ToolContext<'_>) -> Result<Dea
     })
 }
 
-/// Converts a deal to an offer of the simulator. The customer must be an enterprise with an open thread or a subscription.
+/// Converts a deal to an offer of the simulator. The customer must be an enterprise with an open thread or a
+/// subscription.
 fn to_offer_draft(
     deal: Deal,
     view: &ToolContext<'_>,
@@ -160,7 +161,8 @@ fn to_offer_draft(
             Err(failed("no_subscription", "no subscription", message))
         }
         _ => {
-            let message = format!("customer {given} is an individual; offers go to companies only");
+            let message =
+                format!("customer {given} is an individual; offers can be sent only to enterprises");
             Err(failed("not_enterprise", "not enterprise", message))
         }
     }

@@ -98,7 +98,8 @@ impl Tool for StartResearchProject {
     fn plan(&self, view: &ToolContext<'_>, tier: u8) -> Result<PlannedCall<StartedProject>, Rejection> {
         let running = |project: &&Project| project.tier == tier && project.completed_day.is_none();
         if let Some(project) = view.world().product.research.iter().find(running) {
-            let message = format!("tier {tier} is already running until day {}", project.due_day);
+            let message =
+                format!("a project of tier {tier} is already running until day {}", project.due_day);
             return Err(Rejection::for_field("tier", "rd_in_progress", message));
         }
         let facts = view.params().research_tier(tier);

@@ -70,7 +70,7 @@ fn research_group_validates_levels() {
             (json!({"group_id": "S2"}), "insufficient_funds", ""),
         ],
     );
-    let rejection = company.try_call("research_group", json!({"group_id": "S2"})).expect_err("too dear");
+    let rejection = company.try_call("research_group", json!({"group_id": "S2"})).expect_err("too expensive");
     assert_eq!(rejection.message, "costs $60,000, cash is $60,000");
 }
 

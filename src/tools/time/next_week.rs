@@ -8,7 +8,8 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `next_week`. The session implements the tool; `NextWeek` documents the tool and checks rationale and forecasts.
+/// The tool `next_week`. The session implements the tool; `NextWeek` documents the tool and checks rationale and
+/// forecasts.
 pub struct NextWeek;
 
 static SPEC: ToolSpec = ToolSpec {
@@ -146,7 +147,7 @@ fn parse_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result
     let Some(map) = given.as_object() else {
         return Err(refuse(
             "prediction_not_object",
-            format!("forecast {key} must hold point, lower and upper"),
+            format!("forecast {key} must contain point, lower and upper"),
         ));
     };
     let read = |name: &str| {
@@ -159,7 +160,11 @@ fn parse_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result
             )
         })?;
         json_f64(value).ok_or_else(|| {
-            Rejection::for_field(field, "prediction_not_number", format!("forecast {key} must hold numbers"))
+            Rejection::for_field(
+                field,
+                "prediction_not_number",
+                format!("forecast {key} must contain numbers"),
+            )
         })
     };
     // Check that all three fields exist before any field is parsed as a number.

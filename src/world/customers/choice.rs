@@ -40,7 +40,8 @@ pub fn evaluate_offer(
     PlanChoice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
 }
 
-/// Picks the plan with the largest positive surplus, or plan A if no surplus is positive. On a tie, the earlier plan wins.
+/// Picks the plan with the largest positive surplus, or plan A if no surplus is positive. On a tie, the earlier plan
+/// wins.
 ///
 /// Quotas are compared with `demand`. `curve` must already include the market's drift.
 pub fn choose_plan(

@@ -2,7 +2,8 @@
 //!
 //! A block contains the active customers `first ..= first + CUSTOMERS_PER_BLOCK - 1` of one group, in ascending order
 //! of their numbers. A sweep processes each block on one thread. Each customer has a fixed position in the random
-//! stream of its block, so the draws of one customer never affect another customer (docs/mechanics/randomness.md#blocks).
+//! stream of its block, so the draws of one customer never affect another customer
+//! (docs/mechanics/randomness.md#blocks).
 
 use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 use crate::identifiers::Plan;
@@ -162,9 +163,9 @@ columns! {
         satisfaction: f64,
         /// Relationship with the company, 0..=1.
         relationship: f64,
-        /// Days that the open issue has been open, or 0 without an open issue.
+        /// Number of days for which the current issue has been open, or 0 if there is none.
         open_issue_days: u32,
-        /// Number of the open issue, or 0 without an open issue.
+        /// Number of the open issue, or 0 if there is none.
         issue: u32,
         /// Required quality at the current price, without the market's expectations.
         required: f64,
@@ -233,7 +234,8 @@ impl Block {
     }
 }
 
-/// Returns the position of a customer's random word in the stream of its block. `n` is the sequence number of the customer.
+/// Returns the position of a customer's random word in the stream of its block. `n` is the sequence number of the
+/// customer.
 #[inline]
 pub fn word_position_in_block(n: u32) -> usize {
     ((n - 1) % CUSTOMERS_PER_BLOCK) as usize

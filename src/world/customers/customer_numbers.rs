@@ -69,7 +69,8 @@ impl CustomerNumbers {
         self.locate(customer).map(|(run, _)| run.day)
     }
 
-    /// Returns the number of the customer with sequence number `n` in a group, or `None` if the customer has not arrived.
+    /// Returns the number of the customer with sequence number `n` in a group, or `None` if the customer has not
+    /// arrived.
     pub fn customer_number(&self, group: Group, n: u32) -> Option<u32> {
         let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
         let run = self.given.iter().rev().find(holds)?;

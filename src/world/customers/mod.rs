@@ -18,11 +18,12 @@ use customer_numbers::{ArrivalRun, CustomerNumbers};
 /// Number of the first real customer. Number 1 is the market observer, the author of posts that no customer wrote.
 pub const FIRST_CUSTOMER: u32 = 2;
 
-/// How blocks are distributed among threads. Waking a thread costs as much time as processing several thousand customers.
+/// How blocks are distributed among threads. Waking a thread costs as much time as processing several thousand
+/// customers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum WorkSplit {
-    /// A few blocks per task, because a few adjacent blocks have most of the work of a day: customers who arrived on
-    /// the same day are billed on the same day.
+    /// A few blocks per task, because a few adjacent blocks account for most of the work of a day: customers who
+    /// arrived on the same day are billed on the same day.
     Small,
     /// Many blocks per task, for work that takes little time per customer.
     Large,
@@ -136,7 +137,8 @@ impl GroupCustomers {
 }
 
 impl Customers {
-    /// Returns the number of active subscriptions of each group. An enterprise counts once, regardless of its number of seats.
+    /// Returns the number of active subscriptions of each group. An enterprise counts once, regardless of its number of
+    /// seats.
     pub fn active_by_group(&self) -> ByGroup<u32> {
         ByGroup::from_fn(|group| self.groups[group].active_count())
     }
@@ -170,7 +172,8 @@ impl Customers {
         })
     }
 
-    /// Processes all non-empty blocks like [`Customers::sweep`]. Each block receives its result of an earlier sweep.
+    /// Processes all non-empty blocks like [`Customers::sweep`]. `work` also receives the block's result from an
+    /// earlier sweep.
     pub fn sweep_with<T: Send, R: Send>(
         &mut self,
         found: Vec<T>,

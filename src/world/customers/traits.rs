@@ -1,4 +1,4 @@
-//! Traits of a new customer, drawn from the random stream of its group and sequence number
+//! Traits of a new customer, drawn from the random stream of the customer's group and sequence number
 //! (docs/mechanics/customers/generation.md).
 //!
 //! The n-th customer of a group has the same traits in every run with the same seed, before drift is added. The
@@ -43,7 +43,8 @@ pub struct Negotiator {
     pub max_negotiation_turns: u32,
 }
 
-/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macroeconomic multiplier of deal velocity.
+/// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macroeconomic multiplier of deal
+/// velocity.
 pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
     let stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
     draw_traits_from_stream(stream, group, deal_velocity, params)

@@ -1,4 +1,4 @@
-//! Size limits for the next day. With extreme parameters and budgets, the customers would exceed the memory of a computer.
+//! Size limits for the next day. With extreme parameters and budgets, the customers would not fit into memory.
 
 use crate::events::Facts;
 use crate::identifiers::Group;
@@ -45,7 +45,8 @@ pub fn exceeded_limit_on_next_day(
     }
 }
 
-/// Returns the expected number of leads of the next day. Ignores cancellations, posts and reputation changes on that day.
+/// Returns the expected number of leads of the next day. Ignores cancellations, posts and reputation changes on that
+/// day.
 fn expected_leads(world: &World, params: &Params, streams: &Streams) -> f64 {
     let day = world.day + 1;
     let mut market = world.market.clone();

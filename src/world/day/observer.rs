@@ -1,4 +1,5 @@
-//! Observation of a day during its simulation. Observers cannot change the world, so an observed day has the same result.
+//! Observation of a day during its simulation. Observers cannot change the world, so an observed day has the same
+//! result.
 
 use crate::context::DayContext;
 use crate::customers::Customers;
@@ -15,7 +16,7 @@ use crate::reputation::{ReputationContribution, ReputationWrite};
 use crate::retention::renewal::RenewalContext;
 use crate::state::World;
 
-/// An observer of a day's simulation. The methods with a block are called on any thread and in any order.
+/// An observer of a day's simulation. Methods that receive a block are called on any thread and in any order.
 pub trait DayObserver: Send + Sync {
     /// Called at the start of the day, with the world and the values that are fixed for the day.
     fn on_morning(&self, _world: &World, _morning: &Morning, _params: &Params) {}
@@ -26,7 +27,7 @@ pub trait DayObserver: Send + Sync {
     /// Called before the subscribers of a block decide, after satisfaction and issues are updated.
     fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
 
-    /// Called before the negotiations of the day, in which enterprises reply, open threads and are lost.
+    /// Called before the negotiations of the day. In the negotiations, enterprises reply, open threads and are lost.
     fn before_negotiations(
         &self,
         _enterprise: &Enterprise,
@@ -35,7 +36,7 @@ pub trait DayObserver: Send + Sync {
     ) {
     }
 
-    /// Called after the last reputation change of the day, which applies the subscribers' contributions.
+    /// Called after the subscribers' contributions were applied, which is the last reputation change of the day.
     fn after_reputation_changes(
         &self,
         _moods: &ByGroup<ReputationContribution>,

@@ -1,6 +1,6 @@
 //! Tests of the values that one step of a day passes to later steps. Outages affect issues, satisfaction, decisions
-//! and reputation. The economy affects leads, budgets and seats. The calendar affects leads and usage. Every figure is
-//! stored in its field.
+//! and reputation. The economy affects leads, budgets and seats. The calendar affects leads and usage. The last test
+//! checks that every figure is stored in its field.
 
 use super::*;
 use crate::customers::columns::Subscriber;
@@ -194,7 +194,7 @@ fn calendar_factors_apply_by_day() {
     assert!((0.49..0.6).contains(&half), "some are limited by their quota: {half}");
 }
 
-/// Returns parameters with a PMI of half its neutral value and only the macroeconomic reactions that `change` sets.
+/// Returns parameters with a PMI of half the neutral value and only the macroeconomic reactions that `change` sets.
 fn params_with_macro_reaction(change: impl Fn(&mut MacroBeta)) -> Params {
     let mut params = Params::bundled();
     let economy = &mut params.economy;

@@ -10,7 +10,7 @@ use crate::quality::{quota_demand, relationship_as_read, relationship_bonus};
 use crate::random::Part;
 use crate::reputation::{ReputationCause, event_damage};
 
-/// An enterprise subscriber whose thread died today and who may post about it.
+/// An enterprise subscriber whose thread died today and that may post about the loss.
 ///
 /// A thread that reappears reports the same loss again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub enum ThreadFailure {
 /// Values that determine why an enterprise left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChurnFactors {
-    /// Days that the enterprise's issue has been open, or 0 without an open issue.
+    /// Number of days for which the enterprise's issue has been open, or 0 if there is none.
     pub issue_days: u32,
     /// Shared quality of the plan, without targeted development: today's value if the enterprise stopped replying, and
     /// this morning's value after a timeout.

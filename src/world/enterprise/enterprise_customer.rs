@@ -35,7 +35,7 @@ pub struct EnterpriseCustomer {
 pub enum EnterpriseStatus {
     /// A lead that negotiates its first deal, with the row that it will have as a subscriber.
     Lead(Subscriber),
-    /// A subscriber, whose row is in the columns.
+    /// A subscriber. Its row is in the columns.
     Subscriber,
     /// A lost enterprise with its last row, which is kept while one of its threads can still trigger.
     Lost(Subscriber),

@@ -12,13 +12,14 @@ use novamind_base::formatting::round_to;
 pub enum OfferResponse {
     /// The enterprise accepts the offering at this position.
     Accept(usize),
-    /// The enterprise asks this price, in dollars per seat per month, for the plan of the offering at this position.
+    /// The enterprise asks for this price, in dollars per seat per month, for the plan of the offering at this
+    /// position.
     Counter(usize, f64),
     /// The enterprise never replies again.
     Silence,
 }
 
-/// The values with which an enterprise evaluates offerings.
+/// Values that an enterprise uses to evaluate offerings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OfferEvaluator {
     /// Curve of the enterprise, including all market drift.

@@ -155,7 +155,8 @@ impl Enterprise {
     }
 }
 
-/// Returns the days since the customer's newest turn. Returns `None` if the player wrote last or the customer has not written.
+/// Returns the days since the customer's newest turn. Returns `None` if the player wrote last or the customer has not
+/// written.
 pub fn late_days(thread: &Thread, day: u32) -> Option<u32> {
     if thread.last().sender == Sender::Agent {
         return None;

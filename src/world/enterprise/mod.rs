@@ -45,7 +45,7 @@ pub struct Enterprise {
     pub next_message: u32,
     /// Threads that are open or can still trigger, in ascending order of thread number.
     pub threads: Vec<Thread>,
-    /// Enterprises that are leads, subscribers, or lost with a thread that can still trigger, in ascending order of
+    /// Leads, subscribers, and lost enterprises with a thread that can still trigger, in ascending order of
     /// customer number.
     pub companies: Vec<EnterpriseCustomer>,
 }
@@ -80,7 +80,8 @@ pub struct EnterpriseDayResult {
 }
 
 impl Enterprise {
-    /// Opens the thread of a new lead with one turn by the system. Adds a notification that does not name the enterprise.
+    /// Opens the thread of a new lead with one turn by the system. Adds a notification that does not name the
+    /// enterprise.
     pub fn open_lead_thread(&mut self, day: u32, company: EnterpriseCustomer, facts: &mut Facts) {
         let seats = match &company.status {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.seats as u32,

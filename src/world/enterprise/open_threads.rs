@@ -1,4 +1,4 @@
-//! An index of open threads by enterprise, for tool calls that name many enterprises. Only few threads are open.
+//! An index of open threads by enterprise, for tool calls that name many enterprises. Few threads are open at a time.
 
 use std::collections::BTreeMap;
 

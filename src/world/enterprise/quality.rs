@@ -1,4 +1,5 @@
-//! Quality that enterprises perceive, in negotiations and in the daily evaluation (`docs/mechanics/enterprise/quality.md`).
+//! Quality that enterprises perceive, in negotiations and in the daily evaluation
+//! (`docs/mechanics/enterprise/quality.md`).
 
 use super::NegotiationContext;
 use crate::customers::columns::Subscriber;

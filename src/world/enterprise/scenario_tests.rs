@@ -130,7 +130,7 @@ fn unanswered_threat_loses_the_subscriber() {
     assert!(kit.facts.endings.is_empty() && kit.enterprise.open_threads().newest(2).is_none());
     // On the next day the enterprise opens a new thread, and the player does not answer.
     let opened = kit.run_day(5);
-    assert!(opened.suspended.is_empty(), "a thread suspends from the day after");
+    assert!(opened.suspended.is_empty(), "a thread suspends payment from the day after");
     assert_eq!(kit.enterprise.threads[0].kind, ThreadKind::ChurnPrevention);
     for run in run_days(&mut kit, 6..=11) {
         assert_eq!(run.suspended.iter().copied().collect::<Vec<u32>>(), [2]);
@@ -240,8 +240,8 @@ fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
     kit.send_offer(&[(Plan::B, 59.0)]);
     kit.send_offer(&[(Plan::B, 20.0)]);
     run_days(&mut kit, 1..=3);
-    // At turn 2 of 2 the enterprise never replies, regardless of the offer. The reply to the first message is due too, and
-    // the enterprise does not send it.
+    // At turn 2 of 2 the enterprise never replies, regardless of the offer. The reply to the first message is due too,
+    // and the enterprise does not send it.
     assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
 }
 

@@ -1,4 +1,4 @@
-//! A negotiation day with simple values for tests, which can change each value.
+//! A negotiation day with simple values for tests. A test can change each value.
 
 use super::evaluation::tests::K;
 use super::{Enterprise, EnterpriseCustomer, EnterpriseDayResult, EnterpriseStatus, NegotiationContext};
@@ -70,7 +70,7 @@ impl NegotiationKit {
         self.facts.start_day(day);
     }
 
-    /// Returns the row of the reference enterprise K, which is customer 2, the first of its group, with 100 seats.
+    /// Returns the row of the reference enterprise K: customer 2, the first customer of its group, with 100 seats.
     pub fn reference_row(&self) -> Subscriber {
         Subscriber {
             customer: 2,
@@ -104,7 +104,8 @@ impl NegotiationKit {
         }
     }
 
-    /// Makes enterprise K a subscriber from day 3 with a contract until day 33, and edits the subscriber's row with `change`.
+    /// Makes enterprise K a subscriber from day 3 with a contract until day 33, and edits the subscriber's row with
+    /// `change`.
     pub fn subscribe(&mut self, max_turns: u32, change: impl Fn(&mut Subscriber)) {
         let mut row = Subscriber {
             start_day: 3,

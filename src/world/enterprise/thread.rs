@@ -118,7 +118,7 @@ impl Thread {
 mod tests {
     use super::*;
 
-    /// Builds a thread from letters: s system, a agent, c customer; an uppercase letter is dead.
+    /// Builds a thread from letters: s system, a agent, c customer; an uppercase letter is a dead turn.
     fn thread_from_letters(letters: &str) -> Thread {
         let turn = |(number, letter): (usize, char)| Turn {
             message: number as u32,

@@ -10,7 +10,7 @@ use crate::identifiers::{Group, Plan};
 use crate::params::EnterpriseParams as Sales;
 use crate::random::Part;
 
-/// The request with which a subscriber opens a thread.
+/// A subscriber's request, which opens a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum SubscriberRequest {
     /// A threat to cancel the subscription.

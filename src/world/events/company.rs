@@ -85,7 +85,7 @@ pub enum Notice {
         /// Days since the last turn of the thread.
         days: u32,
     },
-    /// Daily repeated report of a lost lead whose thread still triggers.
+    /// Report of a lost lead, repeated daily while the lead's thread still triggers.
     LeadLossRepeated {
         /// Days since the active turn of the lead's thread.
         days: u32,

@@ -14,7 +14,7 @@ canonical_codes! {
 /// A monthly reading of the PMI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// Last day of the period whose daily values the reading averages.
+    /// Last day of the period over which the reading averages the daily PMI.
     pub measured_day: u32,
     /// Average PMI, rounded to one decimal.
     pub value: f64,

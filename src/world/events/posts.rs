@@ -169,7 +169,7 @@ pub struct Opinion {
     pub price: f64,
     /// Number of whole seats.
     pub seats: u32,
-    /// Days that the customer's issue has been open.
+    /// Number of days for which the customer's issue has been open.
     pub waiting_days: u32,
     /// Downtime of the service today, in minutes.
     pub downtime_minutes: u32,

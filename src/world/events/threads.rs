@@ -20,7 +20,7 @@ canonical_codes! {
 pub enum ThreadKind {
     /// An enterprise lead requests an offer.
     NewLead,
-    /// A subscribed enterprise asks for a price of a different plan.
+    /// A subscribed enterprise asks for the price of a different plan.
     PlanChange,
     /// A subscribed enterprise threatens to cancel.
     ChurnPrevention,
@@ -92,14 +92,14 @@ pub enum TurnContent {
     Rejection,
     /// Threat to cancel, because the price is too high for the quality.
     Threat,
-    /// Request for a price of a different plan.
+    /// Request for the price of a different plan.
     PlanChangeRequest {
         /// Plan that the enterprise subscribes to.
         from: Plan,
         /// Plan that the enterprise requests.
         to: Plan,
     },
-    /// Counter-offer with the price that the enterprise asks.
+    /// Counter-offer with the price that the enterprise asks for.
     Counter {
         /// Asked price and its plan.
         asked: Offering,

@@ -45,7 +45,7 @@ pub struct ArrivalContext<'a> {
 
 struct Lead {
     traits: Traits,
-    /// Participation curve of the lead, to which today's expectations were added once.
+    /// Participation curve of the lead, with today's expectations added once.
     curve: Curve,
     source: Source,
     outcome: LeadOutcome,
@@ -170,7 +170,7 @@ pub struct LeadEvaluation {
     pub offers: ByPlan<PlanOffer>,
     /// Discount for the lead's group and channel, dollars per month.
     pub discount: f64,
-    /// Demand of the lead, which is compared with quotas.
+    /// Demand of the lead that is compared with quotas.
     pub demand: f64,
     /// The lead's curve including today's expectations.
     pub curve: Curve,
@@ -181,7 +181,7 @@ pub struct LeadEvaluation {
 }
 
 impl LeadEvaluation {
-    /// Evaluates offers for a lead with a curve and a demand, which is compared with quotas. `promotion` is the
+    /// Evaluates offers for a lead with this curve and demand. The demand is compared with quotas. `promotion` is the
     /// discount for leads, dollars per month.
     #[inline]
     pub fn new(
@@ -330,7 +330,7 @@ fn record_channels(
     }
 }
 
-/// Returns the individual leads, each with its group, sequence number and customer number.
+/// Returns the individual leads, each with its customer number.
 fn individual_leads(leads_by_run: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
     leads_by_run
         .iter()
@@ -525,7 +525,7 @@ mod tests {
         let expectation = Expectation { quality: 0.25, c_max: 2.0 };
         let (drifted, _) = curve_and_demand_with(expectation, &traits, &params);
         let values = |curve: Curve| (curve.q_min, curve.q_max, curve.c_max);
-        assert_eq!(values(drifted), (0.35, 0.8, 52.0), "the curve with which the lead decides");
+        assert_eq!(values(drifted), (0.35, 0.8, 52.0), "the curve that the lead uses to decide");
         assert_eq!(values(stored_curve(&traits, &drifted, &params)), (0.35, 0.8, 52.0));
         params.fidelity.drift_counted = DriftCounted::Once;
         assert_eq!(values(stored_curve(&traits, &drifted, &params)), (0.1, 0.55, 50.0));

@@ -62,7 +62,8 @@ pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, par
     if gap < least { 0.0 } else { 1.0 / mean }
 }
 
-/// Returns the factor by which events grow over the run. The factor rises from 1 to 4 until 30 days before the last day.
+/// Returns the factor by which events grow over the run. The factor rises from 1 to 4 until 30 days before the last
+/// day.
 pub fn magnitude_scale(day: u32, total_days: u32, competitor: &Competitor) -> f64 {
     let start = f64::from(competitor.magnitude_ramp_start_day);
     let end = (f64::from(total_days) - f64::from(competitor.competitor_event_late_cutoff_days))
@@ -121,7 +122,8 @@ impl CompetitorMove {
     }
 }
 
-/// Returns the competitor move on a day, or `None` if there is no move. The result depends on the day of the last event.
+/// Returns the competitor move on a day, or `None` if there is no move. The result depends on the day of the last
+/// event.
 pub fn move_on_day(
     day: u32,
     total_days: u32,
@@ -145,7 +147,7 @@ pub fn move_on_day(
     })
 }
 
-/// Returns the next move after a day. The next move is already determined, because draws depend only on the day and
+/// Returns the next move after a day. The next move is already determined, because draws depend only on the day, and
 /// possible days depend only on the last event.
 pub fn next_move(
     after: u32,

@@ -1,4 +1,5 @@
-//! The economy: the hidden daily PMI, its delayed publication, and its effects on groups (docs/mechanics/market/economy.md).
+//! The economy: the hidden daily PMI, its delayed publication, and its effects on groups
+//! (docs/mechanics/market/economy.md).
 
 use crate::canonical::canonical;
 use crate::events::{Facts, Notice, Phase, Reading, Trend};

@@ -165,7 +165,8 @@ fn release_seed(group: Group) -> u32 {
     letters.fold(0, |seed, (at, letter)| seed | u32::from(letter) << (8 * at)) & 0x7fff_ffff
 }
 
-/// Returns estimates with given errors. `draw` returns z in [-1, 1) for each field, in the order of the released simulator.
+/// Returns estimates with given errors. `draw` returns z in [-1, 1) for each field, in the order of the released
+/// simulator.
 fn insights_with(
     group: Group,
     market: &Market,
@@ -380,7 +381,7 @@ mod tests {
         assert!((pay("S1") + 0.742).abs() < 5e-4, "{}", pay("S1"));
         assert!(
             (pay("D_S01") - pay("D_S09")).abs() < 5e-4,
-            "groups with the same four letters share their errors"
+            "groups with the same first four letters share their errors"
         );
         assert!((pay("D_S01") - pay("D_S10")).abs() > 0.1);
     }

@@ -49,7 +49,7 @@ impl LeadChoices {
 }
 
 impl LeadSample {
-    /// Draws the first customers of a group from `streams`, with the market's drift of their curves.
+    /// Draws the first customers of a group from `streams`, with curves that include the market's drift.
     pub fn draw(
         group: Group,
         count: u32,

@@ -76,7 +76,7 @@ pub fn market_cap(base: f64, annual_growth: f64, day: u32, leads: &Leads) -> f64
     base * (1.0 + annual_growth * f64::from(day) / leads.days_per_year)
 }
 
-/// Returns the saturation factor: max(0, 1 - (N / cap)^2). The factor is 1 without subscribers or if the cap is 0.
+/// Returns the saturation factor: max(0, 1 - (N / cap)^2). The factor is 1 if there are no subscribers or the cap is 0.
 pub fn saturation(subscribers: u32, cap: f64, leads: &Leads) -> f64 {
     if subscribers == 0 || cap <= 0.0 {
         return 1.0;

@@ -1,4 +1,5 @@
-//! Market studies of groups, which are paid immediately and completed some days later (docs/mechanics/market/discovery.md).
+//! Market studies of groups, which are paid for immediately and completed some days later
+//! (docs/mechanics/market/discovery.md).
 
 use super::Market;
 use crate::events::{Facts, Notice, Snapshot, Study};
@@ -23,7 +24,8 @@ impl Market {
     }
 }
 
-/// Completes due studies in the order of purchase. Raises the study level and takes a snapshot of this morning's market.
+/// Completes due studies in the order of purchase. Raises the study level and takes a snapshot of this morning's
+/// market.
 pub fn complete_due_studies(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
     let Market { studies, knowledge, drift, .. } = market;
     for study in studies.extract_if(.., |study| study.due_day <= day) {

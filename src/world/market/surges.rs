@@ -17,7 +17,8 @@ pub struct Surge {
 
 canonical! { Surge { day, end_day, multiplier } }
 
-/// Returns the last day of the week that contains `day`. Weeks end on days divisible by 7, and the last week ends with the run.
+/// Returns the last day of the week that contains `day`. Weeks end on days divisible by 7, and the last week ends with
+/// the run.
 pub fn week_end(day: u32, days_per_week: u32, last_day: u32) -> u32 {
     day.next_multiple_of(days_per_week).min(last_day.max(day))
 }

@@ -23,7 +23,8 @@ pub(super) const POSITIVE: f64 = f64::MIN_POSITIVE;
 pub(super) const ANY: Range = f64::NEG_INFINITY..=f64::INFINITY;
 
 /// Defines structs for tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers,
-/// which also applies to the numbers of a list. `as "key"` after the name of a field is its key, if key and name differ.
+/// which also applies to the numbers of a list. `as "key"` after the name of a field is its key, if key and name
+/// differ.
 macro_rules! parameters {
     ($($(#[$meta:meta])* pub struct $name:ident {
         $($(#[$of_field:meta])* pub $field:ident $(as $key:literal)?: $type:ty $(where $range:expr)?,)*
@@ -52,7 +53,8 @@ pub(super) use parameters;
 
 /// A parameter type whose numbers can have an allowed range.
 pub(super) trait Ranged {
-    /// Checks the numbers of a TOML value that will be parsed as this type. The default implementation checks a single number.
+    /// Checks the numbers of a TOML value that will be parsed as this type. The default implementation checks a single
+    /// number.
     fn check(value: &Value, path: &str, range: &Range) -> Checked {
         match as_number(value) {
             Some(number) if !range.contains(&number) => {
@@ -121,7 +123,8 @@ pub(super) fn check_ranges(tables: &Value) -> Checked {
     Params::check(tables, "", &ANY)
 }
 
-/// Suffix of lower bounds, suffix of the corresponding upper bounds, and whether the lower bound must be strictly smaller.
+/// Suffix of lower bounds, suffix of the corresponding upper bounds, and whether the lower bound must be strictly
+/// smaller.
 const BOUND_SUFFIXES: [(&str, &str, bool); 3] =
     [("_min", "_max", false), ("_low", "_high", false), ("_low", "_high_exclusive", true)];
 

@@ -15,7 +15,7 @@ parameters! {
         pub curve_right_center: f64,
         /// Price as a share of the budget at which the two halves of the curve meet.
         pub curve_split: f64 where 0.0..=1.0,
-        /// Divisor of the quality range that each half of the curve spans.
+        /// Divisor of the quality range. Each half of the curve spans the quotient.
         pub curve_half_divisor: f64 where 1.0..=100.0,
         /// Weight of the lower sigmoid in the blended curve of the paper, 0..=1.
         pub blend_weight: f64 where 0.0..=1.0,
@@ -159,7 +159,7 @@ parameters! {
     }
 }
 
-/// Segment of the market: individuals, who decide alone, or enterprises, which negotiate.
+/// Segment of the market: individuals, who do not negotiate, or enterprises, which do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Segment {
@@ -259,7 +259,7 @@ pub struct EnterprisePersona {
     pub experience: String,
     /// Levels of technical skill.
     pub tech_savvy: Vec<String>,
-    /// Number of seats from which the company size is shown with a plus sign.
+    /// Minimum number of seats at which the company size is shown with a plus sign.
     pub size_plus_from_seats: u32,
     /// Upper bounds of the expectation labels, compared with the group's mean minimum quality.
     pub quality_thresholds: [f64; 3],

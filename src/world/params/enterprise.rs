@@ -9,7 +9,7 @@ parameters! {
         pub enterprise_initial_offer_factor_mean: f64,
         /// Standard deviation of the first asked price, as a share of the highest acceptable price.
         pub enterprise_initial_offer_factor_std: f64,
-        /// Days without an answer from the player after which an enterprise is lost.
+        /// Number of days after which an enterprise is lost if the player does not answer.
         pub agent_response_timeout_days: u32 where 1.0..=100_000.0,
         /// Maximum number of offerings per message.
         pub enterprise_max_offerings_per_turn: u32 where 1.0..=1_000.0,
@@ -49,7 +49,7 @@ parameters! {
         pub plan_change_probability: f64 where 0.0..=1.0,
         /// Minimum denominator of the relative gain in surplus.
         pub plan_change_improvement_denominator_min: f64 where POSITIVE..=1e6,
-        /// Issue age from which an open issue is the reason for a cancellation, days.
+        /// Minimum issue age at which an open issue is the reason for a cancellation, days.
         pub extended_issue_days: u32 where 0.0..=100_000.0,
         /// Reference quality that decides whether quality is the reason for a cancellation.
         pub churn_reason_quality_reference: f64,

@@ -104,11 +104,12 @@ impl Params {
         BUNDLED.get_or_init(read).clone()
     }
 
-    /// Merges base sources and overrides. Together, the base sources contain every key once. Overrides are applied in order.
+    /// Merges base sources and overrides. Together, the base sources contain every key once. Overrides are applied in
+    /// order.
     ///
     /// # Errors
-    /// Returns the first error that is found: invalid TOML, a table in two base sources, an unknown or missing key, a wrong
-    /// type, a value out of range, or contradictory values.
+    /// Returns the first error that is found: invalid TOML, a table in two base sources, an unknown or missing key, a
+    /// wrong type, a value out of range, or contradictory values.
     pub fn load(base: &[ParameterSource], overrides: &[ParameterSource]) -> Result<Params, ParameterError> {
         let mut merged = Table::new();
         for source in base {

@@ -17,7 +17,7 @@ parameters! {
         pub probability: f64 where 0.0..=1.0,
         /// Shortest duration of a surge, in days.
         pub duration_days_low: u32 where 1.0..=10_000.0,
-        /// Longest duration of a surge plus one, in days.
+        /// One more than the longest duration of a surge, in days.
         pub duration_days_high_exclusive: u32 where 1.0..=10_001.0,
         /// Minimum factor by which a surge multiplies leads.
         pub multiplier_base: f64 where 0.0..=1e6,
@@ -29,7 +29,7 @@ parameters! {
     pub struct Leads {
         /// Acquisition cost per lead in dollars, whether or not the lead signs up.
         pub lead_acquisition_cost: f64 where 0.0..=1e9,
-        /// Dollars to which channel yields refer: a yield is the number of leads per this amount.
+        /// Amount in dollars to which channel yields refer: a yield is the number of leads that this amount brings.
         pub ad_spend_unit: f64 where POSITIVE..=1e12,
         /// Saturation factor of a market without subscribers.
         pub saturation_base: f64,
@@ -70,7 +70,7 @@ parameters! {
         pub cross_delta_min_abs: f64,
         /// Base reputation damage of a cancellation.
         pub reputation_quality_cancel_damage: f64,
-        /// Offset of the random factor of the damage, to which a uniform draw is added.
+        /// Offset that is added to a uniform draw to obtain the random factor of the damage.
         pub cancel_damage_noise_offset: f64,
         /// Coefficient of squared negative satisfaction in the factor of the reputation damage.
         pub cancel_negative_satisfaction_coef: f64,
@@ -90,7 +90,7 @@ parameters! {
         pub first_half_interval_multiplier: f64,
         /// Factor of the minimum interval in the first half of a run.
         pub first_half_min_interval_multiplier: f64,
-        /// Divisor of the total days that determines the end of the first half of a run.
+        /// Number by which the total days are divided to obtain the end of the first half of a run.
         pub first_half_divisor: u32 where 1.0..=1e9,
         /// Mean of the logarithm of an event's gain in quality.
         pub competitor_event_boost_mu: f64,
@@ -108,7 +108,7 @@ parameters! {
         pub magnitude_ramp_start_day: u32,
         /// Earliest day on which the ramp can end.
         pub magnitude_ramp_end_day_min: u32,
-        /// Number of days before the end of a run in which no events occur.
+        /// Number of days at the end of a run in which no events occur.
         pub competitor_event_late_cutoff_days: u32 where 0.0..=1e9,
         /// Minimum share of the shared quality bank that a competitor copies.
         pub competitor_feedback_u_min: f64 where 0.0..=1.0,
@@ -218,9 +218,9 @@ parameters! {
         pub trend_neutral_min: f64,
         /// Minimum reading of contraction.
         pub trend_contraction_min: f64,
-        /// Minimum reading of a peak, which is a reading that no longer rises.
+        /// Minimum reading of a peak. A peak is a reading that no longer rises.
         pub phase_peak_min_pmi: f64,
-        /// Upper bound of a trough, which is a reading that does not fall.
+        /// Upper bound of a trough. A trough is a reading that does not fall.
         pub phase_trough_below_pmi: f64,
         /// Minimum days between two rounds of posts about the economy.
         pub macro_social_post_interval_min: u32 where 1.0..=100_000.0,

@@ -126,7 +126,8 @@ parameters! {
         pub reputation_influence: BTreeMap<String, Vec<f64>> where 0.0..=f64::INFINITY,
         /// Words of customer profiles.
         pub personas: Personas,
-        /// The seeded fault of a debug run. No parameter table contains the fault, so it can be set only at the start of a run.
+        /// The seeded fault of a debug run. No parameter table contains the fault, so it can be set only at the start
+        /// of a run.
         #[serde(skip)]
         pub fault: Option<Fault>,
     }

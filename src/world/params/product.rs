@@ -15,7 +15,7 @@ parameters! {
         pub relationship_scale: f64,
         /// Value that replaces a relationship of exactly 0.
         pub fallback_relationship: f64,
-        /// Factor of the tenure bonus, which is multiplied by ln(1 + days / `stickiness_days_scale`).
+        /// Factor of ln(1 + days / `stickiness_days_scale`) in the tenure bonus.
         pub stickiness_log_scale: f64,
         /// Scale of tenure in the tenure bonus, in days.
         pub stickiness_days_scale: f64 where POSITIVE..=1e6,
@@ -45,7 +45,7 @@ parameters! {
     pub struct Development {
         /// Standard deviation of the daily noise of the shared quality.
         pub quality_shared_noise_scale: f64 where 0.0..=10.0,
-        /// Factor of the daily gain from general development, which is multiplied by ln(1 + spend / `dev_spend_scale`).
+        /// Factor of ln(1 + spend / `dev_spend_scale`) in the daily gain from general development.
         pub dev_improvement_coef: f64,
         /// Scale of spending on general development, dollars per day.
         pub dev_spend_scale: f64 where POSITIVE..=1e12,
@@ -63,7 +63,7 @@ parameters! {
 
     /// Parameters of service health (`docs/mechanics/product/service.md`).
     pub struct Operations {
-        /// Daily probability of an outage without spending on operations.
+        /// Daily probability of an outage if nothing is spent on operations.
         pub base_outage_prob: f64 where 0.0..=1.0,
         /// Spending on operations that divides the outage probability by e, dollars per day.
         pub ops_outage_reduction_scale: f64 where POSITIVE..=1e12,

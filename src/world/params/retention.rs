@@ -23,7 +23,7 @@ parameters! {
         pub issue_probability_min: f64 where 0.0..=1.0,
         /// Upper bound of the issue probability.
         pub issue_probability_max: f64 where 0.0..=1.0,
-        /// Issues resolved per day without spending.
+        /// Issues resolved per day if nothing is spent.
         pub issue_resolution_base_rate: f64 where 0.0..=1e9,
         /// Issues of individuals resolved per dollar of operations.
         pub individual_ops_scale: f64 where 0.0..=1e6,
@@ -31,7 +31,7 @@ parameters! {
         pub enterprise_ops_scale: f64 where 0.0..=1e6,
         /// Maximum issue age, in days, at which a resolution raises the relationship.
         pub quick_resolution_threshold_days: u32,
-        /// Maximum issue age, in days, at which a resolution counts as being on the first day.
+        /// Maximum issue age, in days, at which a resolution counts as a first-day resolution.
         pub quick_boost_first_day: u32,
         /// Gain in relationship from a resolution on the first day.
         pub quick_resolution_boost_1day: f64,
@@ -69,7 +69,7 @@ parameters! {
     pub struct InvoluntaryChurn {
         /// Whether payments can fail permanently.
         pub enable_involuntary_churn: bool,
-        /// Days for which the rate of failed payments is constant.
+        /// Number of days for which the rate of failed payments is constant.
         pub month_days: u32 where 1.0..=100_000.0,
         /// Lower bound of the monthly rate of failed payments.
         pub mu_min: f64 where 0.0..=1.0,

@@ -86,9 +86,9 @@ parameters! {
 pub enum HorizonRule {
     /// The run ends on the last day of its length. The last week can be shorter.
     Exact,
-    /// The length is rounded down to whole weeks, as by the packaged agent runners of the released simulator.
+    /// The length is rounded down to whole weeks, as the packaged agent runners of the released simulator do.
     WholeWeeksBelow,
-    /// The last week is simulated completely, as by the command line of the released simulator.
+    /// The last week is simulated completely, as the command line of the released simulator does.
     WholeWeeksAbove,
 }
 
@@ -102,8 +102,8 @@ pub struct Horizon {
 }
 
 impl Run {
-    /// Returns the horizon of a run with a length of `days`. The horizon of `last_day` has the same last day, and the
-    /// horizon of `total_days` is the same.
+    /// Returns the horizon of a run with a length of `days`. A run with the length `last_day` of the result has the
+    /// same last day, and a run with the length `total_days` of the result has the same horizon.
     pub fn horizon(&self, days: u32) -> Horizon {
         let week = self.days_per_week;
         match self.horizon_rule {
@@ -209,7 +209,8 @@ pub enum UsageQuota {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftCounted {
-    /// The drift is added when the customer is created and again whenever the curve is read, as in the released simulator.
+    /// The drift is added when the customer is created and again whenever the curve is read, as in the released
+    /// simulator.
     EveryRead,
     /// The drift is added only once.
     Once,
@@ -251,8 +252,8 @@ pub enum PostJudge {
 pub enum InsightNoise {
     /// A separate draw for each run, group, level and value.
     Independent,
-    /// One sequence of draws for each group, which is the same in every run, at every level and on every day, as in
-    /// the released simulator.
+    /// One sequence of draws for each group. The sequence is the same in every run, at every level and on every day, as
+    /// in the released simulator.
     Release,
 }
 
@@ -315,7 +316,7 @@ pub struct SeriesChoice {
     pub replayed: Replayed,
 }
 
-/// Recorded series that can replace the draws that do not depend on the company.
+/// Recorded series that can replace the draws that are independent of the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replayed {

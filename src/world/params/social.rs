@@ -13,7 +13,7 @@ parameters! {
         pub weight_negative_satisfaction_sq_coef: f64,
         /// Factor of the post weight in influencer groups.
         pub weight_influencer_multiplier: f64,
-        /// Days for which a customer counts as a new customer.
+        /// Number of days for which a customer counts as a new customer.
         pub weight_new_customer_max_days: u32 where 0.0..=100_000.0,
         /// Factor of the post weight of new customers.
         pub weight_new_customer_multiplier: f64,
@@ -35,7 +35,8 @@ parameters! {
         pub enterprise_churn_weight_base: f64,
         /// Satisfaction that is recorded for a lost enterprise.
         pub enterprise_churn_event_satisfaction: f64,
-        /// Days as a subscriber of a lost enterprise, if the actual number is unknown.
+        /// Number of days for which a lost enterprise is assumed to have been a subscriber, if the actual number is
+        /// unknown.
         pub enterprise_churn_event_fallback_days: u32 where 0.0..=100_000.0,
         /// Lower bound of the best satisfaction band.
         pub sentiment_band_very_positive_min: f64,
@@ -47,21 +48,21 @@ parameters! {
         pub sentiment_band_negative_min: f64,
         /// Minimum number of likes of an enterprise's post.
         pub enterprise_likes_low: u32,
-        /// Maximum number of likes of an enterprise's post plus one.
+        /// One more than the maximum number of likes of an enterprise's post.
         pub enterprise_likes_high_exclusive: u32 where 1.0..=1e6,
         /// Minimum number of shares of an enterprise's post.
         pub enterprise_shares_low: u32,
-        /// Maximum number of shares of an enterprise's post plus one.
+        /// One more than the maximum number of shares of an enterprise's post.
         pub enterprise_shares_high_exclusive: u32 where 1.0..=1e6,
         /// Minimum number of likes of an individual's post.
         pub individual_likes_low: u32,
-        /// Maximum number of likes of an individual's post plus one.
+        /// One more than the maximum number of likes of an individual's post.
         pub individual_likes_high_exclusive: u32 where 1.0..=1e6,
         /// Minimum number of shares of an individual's post.
         pub individual_shares_low: u32,
-        /// Maximum number of shares of an individual's post plus one.
+        /// One more than the maximum number of shares of an individual's post.
         pub individual_shares_high_exclusive: u32 where 1.0..=1e6,
-        /// Base engagement factor of negative posts, to which a uniform draw from 0 to 1 is added.
+        /// Base engagement factor of negative posts. A uniform draw from 0 to 1 is added to the factor.
         pub virality_negative_base: f64,
         /// Base engagement factor of positive posts.
         pub virality_positive_base: f64,
@@ -119,11 +120,11 @@ parameters! {
         pub notification_top_groups: u32 where 0.0..=3.0,
         /// Minimum number of likes of a comment.
         pub reply_likes_low: u32,
-        /// Maximum number of likes of a comment plus one.
+        /// One more than the maximum number of likes of a comment.
         pub reply_likes_high_exclusive: u32 where 1.0..=1e6,
         /// Minimum number of shares of a comment.
         pub reply_shares_low: u32,
-        /// Maximum number of shares of a comment plus one.
+        /// One more than the maximum number of shares of a comment.
         pub reply_shares_high_exclusive: u32 where 1.0..=1e6,
         /// Smallest absolute reaction that changes leads.
         pub multiplier_viral_threshold: f64,
@@ -135,7 +136,7 @@ parameters! {
         pub multiplier_min: f64,
         /// Maximum lead factor of all posts together.
         pub multiplier_max: f64,
-        /// Lead factor without posts.
+        /// Lead factor if there are no posts.
         pub multiplier_neutral: f64,
     }
 

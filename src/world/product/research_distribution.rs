@@ -34,7 +34,8 @@ pub fn mean_days(tier: &ResearchTier, development: &Development) -> f64 {
         let lasts_longer = |days| 1.0 - share_done_within(days, tier, development);
         return f64::from(min) + (min..last).map(lasts_longer).sum::<f64>();
     }
-    // Approximate the sum over days by an integral. The midpoint rule with its first correction has an error below 0.001 days.
+    // Approximate the sum over days by an integral. The midpoint rule with its first correction has an error below
+    // 0.001 days.
     let floor = f64::from(min);
     mean_with_minimum(floor + 0.5, mean, std)
         - 0.5

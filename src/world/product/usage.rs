@@ -31,7 +31,8 @@ pub fn usage_rate(usage_demand: f64, seats: f64, z: f64, bounds: &CustomerGenera
 #[inline]
 pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
     let limited = (usage_rate * weekday).min(quota.max(0.0));
-    // Casting truncates, and the remainder decides whether to add 1. Below 2^32, the result equals rounding and is faster.
+    // Casting truncates, and the remainder decides whether to add 1. Below 2^32, the result equals rounding and is
+    // faster.
     let whole = limited as u32;
     whole.saturating_add(u32::from(limited - f64::from(whole) >= 0.5))
 }

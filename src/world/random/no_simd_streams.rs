@@ -1,4 +1,4 @@
-//! Fallback of `simd_streams.rs` for processors without AVX2: streams are opened one by one.
+//! Fallback for `simd_streams.rs` on processors without AVX2: streams are opened one by one.
 
 /// Number of streams per batch.
 pub const LANES: usize = 8;

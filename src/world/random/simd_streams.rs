@@ -2,8 +2,9 @@
 //!
 //! Opening a stream takes one block of BLAKE3 and one block of ChaCha8. Each block is computed in a chain of dependent
 //! steps, which leaves the processor mostly idle. Each simulated day opens thousands of streams for a single draw
-//! (bills, leads). Eight streams are therefore opened together, one per lane of a vector register, which takes a fifth of
-//! the time. The fallback is [`super::Streams::open`]. Tests check that the batch and the fallback return the same bits.
+//! (bills, leads). Eight streams are therefore opened together, one per lane of a vector register, which takes a fifth
+//! of the time. The fallback is [`super::Streams::open`]. Tests check that the batch and the fallback return the same
+//! bits.
 #![expect(unsafe_code, reason = "AVX2 intrinsics are unsafe; see the safety comments")]
 
 use std::arch::x86_64::{

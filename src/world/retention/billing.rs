@@ -1,7 +1,8 @@
 //! Billing of subscribers (`docs/mechanics/retention/billing.md`).
 //!
 //! No step between an individual's decision and the bill affects the decision or the bill. Individuals who stay are
-//! therefore billed in the sweep that computes their decision. New customers and enterprises are billed after the day's deals.
+//! therefore billed in the sweep that computes their decision. New customers and enterprises are billed after the day's
+//! deals.
 
 use std::collections::BTreeSet;
 

@@ -17,7 +17,8 @@ use crate::quality::relationship_as_read;
 use crate::random::{Part, bernoulli_from_word};
 use crate::settings::Settings;
 
-/// Returns today's probability of a new issue, from the satisfaction at the start of the day and the number of whole seats.
+/// Returns today's probability of a new issue, from the satisfaction at the start of the day and the number of whole
+/// seats.
 #[inline]
 pub fn issue_probability(satisfaction: f64, outage: bool, seats: f64, issues: &Issues) -> f64 {
     let rate = issues.base_issue_rate

@@ -1,4 +1,4 @@
-//! The comparison of plans with which an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
+//! The comparison of plans that determines whether an individual stays (`docs/mechanics/retention/renewal.md`).
 
 use super::renewal::{RenewalContext, ongoing_discount};
 use crate::context::DayContext;
@@ -87,7 +87,8 @@ impl PlanComparison {
         best_plan(&self.prices, &self.qualities(params), &self.curve(params), params)
     }
 
-    /// Returns the surplus of a plan. A plan is acceptable if its surplus is at least 0 and its price is within the budget.
+    /// Returns the surplus of a plan. A plan is acceptable if its surplus is at least 0 and its price is within the
+    /// budget.
     pub fn surplus(&self, plan: Plan, params: &Params) -> f64 {
         let quality = perceived_quality(self.experiences[plan], params.fidelity.perceived_quality);
         quality - required_quality(self.prices[plan], &self.curve(params), params)
@@ -99,7 +100,8 @@ pub fn drifted_curve(curve: Curve, expectation: Expectation, params: &Params) ->
     curve.with_drift(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
-/// Returns the acceptable plan with the largest surplus, or `None` if no plan is acceptable. On a tie, the earlier plan wins.
+/// Returns the acceptable plan with the largest surplus, or `None` if no plan is acceptable. On a tie, the earlier plan
+/// wins.
 ///
 /// A plan is acceptable if its price is within the budget of the curve and its quality is at least the
 /// required quality.

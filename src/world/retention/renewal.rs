@@ -138,7 +138,7 @@ fn reputation_damages(gave_up: &[CancelledIndividual], day: &DayContext<'_>) -> 
     gave_up.iter().zip(rolls).map(damage).collect()
 }
 
-/// Returns a random word for each position of a block, which decides whether a payment fails permanently.
+/// Returns a random word for each position of a block. The word decides whether a payment fails permanently.
 pub fn payment_failure_words(
     group: Group,
     number: u32,
@@ -240,7 +240,8 @@ pub fn ongoing_discount(
     settings.promotion.sum(customer, group, plan).max(params.promotions.promotion_min)
 }
 
-/// Switches a subscriber to a different plan at today's terms. Tenure continues. Returns whether the switch is an upgrade.
+/// Switches a subscriber to a different plan at today's terms. Tenure continues. Returns whether the switch is an
+/// upgrade.
 fn switch_plan(
     group: Group,
     block: &mut Block,

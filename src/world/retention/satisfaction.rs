@@ -362,7 +362,7 @@ mod tests {
         assert_eq!(row.effective_c_max, 50.0);
         let unchanged = next_satisfaction(row, &day, service, &AdsStrength::default());
         assert_eq!(unchanged.to_bits(), moved.to_bits());
-        // The budget of a poor customer is stored as is under release 2, which has no minimum.
+        // Release 2 has no minimum budget, so the budget of a poor customer is stored unchanged.
         assert_eq!(remembered_budget(12.0, 2.0, &once), 15.0);
         once.billing.billing_c_max_min = 0.0;
         assert_eq!(remembered_budget(12.0, 2.0, &once), 12.0);

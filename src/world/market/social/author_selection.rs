@@ -1,8 +1,8 @@
 //! Customers' posts: the selection of authors (docs/mechanics/market/social/crowd.md).
 //!
-//! Weighted drawing without replacement is equivalent to the order of exponential clocks whose rates are the weights.
-//! The first authors are therefore drawn from all subscribers before the decisions of the day. Customers who leave
-//! later in the day are added with separate clocks.
+//! Weighted drawing without replacement has the same distribution as sorting by the times of exponential clocks whose
+//! rates are the weights. The first authors are therefore drawn from all subscribers before the decisions of the day.
+//! Customers who leave later in the day are added with separate clocks.
 
 use super::Social;
 use super::engagement::draw_engagement;
@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn departed_customers_complain_with_cause() {
         let found = posts(&[], &[cancelled_individual()], &[lost_company()], 3);
-        assert_eq!(found[0].author.map(|author| author.company), Some(120), "960 against 15");
+        assert_eq!(found[0].author.map(|author| author.company), Some(120), "the weights are 960 and 15");
         assert!(found.iter().all(|post| post.sentiment == Sentiment::Negative));
         let causes: Vec<PostCause> = found
             .iter()

@@ -1,4 +1,4 @@
-//! A record of the company's recent days, on which the judge of the player's posts is based
+//! A record of the company's recent days, which the judge of the player's posts uses
 //! (docs/mechanics/market/social/chronicle.md).
 
 use crate::canonical::canonical;

@@ -1,4 +1,5 @@
-//! Weights with which customers are selected as authors of posts (docs/mechanics/market/social/crowd.md#weights).
+//! Weights that determine which customers are selected as authors of posts
+//! (docs/mechanics/market/social/crowd.md#weights).
 
 use crate::params::SocialParams;
 

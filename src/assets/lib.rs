@@ -77,16 +77,16 @@ mod tests {
 
     #[test]
     fn every_file_in_configs_is_bundled() {
-        for (folder, held) in
+        for (folder, folder_files) in
             [("scenarios", scenarios()), ("themes", themes()), ("policies", policies()), ("grids", grids())]
         {
             let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs").join(folder);
             let entries = std::fs::read_dir(path).expect("a folder").flatten();
-            let mut there: Vec<String> =
+            let mut file_names: Vec<String> =
                 entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-            there.sort_unstable();
-            let named: Vec<String> = held.iter().map(|(name, _)| format!("{name}.toml")).collect();
-            assert_eq!(named, there);
+            file_names.sort_unstable();
+            let named: Vec<String> = folder_files.iter().map(|(name, _)| format!("{name}.toml")).collect();
+            assert_eq!(named, file_names);
         }
     }
 }

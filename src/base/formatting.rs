@@ -98,8 +98,8 @@ pub fn price_to_cents(value: f64) -> String {
 /// Formats an amount with a minus sign before the dollar sign. Amounts that round to zero have no sign.
 fn dollars_with_decimals(value: f64, decimals: usize) -> String {
     let text = grouped_number(value.abs(), decimals);
-    let nothing = text.chars().all(|letter| matches!(letter, '0' | '.'));
-    let sign = if value < 0.0 && !nothing { "-" } else { "" };
+    let rounds_to_zero = text.chars().all(|letter| matches!(letter, '0' | '.'));
+    let sign = if value < 0.0 && !rounds_to_zero { "-" } else { "" };
     format!("{sign}${text}")
 }
 
@@ -281,10 +281,10 @@ pub fn escape_csv_cell(text: &str) -> Cow<'_, str> {
     let first = text.chars().find(|letter| !letter.is_whitespace());
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte))
         && text.parse::<f64>().is_ok();
-    let begins = |letter: char| {
+    let starts_formula = |letter: char| {
         matches!(letter, '=' | '+' | '-' | '@' | '\u{ff1d}' | '\u{ff0b}' | '\u{ff0d}' | '\u{ff20}')
     };
-    if is_number || !first.is_some_and(begins) && !text.starts_with(['\t', '\n']) {
+    if is_number || !first.is_some_and(starts_formula) && !text.starts_with(['\t', '\n']) {
         return text;
     }
     Cow::Owned(format!("'{text}"))

@@ -263,7 +263,7 @@ type TabFormat = fn(&str, &str, &str, bool) -> String;
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     // The first format in which every tab fits is used, otherwise the last format. In the narrowest windows, only the
     // tab of the current screen shows a title.
-    let ways: [TabFormat; 6] = [
+    let tab_formats: [TabFormat; 6] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
         |key, title, badge, _| format!(" {key} {title}{badge}"),
         |key, title, badge, _| format!(" {key} {}{badge}", short_title(title)),
@@ -280,18 +280,18 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     // If no format fits all tabs, the X-ray tab is omitted, unless the X-ray screen is shown.
     let others = |screen: &ScreenId| *screen != ScreenId::Xray || run.screen == ScreenId::Xray;
     let fewer: Vec<ScreenId> = all.iter().copied().filter(others).collect();
-    let texts = |screens: &[ScreenId], way: &TabFormat| {
+    let texts = |screens: &[ScreenId], tab_format: &TabFormat| {
         let text = |screen: &ScreenId| {
             let key = app.keys.label(screen.action()).unwrap_or_default();
-            way(&key, screen.action().entry().title, &tab_badge(run, *screen), *screen == run.screen)
+            tab_format(&key, screen.action().entry().title, &tab_badge(run, *screen), *screen == run.screen)
         };
         screens.iter().map(|screen| (*screen, text(screen))).collect::<Vec<(ScreenId, String)>>()
     };
     let fits = |texts: &Vec<(ScreenId, String)>| {
         texts.iter().map(|(_, text)| text.width()).sum::<usize>() <= row.width as usize
     };
-    let named = |screens| ways[..5].iter().map(move |way| texts(screens, way));
-    let fitting = named(&all).chain(named(&fewer)).find(fits).unwrap_or_else(|| texts(&all, &ways[5]));
+    let named = |screens| tab_formats[..5].iter().map(move |tab_format| texts(screens, tab_format));
+    let fitting = named(&all).chain(named(&fewer)).find(fits).unwrap_or_else(|| texts(&all, &tab_formats[5]));
     let mut x = row.x;
     for (screen, text) in fitting {
         let width = text.width() as u16;
@@ -413,15 +413,15 @@ fn footer_actions(app: &App) -> Vec<Action> {
             Action::Changes,
             Action::Quit,
         ];
-        let of_players = [Action::NextWeek, Action::Changes];
+        let player_actions = [Action::NextWeek, Action::Changes];
         let replay = app.run().is_some_and(|run| run.playback.is_some());
         let over = app.run().is_some_and(|run| !run.company.is_running());
         let left_out = |action: &Action| match action {
             Action::Changes if over => true,
-            action => replay && of_players.contains(action),
+            action => replay && player_actions.contains(action),
         };
-        let of_end = [Action::Report, Action::Branches].into_iter().filter(|_| over && !replay);
-        let always = always.into_iter().filter(|action| !left_out(action)).chain(of_end);
+        let end_actions = [Action::Report, Action::Branches].into_iter().filter(|_| over && !replay);
+        let always = always.into_iter().filter(|action| !left_out(action)).chain(end_actions);
         if app.external_editor_rejection().is_none() && app.is_editing_text() {
             actions.push(Action::ExternalEditor);
         }
@@ -445,14 +445,14 @@ fn progress_text(busy: &BusyState, width: u16, stop: &str) -> String {
     };
     let (done, all) = (days.current.saturating_sub(days.from), days.to.saturating_sub(days.from).max(1));
     let gauge = bar(f64::from(done) / f64::from(all), 10);
-    let came_to = days.figures.filter(|_| width >= 80).map_or(String::new(), |simulated_day| {
+    let figures_text = days.figures.filter(|_| width >= 80).map_or(String::new(), |simulated_day| {
         format!(
             " cash {} · subs {}",
             short_dollars(simulated_day.cash),
             compact_number(f64::from(simulated_day.subscribers))
         )
     });
-    format!("{} day {done} of {all} {gauge}{came_to} {seconds:.1} s", busy.label)
+    format!("{} day {done} of {all} {gauge}{figures_text} {seconds:.1} s", busy.label)
 }
 
 #[cfg(test)]

@@ -27,13 +27,13 @@ use super::packing::{PackedDay, RowRun};
 use novamind_world::events::UsageRows;
 use novamind_world::identifiers::Group;
 
-pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqlite::Result<()> {
+pub(super) fn register(connection: &Connection, query_view: &Arc<QueryView>) -> rusqlite::Result<()> {
     const USAGE: Module<'static, BlockTable<Usage>> = Module::eponymous_only_module();
     const ADS: Module<'static, BlockTable<Ads>> = Module::eponymous_only_module();
-    connection.create_module(c"daily_usage", &USAGE, Some(seen.clone()))?;
+    connection.create_module(c"daily_usage", &USAGE, Some(query_view.clone()))?;
     const ISSUES: Module<'static, BlockTable<Issues>> = Module::eponymous_only_module();
-    connection.create_module(c"ads_revenue", &ADS, Some(seen.clone()))?;
-    connection.create_module(c"issues", &ISSUES, Some(seen.clone()))
+    connection.create_module(c"ads_revenue", &ADS, Some(query_view.clone()))?;
+    connection.create_module(c"issues", &ISSUES, Some(query_view.clone()))
 }
 
 /// The table-specific properties of a block table. Column 1 is always customer_id.
@@ -46,7 +46,7 @@ trait BlockTableDefinition: Send + Sync + Sized + 'static {
     const ROW_NUMBER_COLUMN: Option<c_int> = None;
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
-    fn indexes(seen: &QueryView) -> &CustomerIndexes<Self::Run>;
+    fn indexes(query_view: &QueryView) -> &CustomerIndexes<Self::Run>;
     /// Sets the result to a column that is neither the day, the customer nor the row number.
     fn column(
         at: (&BlockStore, u32),
@@ -86,8 +86,8 @@ impl BlockTableDefinition for Usage {
         &store.usage
     }
 
-    fn indexes(seen: &QueryView) -> &CustomerIndexes<UsageRows> {
-        &seen.usage
+    fn indexes(query_view: &QueryView) -> &CustomerIndexes<UsageRows> {
+        &query_view.usage
     }
 
     fn column(_: (&BlockStore, u32), units: u32, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
@@ -106,8 +106,8 @@ impl BlockTableDefinition for Ads {
         &store.ads
     }
 
-    fn indexes(seen: &QueryView) -> &CustomerIndexes<AdsRun> {
-        &seen.ads
+    fn indexes(query_view: &QueryView) -> &CustomerIndexes<AdsRun> {
+        &query_view.ads
     }
 
     fn column(
@@ -138,8 +138,8 @@ impl BlockTableDefinition for Issues {
         &store.issues
     }
 
-    fn indexes(seen: &QueryView) -> &CustomerIndexes<IssueRun> {
-        &seen.issues
+    fn indexes(query_view: &QueryView) -> &CustomerIndexes<IssueRun> {
+        &query_view.issues
     }
 
     fn column(
@@ -189,7 +189,7 @@ fn constraint_code<K: BlockTableDefinition>(column: c_int, operator: IndexConstr
 struct BlockTable<K: BlockTableDefinition> {
     /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab,
-    seen: Arc<QueryView>,
+    query_view: Arc<QueryView>,
     kind: PhantomData<K>,
 }
 
@@ -200,15 +200,15 @@ unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
 
     fn connect(
         db: &mut VTabConnection,
-        seen: Option<&Arc<QueryView>>,
+        query_view: Option<&Arc<QueryView>>,
         _: &[u8],
         _: &[u8],
         _: &[u8],
         _: &[&[u8]],
     ) -> rusqlite::Result<(Cow<'static, CStr>, Self)> {
         db.config(VTabConfig::Innocuous)?;
-        let seen = seen.cloned().unwrap_or_default();
-        let table = BlockTable { base: ffi::sqlite3_vtab::default(), seen, kind: PhantomData };
+        let query_view = query_view.cloned().unwrap_or_default();
+        let table = BlockTable { base: ffi::sqlite3_vtab::default(), query_view, kind: PhantomData };
         Ok((Cow::Borrowed(K::DECLARATION), table))
     }
 
@@ -248,8 +248,8 @@ unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
     fn open(&mut self) -> rusqlite::Result<BlockCursor<'_, K>> {
         Ok(BlockCursor {
             base: ffi::sqlite3_vtab_cursor::default(),
-            store: self.seen.store(),
-            seen: self.seen.clone(),
+            store: self.query_view.store(),
+            query_view: self.query_view.clone(),
             position: RowPosition::default(),
             run: None,
             days: 0..0,
@@ -268,7 +268,7 @@ struct BlockCursor<'vtab, K: BlockTableDefinition> {
     /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
-    seen: Arc<QueryView>,
+    query_view: Arc<QueryView>,
     position: RowPosition,
     /// The run at the current position, unpacked on first use.
     run: Option<K::Run>,
@@ -294,7 +294,7 @@ impl<K: BlockTableDefinition> BlockCursor<'_, K> {
                 }
                 let customers = self.run.as_ref().map_or(&[][..], RowRun::customers);
                 if let Some(wanted) = self.customer {
-                    K::indexes(&self.seen).record_scanned_rows(&self.days, customers.len());
+                    K::indexes(&self.query_view).record_scanned_rows(&self.days, customers.len());
                     let at = customers.partition_point(|customer| f64::from(*customer) < wanted);
                     self.position.at = self.position.at.max(at);
                     let found = customers
@@ -385,7 +385,7 @@ unsafe impl<K: BlockTableDefinition> VTabCursor for BlockCursor<'_, K> {
             self.days = day.map_or(0..0, |day| day..day + 1);
         }
         if let Some(customer) = self.customer
-            && let Some(index) = K::indexes(&self.seen).get(days, &self.days)
+            && let Some(index) = K::indexes(&self.query_view).get(days, &self.days)
         {
             let rows = index.row_range(customer);
             self.indexed_rows = Some((index, rows));
@@ -444,7 +444,7 @@ mod tests {
     }
 
     /// Returns a connection to tables with five days of six usage rows each, and with one row of ad revenue.
-    fn connection_with_view(seen: &Arc<QueryView>) -> Connection {
+    fn connection_with_view(query_view: &Arc<QueryView>) -> Connection {
         let rows = |first: u32| {
             let customers = vec![first, first + 2, first + 4];
             UsageRows { customers, units: vec![first, 10, 20] }
@@ -456,8 +456,8 @@ mod tests {
         let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_from_rows(&[ads_row])))];
         let store = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads), ..BlockStore::default() };
         let connection = Connection::open_in_memory().expect("memory");
-        seen.set_store(store);
-        register(&connection, seen).expect("modules");
+        query_view.set_store(store);
+        register(&connection, query_view).expect("modules");
         connection
     }
 
@@ -516,16 +516,16 @@ mod tests {
 
     #[test]
     fn repeated_lookups_build_an_index() {
-        let seen = Arc::new(QueryView::default());
-        let connection = connection_with_view(&seen);
+        let query_view = Arc::new(QueryView::default());
+        let connection = connection_with_view(&query_view);
         let ask = |lookups: u32| -> (usize, i64) {
-            seen.set_store(seen.store());
+            query_view.set_store(query_view.store());
             let sql = format!(
                 "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {lookups})
                  SELECT count(u.rowid) FROM n LEFT JOIN daily_usage u ON u.customer_id = 2 + 0 * n.x"
             );
             let found = connection.query_row(&sql, [], |row| row.get(0)).expect("an answer");
-            (seen.usage.scanned_rows(), found)
+            (query_view.usage.scanned_rows(), found)
         };
         let (once, found) = ask(1);
         assert!(

@@ -60,10 +60,10 @@ impl<R: RowRun> CustomerIndex<R> {
 
 /// Returns the range from the lowest to the highest customer number with rows.
 fn customer_range(days: &[Arc<PackedDay>]) -> Range<u32> {
-    let of_runs = days.iter().flat_map(|day| (0..day.run_count()).map(|run| day.customer_range(run)));
-    let of_runs = of_runs.filter(|(first, last)| first <= last);
+    let run_ranges = days.iter().flat_map(|day| (0..day.run_count()).map(|run| day.customer_range(run)));
+    let run_ranges = run_ranges.filter(|(first, last)| first <= last);
     let (first, last) =
-        of_runs.fold((u32::MAX, 0), |all, run_range| (all.0.min(run_range.0), all.1.max(run_range.1)));
+        run_ranges.fold((u32::MAX, 0), |all, run_range| (all.0.min(run_range.0), all.1.max(run_range.1)));
     if first <= last { first..last + 1 } else { 0..0 }
 }
 
@@ -101,8 +101,8 @@ impl<R: RowRun> CustomerIndexes<R> {
     /// Returns the index of a range of days. Returns `None` until the scans of this range have cost as much as building
     /// the index, and if the index would need too much memory.
     pub fn get(&self, days: &[Arc<PackedDay>], range: &Range<usize>) -> Option<Arc<CustomerIndex<R>>> {
-        let mut made = self.lock();
-        let lookups = made.by_days.get(&(range.start, range.end))?;
+        let mut cache = self.lock();
+        let lookups = cache.by_days.get(&(range.start, range.end))?;
         if lookups.index.is_some() {
             return lookups.index.clone();
         }
@@ -110,20 +110,20 @@ impl<R: RowRun> CustomerIndexes<R> {
         let rows: usize = days.iter().map(|day| day.row_count()).sum();
         let bytes =
             rows * (size_of::<i64>() + size_of::<R::Row>()) + customer_range(days).len() * size_of::<u32>();
-        if lookups.rows < 2 * rows || made.bytes + bytes > MAX_INDEX_BYTES {
+        if lookups.rows < 2 * rows || cache.bytes + bytes > MAX_INDEX_BYTES {
             return None;
         }
         let index = Arc::new(CustomerIndex::from_days(days)?);
-        made.bytes += bytes;
-        made.by_days.insert((range.start, range.end), LookupStatistics { rows, index: Some(index.clone()) });
+        cache.bytes += bytes;
+        cache.by_days.insert((range.start, range.end), LookupStatistics { rows, index: Some(index.clone()) });
         Some(index)
     }
 
     /// Adds the number of rows that a lookup of one customer scanned.
     pub fn record_scanned_rows(&self, range: &Range<usize>, rows: usize) {
-        let mut made = self.lock();
+        let mut cache = self.lock();
         let none = LookupStatistics { rows: 0, index: None };
-        made.by_days.entry((range.start, range.end)).or_insert(none).rows += rows;
+        cache.by_days.entry((range.start, range.end)).or_insert(none).rows += rows;
     }
 
     /// Returns the number of rows that the running statement has scanned for single customers.

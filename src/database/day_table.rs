@@ -39,7 +39,7 @@ pub(super) trait DayTableDefinition: Send + Sync + Sized + 'static {
     /// Index of the text column, which is the last column.
     const TEXT_COLUMN: c_int;
     fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str>;
-    fn texts(seen: &QueryView) -> &TextIndexes;
+    fn texts(query_view: &QueryView) -> &TextIndexes;
     /// Sets the result to a table-specific column: a column after the third and before the last.
     fn column(_: &DayRow<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
         Ok(())
@@ -161,7 +161,7 @@ impl RowOrder {
 pub(super) struct DayTable<K: DayTableDefinition> {
     /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab,
-    seen: Arc<QueryView>,
+    query_view: Arc<QueryView>,
     kind: PhantomData<K>,
 }
 
@@ -172,15 +172,15 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
 
     fn connect(
         db: &mut VTabConnection,
-        seen: Option<&Arc<QueryView>>,
+        query_view: Option<&Arc<QueryView>>,
         _: &[u8],
         _: &[u8],
         _: &[u8],
         _: &[&[u8]],
     ) -> rusqlite::Result<(Cow<'static, CStr>, Self)> {
         db.config(VTabConfig::Innocuous)?;
-        let seen = seen.cloned().unwrap_or_default();
-        let table = DayTable { base: ffi::sqlite3_vtab::default(), seen, kind: PhantomData };
+        let query_view = query_view.cloned().unwrap_or_default();
+        let table = DayTable { base: ffi::sqlite3_vtab::default(), query_view, kind: PhantomData };
         Ok((Cow::Borrowed(K::DECLARATION), table))
     }
 
@@ -246,8 +246,8 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
     fn open(&mut self) -> rusqlite::Result<DayCursor<'_, K>> {
         Ok(DayCursor {
             base: ffi::sqlite3_vtab_cursor::default(),
-            store: self.seen.store(),
-            seen: self.seen.clone(),
+            store: self.query_view.store(),
+            query_view: self.query_view.clone(),
             passes: Vec::new(),
             pass: 0,
             place: 0,
@@ -278,7 +278,7 @@ pub(super) struct DayCursor<'vtab, K: DayTableDefinition> {
     /// Base struct of SQLite; must be the first field.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
-    seen: Arc<QueryView>,
+    query_view: Arc<QueryView>,
     passes: Vec<ScanPass>,
     pass: usize,
     place: u64,
@@ -433,7 +433,7 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
         if let (Some(text), RowOrder::Number, Some(first)) = (wanted_text, order, self.passes.first()) {
             let days = first.day..first.day + self.passes.len();
             let rows = K::days(&self.store)[days.clone()].iter().map(|day| day.len()).sum();
-            let index = K::texts(&self.seen).get(&days, rows, || self.text_rows(days.clone()));
+            let index = K::texts(&self.query_view).get(&days, rows, || self.text_rows(days.clone()));
             self.indexed_rows = index.map(|index| {
                 let rows = index.row_range(&text);
                 (index, rows)
@@ -507,10 +507,10 @@ mod tests {
             days.push(Arc::new(day));
         }
         let inbox = Inbox { days: Arc::new(days), losses: Arc::new(losses.collect()) };
-        let seen = Arc::new(QueryView::default());
-        seen.set_store(BlockStore { inbox, ..BlockStore::default() });
+        let query_view = Arc::new(QueryView::default());
+        query_view.set_store(BlockStore { inbox, ..BlockStore::default() });
         let connection = Connection::open_in_memory().expect("memory");
-        register(&connection, &seen).expect("a module");
+        register(&connection, &query_view).expect("a module");
         connection
     }
 

@@ -126,8 +126,8 @@ fn explain_unknown_column(column: &str, sql: &str, surface: Surface) -> String {
 /// Returns the tables whose names occur in a statement as whole words.
 fn mentioned_tables(sql: &str, surface: Surface) -> Vec<&'static Table> {
     let words: Vec<&str> = sql.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
-    let stands = |name: &str| words.iter().any(|word| word.eq_ignore_ascii_case(name));
-    surface.tables().filter(|table| table.name.split('.').all(stands)).collect()
+    let is_mentioned = |name: &str| words.iter().any(|word| word.eq_ignore_ascii_case(name));
+    surface.tables().filter(|table| table.name.split('.').all(is_mentioned)).collect()
 }
 
 /// Returns a hint for an empty result if the statement compares a column with a text that the column never contains.

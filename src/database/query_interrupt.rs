@@ -94,8 +94,8 @@ impl Interrupt {
     pub(super) fn begin_statement(&self, time: Duration, steps: Option<u64>) {
         let deadline = self.0.started.elapsed() + time;
         self.0.deadline.store(deadline.as_millis() as u64, Ordering::Relaxed);
-        let looks = steps.map_or(u64::MAX, |steps| steps / u64::from(STEPS_BETWEEN_CHECKS));
-        self.0.remaining_checks.store(looks, Ordering::Relaxed);
+        let check_count = steps.map_or(u64::MAX, |steps| steps / u64::from(STEPS_BETWEEN_CHECKS));
+        self.0.remaining_checks.store(check_count, Ordering::Relaxed);
     }
 
     /// Returns the reason why the query was stopped.
@@ -119,9 +119,9 @@ impl Interrupt {
             interrupt_state.cause.store(1, Ordering::Relaxed);
             return true;
         }
-        let looks = interrupt_state.remaining_checks.load(Ordering::Relaxed);
-        interrupt_state.remaining_checks.store(looks.saturating_sub(1), Ordering::Relaxed);
-        looks == 0
+        let check_count = interrupt_state.remaining_checks.load(Ordering::Relaxed);
+        interrupt_state.remaining_checks.store(check_count.saturating_sub(1), Ordering::Relaxed);
+        check_count == 0
             || self.is_stop_requested()
             || interrupt_state.started.elapsed().as_millis() as u64
                 > interrupt_state.deadline.load(Ordering::Relaxed)

@@ -23,12 +23,12 @@ pub(super) fn mask_plan(plan: &mut Vec<Vec<Cell>>, sql: &str) {
             *detail = mask_detail(detail, sql);
         }
     }
-    let of_inside = |row: &Vec<Cell>| {
+    let is_internal_step = |row: &Vec<Cell>| {
         let detail = text_at(row, DETAIL_COLUMN);
         let looked_up = detail.strip_prefix("SEARCH ").or(detail.strip_prefix("SCAN "));
         looked_up.is_some_and(|rest| rest.starts_with(MASK))
     };
-    let (inside, mut rest): (Vec<_>, Vec<_>) = plan.drain(..).partition(of_inside);
+    let (inside, mut rest): (Vec<_>, Vec<_>) = plan.drain(..).partition(is_internal_step);
     let parents: Vec<&Cell> = inside.iter().filter_map(|row| row.get(PARENT_COLUMN)).collect();
     let still: Vec<Cell> = rest.iter().filter_map(|row| row.get(PARENT_COLUMN).cloned()).collect();
     rest.retain(|row| row.first().is_none_or(|id| !parents.contains(&id) || still.contains(id)));
@@ -56,7 +56,7 @@ fn is_word_character(letter: char) -> bool {
 
 /// Returns a word of a plan, or the mask if the word may be an internal name.
 fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
-    let language = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
+    let is_keyword = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
     let column = || {
         let mut columns = tables(Interface::Release1).iter().flat_map(|table| &table.columns);
         columns.any(|column| column.name.eq_ignore_ascii_case(word))
@@ -65,7 +65,7 @@ fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
         let mut contents = tokenize(sql).into_iter().map(|token| token.unquoted());
         contents.any(|content| content.split(|letter| !is_word_character(letter)).any(|text| text == word))
     };
-    if language
+    if is_keyword
         || LOWERCASE_WORDS.contains(&word)
         || table(Interface::Release1, word).is_some()
         || column()

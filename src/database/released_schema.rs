@@ -180,8 +180,8 @@ impl ReleasedSchema {
             .explain_rows(&format!("EXPLAIN QUERY PLAN {}", strip_explain_query_plan(sql)))
             .unwrap_or_default();
         // The engine converts some EXISTS subqueries to joins and marks their table in the plan.
-        let again = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
-        plan.iter().flatten().any(|cell| matches!(cell, Value::Text(step) if again(step)))
+        let is_correlated_step = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
+        plan.iter().flatten().any(|cell| matches!(cell, Value::Text(step) if is_correlated_step(step)))
     }
 
     /// Replaces `main.` and rowids in a statement if the replacement does not change the program.

@@ -81,14 +81,14 @@ pub fn subject_by_name(name: &str) -> Option<Subject> {
 /// Returns similar names if no subject matches.
 pub fn find_subject(words: &str) -> Result<Subject, Vec<&'static str>> {
     let typed = normalize(words);
-    let called = |term: &&Term| {
+    let has_typed_name = |term: &&Term| {
         let names = std::iter::once(&term.id).chain(std::iter::once(&term.title)).chain(&term.aka);
         names.into_iter().any(|name| normalize(name) == typed)
     };
     let joined = words.trim().to_lowercase().replace([' ', '-'], "_");
     terms()
         .iter()
-        .find(called)
+        .find(has_typed_name)
         .map(Subject::Term)
         .or_else(|| subject_by_name(words.trim()))
         .or_else(|| subject_by_name(&joined))
@@ -104,13 +104,13 @@ fn tool_with_result_field(field: &str) -> Option<Subject> {
         return None;
     }
     let names = |kind: &'static str| kind.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
-    let answers = |spec: &&'static ToolSpec| {
+    let returns_field = |spec: &&'static ToolSpec| {
         let fields = |output: &novamind_tools::ResultField| {
             output.name == field || names(output.kind).any(|name| name == field)
         };
         spec.result_fields.iter().any(fields)
     };
-    novamind_tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
+    novamind_tools::CATALOGUE.iter().map(|tool| tool.spec()).find(returns_field).map(Subject::Tool)
 }
 
 /// Removes parentheses at the end, as in `Overload (peak)`.

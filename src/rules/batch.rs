@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn every_field_can_be_compared() {
-        for (condition, meant) in [
+        for (condition, expected_customers) in [
             ("group != e2", vec![1, 3]),
             ("type in (new_lead, plan_change)", vec![1, 2, 3, 4]),
             ("seats <= 100", vec![1, 2]),
@@ -313,7 +313,7 @@ mod tests {
             let batch = RuleBatch::new(rules, threads(), &market());
             let ruled = batch.threads.iter().filter(|ruled| ruled.rule_index.is_some());
             let found: Vec<u32> = ruled.map(|ruled| ruled.thread.waiting.customer).collect();
-            assert_eq!(found, meant, "{condition}");
+            assert_eq!(found, expected_customers, "{condition}");
         }
     }
 

@@ -249,13 +249,13 @@ impl RuleParser<'_> {
             return Err(self.error_at_previous(format!("unknown field {name}; {near}")));
         };
         if self.accept("is") {
-            let there = self.accept("not");
+            let is_negated = self.accept("not");
             if !self.accept("null") {
                 return Err(
                     self.error_at_current_token("`null` is expected: write `is null` or `is not null`")
                 );
             }
-            return Ok(if there { Condition::IsPresent(field) } else { Condition::IsNull(field) });
+            return Ok(if is_negated { Condition::IsPresent(field) } else { Condition::IsNull(field) });
         }
         if self.accept("in") {
             return self.parse_list_condition(field);

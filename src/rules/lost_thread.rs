@@ -206,11 +206,11 @@ fn statements(turns: &[Turn]) -> Vec<String> {
     let messages =
         turns.iter().rev().filter(|turn| turn.sender == "customer" && turn.closing_reason.is_empty());
     let quoted = messages.flat_map(|turn| {
-        let names = |sentence: &&str| {
+        let is_statement = |sentence: &&str| {
             let lower = sentence.to_lowercase();
             STATEMENT_WORDS.iter().any(|word| lower.contains(word))
         };
-        let found: Vec<&str> = sentences(&turn.text).into_iter().filter(names).collect();
+        let found: Vec<&str> = sentences(&turn.text).into_iter().filter(is_statement).collect();
         found
             .into_iter()
             .map(|sentence| format!("It wrote on day {}: “{sentence}”", turn.day))

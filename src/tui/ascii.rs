@@ -6,8 +6,8 @@ use ratatui::buffer::Buffer;
 pub fn replace_non_ascii(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
-            let stand_in = cell.symbol().chars().next().map_or(' ', ascii_substitute);
-            cell.set_char(stand_in);
+            let substitute = cell.symbol().chars().next().map_or(' ', ascii_substitute);
+            cell.set_char(substitute);
         }
     }
 }

@@ -38,12 +38,12 @@ impl Asciicast {
     ///
     /// # Errors
     /// The frame cannot be written as terminal output.
-    pub fn add_frame(&mut self, frame: &Buffer, stays: Duration) -> std::io::Result<()> {
+    pub fn add_frame(&mut self, frame: &Buffer, display_time: Duration) -> std::io::Result<()> {
         let mut bytes = Vec::new();
         CrosstermBackend::new(&mut bytes).draw(self.last_frame.diff(frame).into_iter())?;
         self.write(&String::from_utf8_lossy(&bytes));
         self.last_frame = frame.clone();
-        self.time += stays;
+        self.time += display_time;
         Ok(())
     }
 

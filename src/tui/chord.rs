@@ -92,12 +92,12 @@ impl Chord {
     /// Returns the key event that a terminal would send for the chord.
     pub fn to_event(&self) -> KeyEvent {
         let mut modifiers = KeyModifiers::NONE;
-        for (held, modifier) in [
+        for (is_held, modifier) in [
             (self.ctrl, KeyModifiers::CONTROL),
             (self.alt, KeyModifiers::ALT),
             (self.shift, KeyModifiers::SHIFT),
         ] {
-            modifiers.set(modifier, held);
+            modifiers.set(modifier, is_held);
         }
         KeyEvent::new(self.code, modifiers)
     }
@@ -152,8 +152,8 @@ impl Chord {
 
 impl fmt::Display for Chord {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (held, name) in [(self.ctrl, "ctrl-"), (self.alt, "alt-"), (self.shift, "shift-")] {
-            if held {
+        for (is_held, name) in [(self.ctrl, "ctrl-"), (self.alt, "alt-"), (self.shift, "shift-")] {
+            if is_held {
                 formatter.write_str(name)?;
             }
         }

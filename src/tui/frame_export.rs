@@ -109,10 +109,10 @@ fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper:
     }
 }
 
-fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, looks): (&str, Modifier)) {
-    let weight = if looks.contains(Modifier::BOLD) { " font-weight=\"bold\"" } else { "" };
-    let faint = if looks.contains(Modifier::DIM) { " opacity=\"0.6\"" } else { "" };
-    let line = if looks.contains(Modifier::UNDERLINED) { " text-decoration=\"underline\"" } else { "" };
+fn write_word(out: &mut String, (left, top): (f64, f64), word: &str, (ink, modifiers): (&str, Modifier)) {
+    let weight = if modifiers.contains(Modifier::BOLD) { " font-weight=\"bold\"" } else { "" };
+    let faint = if modifiers.contains(Modifier::DIM) { " opacity=\"0.6\"" } else { "" };
+    let line = if modifiers.contains(Modifier::UNDERLINED) { " text-decoration=\"underline\"" } else { "" };
     // An explicit text length keeps columns aligned in any font.
     let length = word.width() as f64 * CELL_WIDTH;
     let base = top + CELL_HEIGHT * 0.76;

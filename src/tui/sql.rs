@@ -226,9 +226,9 @@ pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
     let mut from = 0;
     let mut all: Vec<Range<usize>> = Vec::new();
     for end in ends.map(|token| token.range.start).chain([sql.len()]) {
-        let says =
+        let is_code =
             |token: &&Token| token.kind != TokenKind::Comment && (from..end).contains(&token.range.start);
-        if pieces.iter().filter(says).count() > 0 {
+        if pieces.iter().filter(is_code).count() > 0 {
             all.push(from..end);
         }
         from = (end + 1).min(sql.len());

@@ -127,11 +127,11 @@ impl Theme {
     /// # Errors
     /// The text is not TOML, a role is missing or unknown, or there is no color for series.
     pub fn parse(name: &str, text: &str) -> Result<Theme, String> {
-        let looks: ThemeFile = toml::from_str(text).map_err(|error| error.to_string())?;
-        if looks.series.is_empty() {
+        let role_styles: ThemeFile = toml::from_str(text).map_err(|error| error.to_string())?;
+        if role_styles.series.is_empty() {
             return Err("series needs at least one entry".to_owned());
         }
-        Ok(Theme { name: name.to_owned(), styles: looks })
+        Ok(Theme { name: name.to_owned(), styles: role_styles })
     }
 
     /// Returns whether `count` series can be distinguished by color alone.
@@ -144,31 +144,31 @@ impl Theme {
 
     /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
-        let looks = &self.styles;
+        let role_styles = &self.styles;
         let role_style = match role {
-            Role::Text => looks.text,
-            Role::Dim => looks.dim,
-            Role::Strong => looks.strong,
-            Role::Title => looks.title,
-            Role::Border => looks.border,
-            Role::Focus => looks.focus,
-            Role::Selection => looks.selection,
-            Role::InactiveSelection => looks.selection_idle,
-            Role::Tab => looks.tab,
-            Role::ActiveTab => looks.tab_here,
-            Role::Key => looks.key,
-            Role::Good => looks.good,
-            Role::Bad => looks.bad,
-            Role::Warning => looks.warning,
-            Role::Header => looks.header,
-            Role::Field => looks.field,
-            Role::Changed => looks.changed,
-            Role::Series(number) => looks.series[number % looks.series.len()],
-            Role::Fan => looks.fan,
-            Role::Keyword => looks.keyword,
-            Role::SqlString => looks.string,
-            Role::Number => looks.number,
-            Role::Comment => looks.comment,
+            Role::Text => role_styles.text,
+            Role::Dim => role_styles.dim,
+            Role::Strong => role_styles.strong,
+            Role::Title => role_styles.title,
+            Role::Border => role_styles.border,
+            Role::Focus => role_styles.focus,
+            Role::Selection => role_styles.selection,
+            Role::InactiveSelection => role_styles.selection_idle,
+            Role::Tab => role_styles.tab,
+            Role::ActiveTab => role_styles.tab_here,
+            Role::Key => role_styles.key,
+            Role::Good => role_styles.good,
+            Role::Bad => role_styles.bad,
+            Role::Warning => role_styles.warning,
+            Role::Header => role_styles.header,
+            Role::Field => role_styles.field,
+            Role::Changed => role_styles.changed,
+            Role::Series(number) => role_styles.series[number % role_styles.series.len()],
+            Role::Fan => role_styles.fan,
+            Role::Keyword => role_styles.keyword,
+            Role::SqlString => role_styles.string,
+            Role::Number => role_styles.number,
+            Role::Comment => role_styles.comment,
         };
         role_style.style()
     }

@@ -81,9 +81,9 @@ impl ResolvedCommand {
 }
 
 impl World {
-    /// Resolves the random draws of `effect` without changing the world.
-    pub fn resolve(&self, effect: Command, params: &Params, streams: &Streams) -> ResolvedCommand {
-        match effect {
+    /// Resolves the random draws of `requested_command` without changing the world.
+    pub fn resolve(&self, requested_command: Command, params: &Params, streams: &Streams) -> ResolvedCommand {
+        match requested_command {
             Command::None => ResolvedCommand::None,
             Command::Set(change) => ResolvedCommand::Set(change),
             Command::StartResearch(tier) => {

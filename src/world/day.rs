@@ -71,7 +71,7 @@ pub fn step_day_observed(
     surges::draw_week_surges(day, world.last_day(params), &mut world.market.surges, params, streams);
     let morning = compute_morning(world, params);
     watch.on_morning(world, &morning, params);
-    let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
+    let World { settings, finance, product, customers, issue_counter, market, enterprise, .. } = world;
     if drift::is_drift_day(day - 1, &params.drift) && !fixed_inputs.fixes_drift(day - 1) {
         refresh_requirements(customers, &morning, params);
     }
@@ -118,27 +118,28 @@ pub fn step_day_observed(
     };
 
     // Subscribers open issues, update satisfaction, decide and pay; enterprises negotiate.
-    let scene = OpinionContext { day: &today, chronicle: &market.social.chronicle };
-    let mut updated = update_satisfaction(customers, &today, &scene, watch);
-    let crowd = updated
+    let opinion_context = OpinionContext { day: &today, chronicle: &market.social.chronicle };
+    let mut updated = update_satisfaction(customers, &today, &opinion_context, watch);
+    let selected_authors = updated
         .post_weights
-        .map(|voices| author_selection::from_subscribers(voices, customers, &scene, streams));
-    issues::allocate_resolutions(&mut updated.calls, settings, customers, issue_desk, &today);
-    let judgement = RenewalContext {
+        .map(|voices| author_selection::from_subscribers(voices, customers, &opinion_context, streams));
+    issues::allocate_resolutions(&mut updated.calls, settings, customers, issue_counter, &today);
+    let renewal_context = RenewalContext {
         day: &today,
         involuntary: renewal::involuntary_rates(day, params, streams),
         willingness_to_pay: ByGroup::from_fn(|group| {
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
     };
-    let decided = update_issues_and_decide(customers, updated.calls, &judgement, watch);
+    let decided = update_issues_and_decide(customers, updated.calls, &renewal_context, watch);
     issues::record_issues(decided.settled, facts);
     let mut on_write = |write: &ReputationWrite<'_>| watch.on_reputation_change(write);
     let renewals =
         renewal::record_decisions(decided.decisions, &mut market.reputation, params, facts, &mut on_write);
-    let talks = NegotiationContext { day: &today, product, drift: &market.drift };
-    watch.before_negotiations(enterprise, customers, &talks);
-    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts, &mut on_write);
+    let negotiation_context = NegotiationContext { day: &today, product, drift: &market.drift };
+    watch.before_negotiations(enterprise, customers, &negotiation_context);
+    let negotiated =
+        enterprise.step(customers, &mut market.reputation, &negotiation_context, facts, &mut on_write);
     let knowledge = market.knowledge;
     let contributions = satisfaction::sum_by_group(updated.contributions);
     let is_known = |group: Group| knowledge[group].level >= 1;
@@ -146,19 +147,19 @@ pub fn step_day_observed(
     watch.after_reputation_changes(&contributions, market, params);
 
     // Publish posts of customers and the press.
-    if let Some(mut crowd) = crowd {
-        crowd.add_departed(&renewals.cancelled_individuals, &negotiated.lost, params);
-        crowd.publish(&mut market.social, params, streams, facts);
+    if let Some(mut selected_authors) = selected_authors {
+        selected_authors.add_departed(&renewals.cancelled_individuals, &negotiated.lost, params);
+        selected_authors.publish(&mut market.social, params, streams, facts);
     }
     press::write_economy_posts(day, &market.economy, &mut market.social, params, streams, facts);
 
     // Process new leads.
-    let coming = arrivals::ArrivalContext { day: &today, market };
+    let arrival_context = arrivals::ArrivalContext { day: &today, market };
     let subscribers = customers.active_by_group();
-    let mut factors = arrivals::expected_leads(&coming, &subscribers);
+    let mut factors = arrivals::expected_leads(&arrival_context, &subscribers);
     fixed_inputs.apply_to_leads(day, morning.weekday, &mut factors);
-    watch.on_expected_leads(&coming, &subscribers, &factors);
-    let leads = arrivals::process_arrivals(&coming, &factors, customers, enterprise, facts);
+    watch.on_expected_leads(&arrival_context, &subscribers, &factors);
+    let leads = arrivals::process_arrivals(&arrival_context, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
     // Collect payments and pay costs.
@@ -206,23 +207,24 @@ struct SatisfactionRound {
 fn update_satisfaction(
     customers: &mut Customers,
     day: &DayContext<'_>,
-    scene: &OpinionContext<'_>,
+    opinion_context: &OpinionContext<'_>,
     watch: &dyn DayObserver,
 ) -> SatisfactionRound {
-    let listening = author_selection::is_posting_day(day.day(), day.params);
+    let customers_post_today = author_selection::is_posting_day(day.day(), day.params);
     let updated = customers.sweep(|group, number, block| {
         let calls = issues::find_issues(group, number, block, day);
-        let before = listening.then(|| block.satisfaction.clone());
+        let before = customers_post_today.then(|| block.satisfaction.clone());
         watch.before_satisfaction(group, block, day);
         let contribution = satisfaction::update_block(group, block, day);
-        let voices = before.map(|before| author_selection::weigh_block(group, block, before, scene));
+        let voices =
+            before.map(|before| author_selection::weigh_block(group, block, before, opinion_context));
         (calls, (group, contribution), voices)
     });
     let (calls, contributions, voices): (Vec<_>, Vec<_>, Vec<_>) = updated.into_iter().collect();
     SatisfactionRound {
         calls,
         contributions,
-        post_weights: listening.then(|| voices.into_iter().flatten().collect()),
+        post_weights: customers_post_today.then(|| voices.into_iter().flatten().collect()),
     }
 }
 
@@ -237,14 +239,14 @@ struct DecisionRound {
 fn update_issues_and_decide(
     customers: &mut Customers,
     calls: Vec<IssueBatch>,
-    judgement: &RenewalContext<'_>,
+    renewal_context: &RenewalContext<'_>,
     watch: &dyn DayObserver,
 ) -> DecisionRound {
-    let day = judgement.day;
+    let day = renewal_context.day;
     let decided = customers.sweep_with(calls, |group, number, block, calls| {
         let settled = issues::update_issues(block, &calls, day);
-        watch.before_decisions(group, block, judgement);
-        let decisions = renewal::decide_block(group, number, block, judgement);
+        watch.before_decisions(group, block, renewal_context);
+        let decisions = renewal::decide_block(group, number, block, renewal_context);
         (settled, decisions, billing::bill_block(group, number, block, day))
     });
     let (settled, decisions, billed) = decided.into_iter().collect();

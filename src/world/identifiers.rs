@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn identifier_determines_the_segment() {
+    fn identifier_determines_whether_a_group_is_an_enterprise() {
         for group in Group::all() {
             assert_eq!(group.is_enterprise(), group.id().trim_start_matches("D_").starts_with('E'));
             assert_eq!(group.is_initially_known(), !group.id().starts_with("D_"));

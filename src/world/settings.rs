@@ -172,17 +172,17 @@ impl Settings {
     /// Returns the largest discount of any scope, dollars per month.
     pub fn largest_discount(&self) -> f64 {
         let ongoing = &self.promotion;
-        let of_leads = &self.lead_promotion;
+        let first_bill_discounts = &self.lead_promotion;
         let largest = |map: &mut dyn Iterator<Item = &f64>| map.copied().fold(0.0, f64::max);
         [
             ongoing.global,
-            of_leads.global,
+            first_bill_discounts.global,
             largest(&mut ongoing.by_group.values()),
             largest(&mut ongoing.by_customer.values()),
             largest(&mut ongoing.by_group_plan.values().flat_map(IndexMap::values)),
-            largest(&mut of_leads.by_group.values()),
-            largest(&mut of_leads.by_channel.values()),
-            largest(&mut of_leads.by_channel_group.values().flat_map(IndexMap::values)),
+            largest(&mut first_bill_discounts.by_group.values()),
+            largest(&mut first_bill_discounts.by_channel.values()),
+            largest(&mut first_bill_discounts.by_channel_group.values().flat_map(IndexMap::values)),
         ]
         .into_iter()
         .fold(0.0, f64::max)

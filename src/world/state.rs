@@ -28,7 +28,7 @@ pub struct World {
     /// All customers.
     pub customers: Customers,
     /// Counter that numbers support issues.
-    pub issue_desk: IssueCounter,
+    pub issue_counter: IssueCounter,
     /// State of the market.
     pub market: Market,
     /// Negotiations with enterprises.
@@ -36,7 +36,7 @@ pub struct World {
 }
 
 canonical! {
-    World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise }
+    World { day, total_days, settings, finance, product, customers, issue_counter, market, enterprise }
 }
 
 /// The hash of one part of the state. A comparison of these hashes locates differences between runs.
@@ -59,7 +59,7 @@ impl World {
             finance: Finance { cash: 0.0 },
             product: Product::initial(params),
             customers: Customers::default(),
-            issue_desk: IssueCounter::default(),
+            issue_counter: IssueCounter::default(),
             market: Market::initial(params),
             enterprise: Enterprise::default(),
             settings,
@@ -84,8 +84,17 @@ impl World {
 
     /// Returns the hash of each part of the state, in declaration order.
     pub fn part_hashes(&self) -> Vec<PartHash> {
-        let World { day, total_days, settings, finance, product, customers, issue_desk, market, enterprise } =
-            self;
+        let World {
+            day,
+            total_days,
+            settings,
+            finance,
+            product,
+            customers,
+            issue_counter,
+            market,
+            enterprise,
+        } = self;
         let part = |part, hash| PartHash { part, hash };
         vec![
             part("calendar", canonical_hash(&(*day, *total_days))),
@@ -93,7 +102,7 @@ impl World {
             part("money", canonical_hash(finance)),
             part("product", canonical_hash(product)),
             part("customers", customers.hash()),
-            part("issues", canonical_hash(issue_desk)),
+            part("issues", canonical_hash(issue_counter)),
             part("market", canonical_hash(market)),
             part("threads", canonical_hash(enterprise)),
         ]
@@ -171,7 +180,7 @@ mod tests {
             ("customers", |world, _| world.customers.next_customer += 1),
             ("customers", |world, _| world.customers.next_subscription += 1),
             ("customers", |world, _| world.customers.groups.0[0].created += 1),
-            ("issues", |world, _| world.issue_desk.next_issue += 1),
+            ("issues", |world, _| world.issue_counter.next_issue += 1),
             ("market", |world, s2| world.market.reputation.set(s2, 1.25)),
             ("market", |world, s2| world.market.drift.c_max[s2] += 1e-9),
             ("market", |world, s2| world.market.yields[Channel::Linkedin][s2] += 1e-9),
@@ -202,7 +211,7 @@ mod tests {
             canonical_bytes(&world.finance).len(),
             canonical_bytes(&world.product).len(),
             canonical_bytes(&world.customers).len(),
-            canonical_bytes(&world.issue_desk).len(),
+            canonical_bytes(&world.issue_counter).len(),
             canonical_bytes(&world.market).len(),
             canonical_bytes(&world.enterprise).len(),
         ];

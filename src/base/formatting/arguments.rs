@@ -91,8 +91,8 @@ impl<'a> LineParser<'a> {
     /// Returns the first syntax error and its column.
     pub fn parse_arguments(&mut self) -> Result<Vec<Argument>, ParseError> {
         self.skip_whitespace();
-        let opened = self.remaining().starts_with('(');
-        self.position += usize::from(opened);
+        let has_parenthesis = self.remaining().starts_with('(');
+        self.position += usize::from(has_parenthesis);
         let mut arguments: Vec<Argument> = Vec::new();
         let mut after_comma = false;
         loop {
@@ -101,13 +101,13 @@ impl<'a> LineParser<'a> {
             let rest = self.remaining();
             let comment = rest.starts_with('#') && (self.position > before || arguments.is_empty());
             if rest.is_empty() || comment {
-                return if opened {
+                return if has_parenthesis {
                     Err(self.error_here("the opening parenthesis is not closed"))
                 } else {
                     Ok(arguments)
                 };
             }
-            if opened && rest.starts_with(')') {
+            if has_parenthesis && rest.starts_with(')') {
                 self.position += 1;
                 return self.expect_end(arguments);
             }

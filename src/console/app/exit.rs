@@ -86,9 +86,9 @@ impl App {
         }
         self.stop_seeking();
         // Leaving a run returns a participant to the study.
-        let at_study = self.has_participant() && matches!(self.stage, Stage::Run(_));
+        let returns_to_study = self.has_participant() && matches!(self.stage, Stage::Run(_));
         let quits = closing == ExitTarget::Shell;
-        let closing = if at_study && quits { ExitTarget::Menu } else { closing };
+        let closing = if returns_to_study && quits { ExitTarget::Menu } else { closing };
         self.detach_from_run();
         self.exit_target = Some(closing);
         match &self.stage {

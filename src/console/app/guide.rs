@@ -55,18 +55,20 @@ impl App {
 
     /// Shows the tour at its first unfinished step.
     pub(super) fn resume_tour(&mut self) {
-        let of_practice = self.study.as_ref().is_some_and(StudyState::has_tour);
-        if self.has_participant() && !of_practice {
+        let is_practice_with_tour = self.study.as_ref().is_some_and(StudyState::has_tour);
+        if self.has_participant() && !is_practice_with_tour {
             return self.show_error("this session has no tour");
         }
         let Stage::Run(run) = &mut self.stage else { return };
-        if run.company.is_baseline() && !of_practice {
+        if run.company.is_baseline() && !is_practice_with_tour {
             return self
                 .show_error("baseline runs have no tour; Tour in the start menu opens a run for the tour");
         }
         // The settings that the tour proposes suit the tour's own run and a practice run.
         let seen = &run.company.observation;
-        if !of_practice && !tour::is_tour_run(&seen.scenario, seen.seed.unwrap_or_default(), seen.last_day) {
+        if !is_practice_with_tour
+            && !tour::is_tour_run(&seen.scenario, seen.seed.unwrap_or_default(), seen.last_day)
+        {
             return self.show_error("the tour has its own run; open that run with Tour in the start menu");
         }
         run.tour.get_or_insert_default();

@@ -61,10 +61,11 @@ impl App {
             // The bindings of the text field take precedence over the bindings of the surrounding scopes.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
             let text_action = self.keys.action(&texts, chord);
-            let goes_on = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
+            let works_while_typing = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
             let plain = chord.is_printable();
-            text_action
-                .or_else(|| self.keys.action(&scopes, chord).filter(|action| goes_on(action) && !plain))
+            text_action.or_else(|| {
+                self.keys.action(&scopes, chord).filter(|action| works_while_typing(action) && !plain)
+            })
         } else {
             let bound_action = self.priority_action(chord).or_else(|| self.keys.action(&scopes, chord));
             bound_action.or_else(|| self.always_available_action(chord))
@@ -102,11 +103,11 @@ impl App {
     /// Returns the action that takes precedence over the bindings of the top dialog.
     fn priority_action(&self, chord: Chord) -> Option<Action> {
         let global = self.keys.action(&[Scope::Global], chord)?;
-        let goes_before = match self.layers.top()? {
+        let takes_precedence = match self.layers.top()? {
             Layer::Dialog(dialog) => dialog.overrides_dialog_keys(global),
             Layer::NextWeek => global == Action::Help,
         };
-        goes_before.then_some(global)
+        takes_precedence.then_some(global)
     }
 
     /// Returns an action that works even while a dialog is open. Quitting and redrawing must always be possible.

@@ -95,9 +95,9 @@ impl App {
 
     /// Stops seeking. Returns whether the console was seeking.
     pub(super) fn stop_seeking(&mut self) -> bool {
-        let goes = self.busy.is_some();
+        let was_seeking = self.busy.is_some();
         match self.playback_mut() {
-            Some(viewer) if goes && viewer.is_seeking => {
+            Some(viewer) if was_seeking && viewer.is_seeking => {
                 viewer.stop_flag.store(true, Ordering::Relaxed);
                 true
             }

@@ -160,13 +160,13 @@ impl App {
     /// Updates screens and executes the effects that they return.
     fn update_screens(
         &mut self,
-        tell: impl FnOnce(&mut Screens, ScreenId, &ScreenContext<'_>) -> Vec<Effect>,
+        update: impl FnOnce(&mut Screens, ScreenId, &ScreenContext<'_>) -> Vec<Effect>,
     ) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
         let focus = run.screens.get(run.screen).focused_index();
-        let effects = tell(&mut run.screens, run.screen, &context);
+        let effects = update(&mut run.screens, run.screen, &context);
         // A zoomed pane keeps the focus, because the zoomed pane shows the answer.
         if run.zoomed && run.screens.get(run.screen).focused_index() != focus {
             run.screens.get_mut(run.screen).set_focus(focus);

@@ -13,10 +13,10 @@ const PARTICIPANT_REJECTION: &str = "not available in a study: only your own ses
 
 impl App {
     pub(super) fn start_study(&mut self, study: Box<Study>) {
-        let visit = StudyState::new(&study);
+        let study_state = StudyState::new(&study);
         self.code_check = study.code_check();
-        self.stage = Stage::Study(Box::new(StudyPage::loading_page(&visit.title)));
-        self.study = Some(visit);
+        self.stage = Stage::Study(Box::new(StudyPage::loading_page(&study_state.title)));
+        self.study = Some(study_state);
         self.send_study_request(StudyRequest::StartStudy(study));
     }
 
@@ -26,11 +26,11 @@ impl App {
 
     /// Rejects a request that participants must not send. Returns whether the request was rejected.
     pub(super) fn reject_for_participant(&mut self, request: &Request) -> bool {
-        let kept = self.study.is_some() && request.is_forbidden_for_participants();
-        if kept {
+        let is_rejected = self.study.is_some() && request.is_forbidden_for_participants();
+        if is_rejected {
             self.show_error(PARTICIPANT_REJECTION);
         }
-        kept
+        is_rejected
     }
 
     /// Returns whether a participant uses the console. Participants can open only their own session.
@@ -44,28 +44,28 @@ impl App {
 
     /// Returns whether the participant must answer questions before anything else.
     pub(super) fn has_due_questions(&self) -> bool {
-        self.study.as_ref().is_some_and(|visit| !visit.due_questions.is_empty())
+        self.study.as_ref().is_some_and(|study_state| !study_state.due_questions.is_empty())
     }
 
     pub(super) fn update_study_for_request(&mut self, request: &Request) {
-        let Some(visit) = &mut self.study else { return };
+        let Some(study_state) = &mut self.study else { return };
         match request {
             Request::Study(StudyRequest::SubmitAnswers(answers)) => {
-                visit.due_questions.retain(|due| answers.iter().all(|answer| answer.due != *due));
+                study_state.due_questions.retain(|due| answers.iter().all(|answer| answer.due != *due));
             }
-            Request::Study(StudyRequest::Play) => self.starts_tour = visit.has_tour(),
+            Request::Study(StudyRequest::Play) => self.starts_tour = study_state.has_tour(),
             _ => {}
         }
     }
 
     fn show_study_page(&mut self, page: impl FnOnce(&str) -> StudyPage) {
         self.close_layers();
-        let Some(visit) = &self.study else { return };
-        self.stage = Stage::Study(Box::new(page(&visit.title)));
+        let Some(study_state) = &self.study else { return };
+        self.stage = Stage::Study(Box::new(page(&study_state.title)));
     }
 
     pub(super) fn handle_study_response(&mut self, news: StudyResponse) {
-        let Some(visit) = &mut self.study else { return };
+        let Some(study_state) = &mut self.study else { return };
         match news {
             StudyResponse::Ready => self.show_study_page(StudyPage::label_page),
             StudyResponse::LabelRejected(problem) => {
@@ -74,8 +74,8 @@ impl App {
                 }
             }
             StudyResponse::Next(step) => {
-                visit.due_questions.clear();
-                visit.is_practice = matches!(step, NextStep::Practice { .. });
+                study_state.due_questions.clear();
+                study_state.is_practice = matches!(step, NextStep::Practice { .. });
                 let opens = matches!(step, NextStep::Questions(_));
                 self.show_study_page(|title| StudyPage::from_step(title, step));
                 if opens {
@@ -84,7 +84,7 @@ impl App {
             }
             StudyResponse::ConsentDeclined => self.show_study_page(StudyPage::declined_page),
             StudyResponse::QuestionsDue(due) | StudyResponse::AnswersRecorded(due) => {
-                visit.due_questions = due
+                study_state.due_questions = due
             }
             StudyResponse::CodeChecked(Some(true)) => {
                 self.study = None;
@@ -116,8 +116,8 @@ impl App {
     pub(super) fn continue_after_run(&mut self, problem: Option<String>) {
         let over = self.run().is_some_and(|run| !run.company.is_running());
         let answered = !self.has_due_questions();
-        let Some(visit) = &mut self.study else { return };
-        if std::mem::take(&mut visit.is_withdrawing) {
+        let Some(study_state) = &mut self.study else { return };
+        if std::mem::take(&mut study_state.is_withdrawing) {
             self.show_study_page(StudyPage::withdraw_page);
         } else if over && answered {
             self.show_study_page(StudyPage::loading_page);
@@ -131,14 +131,16 @@ impl App {
     }
 
     pub(super) fn leave_to_withdraw(&mut self) {
-        let Some(visit) = &mut self.study else { return self.show_error("this run is not part of a study") };
-        visit.is_withdrawing = true;
+        let Some(study_state) = &mut self.study else {
+            return self.show_error("this run is not part of a study");
+        };
+        study_state.is_withdrawing = true;
         self.exit_run(ExitTarget::Menu);
     }
 
     /// Shows due questions once no dialog covers the run. Closes the run after the run has ended.
     pub(super) fn show_due_questions(&mut self) {
-        let Some(visit) = &self.study else { return };
+        let Some(study_state) = &self.study else { return };
         let Stage::Run(run) = &self.stage else { return };
         if !self.layers.is_empty()
             || self.busy.is_some()
@@ -148,7 +150,7 @@ impl App {
             return;
         }
         let over = !run.company.is_running();
-        match QuestionPage::for_due_questions(&visit.due_questions) {
+        match QuestionPage::for_due_questions(&study_state.due_questions) {
             Some((page, effect)) => {
                 // The status message may name keys that do not work on study pages.
                 self.status = None;

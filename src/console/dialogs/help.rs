@@ -132,9 +132,9 @@ fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
     for (scope, name) in [(Scope::Playback, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
         if pane_scopes.contains(&scope) {
             // A form has the navigation of a list but cannot be filtered or sorted.
-            let idle =
+            let is_unusable =
                 |action: &Action| pane_scopes.contains(&Scope::Form) && FILTER_ACTIONS.contains(action);
-            let actions = scope_actions(scope).filter(|action| !idle(action)).collect();
+            let actions = scope_actions(scope).filter(|action| !is_unusable(action)).collect();
             parts.push(HelpSection { name, scopes: pane_scopes.clone(), actions });
         }
     }

@@ -177,7 +177,7 @@ pub trait Dialog {
     }
 
     /// Draws the dialog over the screen.
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, screen_context: &ScreenContext<'_>);
 }
 
 /// Draws a dialog over an empty screen and returns the drawn text.

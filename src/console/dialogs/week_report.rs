@@ -290,17 +290,17 @@ fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: SectionLines<'a>)
     std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
 }
 
-/// Describes a due forecast and the actual value in one or two lines. `of_limit` is true if the program submitted
+/// Describes a due forecast and the actual value in one or two lines. `is_from_time_limit` is true if the program submitted
 /// the forecast at the time limit.
 fn forecast_lines<'a>(
     canvas: &Canvas<'_>,
     due: &ScoredForecast,
-    of_limit: bool,
+    is_from_time_limit: bool,
     width: u16,
 ) -> SectionLines<'a> {
     let weeks = due.forecast.horizon_days / 7;
     let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
-    let who = match (of_limit, width) {
+    let who = match (is_from_time_limit, width) {
         (false, _) => "you",
         (true, 90..) => "the program, at the time limit,",
         (true, _) => "the program",
@@ -316,12 +316,13 @@ fn forecast_lines<'a>(
         Some(IntervalPosition::Below) => ("▼ actual below range", Role::Warning),
         None => ("open", Role::Dim),
     };
-    let miss = due.describe_error().map_or(String::new(), |miss| format!(", forecast {miss}"));
+    let error_text =
+        due.describe_error().map_or(String::new(), |error_text| format!(", forecast {error_text}"));
     // Rounded bounds could seem to contain the actual value, so exact amounts are used if they fit.
     let exact = format_forecast(dollars);
-    let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
+    let fits = exact.width() + verdict.width() + error_text.width() <= usize::from(width);
     let text = if fits { exact } else { format_forecast(short_dollars) };
-    let outcome = [canvas.span(verdict, role), canvas.span(miss, Role::Dim)];
+    let outcome = [canvas.span(verdict, role), canvas.span(error_text, Role::Dim)];
     let text_width = text.width();
     let text = canvas.span(text, Role::Dim);
     if text_width + outcome.iter().map(|span| span.content.width()).sum::<usize>() <= usize::from(width) {

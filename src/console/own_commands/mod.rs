@@ -283,21 +283,21 @@ fn read_action(entry: CommandEntry, library: &QueryLibrary) -> Result<OwnAction,
             if command.first().is_none_or(|program| program.trim().is_empty()) {
                 return Err("program is empty. Write the program and each argument as one text.".to_owned());
             }
-            let one_of = |value: Option<String>, key: &str, first: &str, second: &str| match value.as_deref()
-            {
-                None => Ok(false),
-                Some(value) if value == first => Ok(false),
-                Some(value) if value == second => Ok(true),
-                Some(value) => Err(format!("{key} is {value}. Set it to \"{first}\" or \"{second}\".")),
-            };
+            let is_second_choice =
+                |value: Option<String>, key: &str, first: &str, second: &str| match value.as_deref() {
+                    None => Ok(false),
+                    Some(value) if value == first => Ok(false),
+                    Some(value) if value == second => Ok(true),
+                    Some(value) => Err(format!("{key} is {value}. Set it to \"{first}\" or \"{second}\".")),
+                };
             let seconds = entry.timeout.unwrap_or(DEFAULT_TIMEOUT_SECONDS);
             if !(1..=MAX_TIMEOUT_SECONDS).contains(&seconds) {
                 return Err(format!("timeout is {seconds}. Set it to 1 to {MAX_TIMEOUT_SECONDS} seconds."));
             }
             Ok(OwnAction::Program(ExternalProgram {
                 command,
-                gets_all_rows: one_of(entry.rows, "rows", "selected", "all")?,
-                gets_json: one_of(entry.input, "input", "csv", "json")?,
+                gets_all_rows: is_second_choice(entry.rows, "rows", "selected", "all")?,
+                gets_json: is_second_choice(entry.input, "input", "csv", "json")?,
                 timeout: Duration::from_secs(seconds),
             }))
         }

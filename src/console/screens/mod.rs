@@ -21,22 +21,22 @@ use novamind_worker::screen_queries::Reading;
 
 /// Declares the module of each screen and the struct that holds all screens.
 macro_rules! screens {
-    ($($(#[$doc:meta])* $Screen:ident in $room:ident,)*) => {
-        $(pub mod $room;)*
+    ($($(#[$doc:meta])* $Screen:ident in $screen_module:ident,)*) => {
+        $(pub mod $screen_module;)*
 
         /// The state of all screens of a run.
         #[derive(Default)]
-        pub struct Screens { $($(#[$doc])* pub $room: $room::$Screen,)* }
+        pub struct Screens { $($(#[$doc])* pub $screen_module: $screen_module::$Screen,)* }
 
         impl Screens {
             /// Returns a screen.
             pub fn get(&self, id: ScreenId) -> &dyn Screen {
-                match id { $(ScreenId::$Screen => &self.$room,)* }
+                match id { $(ScreenId::$Screen => &self.$screen_module,)* }
             }
 
             /// Returns a mutable reference to a screen.
             pub fn get_mut(&mut self, id: ScreenId) -> &mut dyn Screen {
-                match id { $(ScreenId::$Screen => &mut self.$room,)* }
+                match id { $(ScreenId::$Screen => &mut self.$screen_module,)* }
             }
         }
     };
@@ -151,7 +151,7 @@ pub trait Screen: ScreenState {
     fn hints(&self) -> Vec<Action>;
 
     /// Returns the keys of all panes. The keys of the focused pane are first.
-    fn pane_keys(&self, look: &ScreenContext<'_>) -> Vec<PaneKeys>;
+    fn pane_keys(&self, screen_context: &ScreenContext<'_>) -> Vec<PaneKeys>;
 
     /// Returns the number of panes that can take the focus.
     fn pane_count(&self) -> usize;
@@ -170,10 +170,10 @@ pub trait Screen: ScreenState {
     fn row_counts(&self) -> Option<(usize, usize)>;
 
     /// Returns the selected figure, if a figure is selected.
-    fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure>;
+    fn figure(&self, screen_context: &ScreenContext<'_>) -> Option<Figure>;
 
     /// Returns the title of the focused pane and its table, if the pane has a table with several columns.
-    fn focused_table(&self, look: &ScreenContext<'_>) -> Option<(String, &Table)>;
+    fn focused_table(&self, screen_context: &ScreenContext<'_>) -> Option<(String, &Table)>;
 
     /// Arranges the columns of the focused table. Returns the name under which the layout is saved, or `None` if the
     /// layout applies only until the table is rebuilt.
@@ -186,23 +186,23 @@ pub trait Screen: ScreenState {
     fn list_rows(&self, all: bool) -> Option<ListRows>;
 
     /// Handles an action of one of the screen's scopes.
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect>;
+    fn handle_action(&mut self, action: Action, screen_context: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a key typed into a text field.
-    fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect>;
+    fn handle_key(&mut self, key: &KeyEvent, screen_context: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles text that is pasted into a field.
-    fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
+    fn paste(&mut self, text: &str, screen_context: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Returns the text of the focused pane that can be edited in another program, if any.
     fn editor_document(&self) -> Option<EditorDocument>;
 
     /// Replaces the text of the focused pane with the text that another program returned.
-    fn replace_document(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
+    fn replace_document(&mut self, text: &str, screen_context: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a click on a row. Clicking the selected row opens it.
-    fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect>;
+    fn handle_click(&mut self, pane: usize, row: usize, screen_context: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Draws the screen into an area.
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, screen_context: &ScreenContext<'_>);
 }

@@ -105,9 +105,9 @@ impl AnswerDraft {
             }
             false => form.parse_answer(&typed).map_err(|expected| format!("expected: {expected}"))?,
         };
-        let chosen_live = matches!(self.input, AnswerInput::Choice(_));
+        let is_single_choice = matches!(self.input, AnswerInput::Choice(_));
         let differs = self.confirmed_answer.as_ref().is_some_and(|before| *before != value);
-        self.changes += u32::from(differs && !chosen_live);
+        self.changes += u32::from(differs && !is_single_choice);
         self.confirmed_answer = Some(value);
         Ok(())
     }

@@ -332,11 +332,15 @@ impl Router<'_> {
             route.push(self.group(&[Action::Close], "all groups"));
         }
         route.extend(self.repeated(Action::FocusNext, customers.panes_to_list, "groups"));
-        let either = |count: isize, more, less| if count < 0 { less } else { more };
+        let action_for_sign = |count: isize, more, less| if count < 0 { less } else { more };
         let rows = customers.rows_to_example;
-        route.extend(self.repeated(either(rows, Action::Down, Action::Up), rows.unsigned_abs(), "group"));
+        route.extend(self.repeated(
+            action_for_sign(rows, Action::Down, Action::Up),
+            rows.unsigned_abs(),
+            "group",
+        ));
         let columns = customers.columns_to_cancellations;
-        let sideways = either(columns, Action::Right, Action::Left);
+        let sideways = action_for_sign(columns, Action::Right, Action::Left);
         route.extend(self.repeated(sideways, columns.unsigned_abs(), "column left"));
         route.push(self.group(&[Action::Why], "why"));
         route

@@ -55,11 +55,12 @@ impl ElementFailure {
     }
 }
 
-fn to_deal_results(fates: Vec<ElementOutcome>) -> DealResults {
+fn to_deal_results(outcomes: Vec<ElementOutcome>) -> DealResults {
     let unreadable = |fate: &ElementOutcome| {
         matches!(fate, ElementOutcome::Failed(ElementFailure { is_unreadable: true, .. }))
     };
-    let (first, rest): (Vec<ElementOutcome>, Vec<ElementOutcome>) = fates.into_iter().partition(unreadable);
+    let (first, rest): (Vec<ElementOutcome>, Vec<ElementOutcome>) =
+        outcomes.into_iter().partition(unreadable);
     DealResults { results: first.into_iter().chain(rest).map(to_deal_result).collect() }
 }
 
@@ -74,16 +75,16 @@ fn to_deal_result(fate: ElementOutcome) -> DealResult {
 
 /// Rejects a call if no element was sent. The rejection states why the first element was not sent, and contains the
 /// results of all elements.
-fn reject_if_all_failed(fates: Vec<ElementOutcome>) -> Result<DealResults, Rejection> {
-    let refused = match fates.first() {
+fn reject_if_all_failed(outcomes: Vec<ElementOutcome>) -> Result<DealResults, Rejection> {
+    let refused = match outcomes.first() {
         Some(ElementOutcome::Failed(first))
-            if fates.iter().all(|fate| matches!(fate, ElementOutcome::Failed(_))) =>
+            if outcomes.iter().all(|fate| matches!(fate, ElementOutcome::Failed(_))) =>
         {
             Some((*first.refusal).clone())
         }
         _ => None,
     };
-    let DealResults { results } = to_deal_results(fates);
+    let DealResults { results } = to_deal_results(outcomes);
     match refused {
         Some(refusal) => Err(Rejection { results, ..refusal }),
         None => Ok(DealResults { results }),

@@ -11,7 +11,7 @@ use super::parsing::{ElementError, parse_deal_customer};
 pub fn remap_customers(
     tool: ToolId,
     args: &Value,
-    stands_for: &mut dyn FnMut(u32) -> Option<u32>,
+    find_counterpart: &mut dyn FnMut(u32) -> Option<u32>,
 ) -> Option<Value> {
     let mut args = args.clone();
     if !matches!(tool, ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal) {
@@ -22,10 +22,10 @@ pub fn remap_customers(
     let is_left = match deals {
         Value::Array(list) => {
             let count = list.len();
-            list.retain_mut(|element| remap_element(element, stands_for));
+            list.retain_mut(|element| remap_element(element, find_counterpart));
             list.len() == count || !list.is_empty()
         }
-        single => remap_element(single, stands_for),
+        single => remap_element(single, find_counterpart),
     };
     is_left.then_some(args)
 }
@@ -41,7 +41,7 @@ pub fn highest_customer(tool: ToolId, args: &Value) -> Option<u32> {
 }
 
 /// Replaces the enterprise of an element. Returns false if the enterprise has no counterpart.
-fn remap_element(element: &mut Value, stands_for: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
+fn remap_element(element: &mut Value, find_counterpart: &mut dyn FnMut(u32) -> Option<u32>) -> bool {
     let named = match element {
         Value::Object(map) => map.get_mut("customer_id"),
         Value::Array(list) => list.first_mut(),
@@ -52,7 +52,7 @@ fn remap_element(element: &mut Value, stands_for: &mut dyn FnMut(u32) -> Option<
         Ok(number) => u32::try_from(number).ok(),
         Err(ElementError::Call(_) | ElementError::Element(_)) => None,
     };
-    match number.map(stands_for) {
+    match number.map(find_counterpart) {
         Some(Some(other)) => *named = other.into(),
         Some(None) => return false,
         None => {}

@@ -85,8 +85,8 @@ impl TestHost {
         }
         let spec = find(name).expect("the tool exists").spec();
         // Tests of the session cover these codes, because they need a database.
-        let by_session = ["script_failed", "script_timeout"];
-        for code in spec.rejection_codes.iter().filter(|code| !by_session.contains(code)) {
+        let codes_tested_by_session = ["script_failed", "script_timeout"];
+        for code in spec.rejection_codes.iter().filter(|code| !codes_tested_by_session.contains(code)) {
             assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");
         }
     }

@@ -278,7 +278,8 @@ impl Plot<'_> {
 
     fn draw_curves(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame) {
         let mut raster = Raster::new(canvas.marker, frame.area.width, frame.area.height);
-        let alone = |line: &Curve| line.points.iter().filter(|point| point.1.is_finite()).count() == 1;
+        let has_single_point =
+            |line: &Curve| line.points.iter().filter(|point| point.1.is_finite()).count() == 1;
         for line in self.curves.iter().filter(|line| !line.is_scatter) {
             let place = |point: &(f64, f64)| {
                 (PlotFrame::fraction(frame.x, point.0), PlotFrame::fraction(frame.y, point.1))
@@ -289,7 +290,7 @@ impl Plot<'_> {
         }
         raster.draw(canvas, frame.area);
         // A curve with a single value is drawn as a point.
-        for line in self.curves.iter().filter(|line| line.is_scatter || alone(line)) {
+        for line in self.curves.iter().filter(|line| line.is_scatter || has_single_point(line)) {
             for point in line.points.iter().filter(|point| point.1.is_finite()) {
                 let cell = Rect { x: frame.column(point.0), y: frame.row(point.1), width: 1, height: 1 };
                 canvas.draw_text(cell, "•", line.role);
@@ -299,14 +300,14 @@ impl Plot<'_> {
 
     /// Draws the names of curves next to their last points, in vertical order.
     fn draw_curve_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &PlotFrame) {
-        let of_line = |line: &Curve| {
+        let name_of_curve = |line: &Curve| {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
             Some((line.name, last.1, line.role))
         };
-        let of_band = |band: &Band| Some((band.name, band.bounds.last()?.2, Role::Text));
-        let lines = self.curves.iter().rev().filter_map(of_line);
+        let name_of_band = |band: &Band| Some((band.name, band.bounds.last()?.2, Role::Text));
+        let lines = self.curves.iter().rev().filter_map(name_of_curve);
         let mut names: Vec<(&str, f64, Role)> = lines
-            .chain(self.band.and_then(of_band))
+            .chain(self.band.and_then(name_of_band))
             .filter(|named_curve| !named_curve.0.is_empty())
             .collect();
         names.truncate(usize::from(place.height));

@@ -324,9 +324,10 @@ impl Table {
     fn update_visible_rows(&mut self) {
         let kept = self.selected();
         let wanted = self.filter.to_lowercase();
-        let holds = |row: &Vec<TableCell>| row.iter().any(|cell| cell.text.to_lowercase().contains(&wanted));
+        let contains_filter =
+            |row: &Vec<TableCell>| row.iter().any(|cell| cell.text.to_lowercase().contains(&wanted));
         self.visible_rows =
-            (0..self.rows.len()).filter(|at| wanted.is_empty() || holds(&self.rows[*at])).collect();
+            (0..self.rows.len()).filter(|at| wanted.is_empty() || contains_filter(&self.rows[*at])).collect();
         if let Some((column, order)) = self.sort_order {
             let rows = &self.rows;
             self.visible_rows.sort_by(|left, right| {

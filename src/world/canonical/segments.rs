@@ -31,26 +31,26 @@ impl<'a> HashSegment<'a> {
     }
 }
 
-/// Returns the hash of the concatenated bytes of `stretches`.
+/// Returns the hash of the concatenated bytes of `segments`.
 ///
 /// # Panics
 /// Panics if a segment feeds more or fewer bytes than its declared length.
-pub fn hash_segments(stretches: &[HashSegment<'_>]) -> blake3::Hash {
+pub fn hash_segments(segments: &[HashSegment<'_>]) -> blake3::Hash {
     let mut total = 0;
-    let begins: Vec<usize> = stretches
+    let begins: Vec<usize> = segments
         .iter()
-        .map(|stretch| {
-            total += stretch.length;
-            total - stretch.length
+        .map(|hash_segment| {
+            total += hash_segment.length;
+            total - hash_segment.length
         })
         .collect();
     let collect = |collector: &mut CanonicalHasher, from: usize, to: usize| -> Range<usize> {
         let first = begins.partition_point(|begin| *begin <= from).max(1) - 1;
         let last = begins.partition_point(|begin| *begin < to);
         collector.pending.clear();
-        for (stretch, begin) in stretches[first..last].iter().zip(&begins[first..last]) {
-            (stretch.feed)(collector);
-            let until = begin + stretch.length - begins[first];
+        for (hash_segment, begin) in segments[first..last].iter().zip(&begins[first..last]) {
+            (hash_segment.feed)(collector);
+            let until = begin + hash_segment.length - begins[first];
             assert_eq!(collector.pending.len(), until, "a segment has its declared length");
         }
         let skipped = from - begins.get(first).unwrap_or(&0);
@@ -123,9 +123,10 @@ mod tests {
                     (0..*length as u32).map(|at| (at.wrapping_mul(seed) >> 7) as u8).collect()
                 })
                 .collect();
-            let stretch = |text| HashSegment::new(Vec::len(text), move |hasher| hasher.append_bytes(text));
-            let stretches: Vec<HashSegment<'_>> = texts.iter().map(stretch).collect();
-            assert_eq!(hash_segments(&stretches), blake3::hash(&texts.concat()), "{count} stretches");
+            let hash_segment =
+                |text| HashSegment::new(Vec::len(text), move |hasher| hasher.append_bytes(text));
+            let segments: Vec<HashSegment<'_>> = texts.iter().map(hash_segment).collect();
+            assert_eq!(hash_segments(&segments), blake3::hash(&texts.concat()), "{count} stretches");
         }
     }
 
@@ -133,8 +134,8 @@ mod tests {
     fn hash_segments_handles_complete_subtrees() {
         for subtrees in 1..=9 {
             let text = vec![7u8; subtrees * SUBTREE_BYTES];
-            let stretches = [HashSegment::new(text.len(), |hasher| hasher.append_bytes(&text))];
-            assert_eq!(hash_segments(&stretches), blake3::hash(&text), "{subtrees} subtrees");
+            let segments = [HashSegment::new(text.len(), |hasher| hasher.append_bytes(&text))];
+            assert_eq!(hash_segments(&segments), blake3::hash(&text), "{subtrees} subtrees");
         }
     }
 }

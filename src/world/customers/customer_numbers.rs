@@ -10,7 +10,7 @@ use crate::identifiers::Group;
 /// The customer numbers that have been assigned, in order of arrival.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CustomerNumbers {
-    given: Vec<ArrivalRun>,
+    arrival_runs: Vec<ArrivalRun>,
 }
 
 /// Customers of one group who arrived on one day and have consecutive numbers.
@@ -29,7 +29,7 @@ pub struct ArrivalRun {
 }
 
 canonical! {
-    CustomerNumbers { given }
+    CustomerNumbers { arrival_runs }
     ArrivalRun { day, group, first_customer, first_n, count }
 }
 
@@ -54,7 +54,7 @@ impl CustomerNumbers {
     /// Appends an arrival run with the next customer numbers.
     pub(super) fn add(&mut self, run: ArrivalRun) {
         if run.count > 0 {
-            self.given.push(run);
+            self.arrival_runs.push(run);
         }
     }
 
@@ -72,14 +72,15 @@ impl CustomerNumbers {
     /// Returns the number of the customer with sequence number `n` in a group, or `None` if the customer has not
     /// arrived.
     pub fn customer_number(&self, group: Group, n: u32) -> Option<u32> {
-        let holds = |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
-        let run = self.given.iter().rev().find(holds)?;
+        let contains_customer =
+            |run: &&ArrivalRun| run.group == group && run.first_n <= n && n - run.first_n < run.count;
+        let run = self.arrival_runs.iter().rev().find(contains_customer)?;
         Some(run.first_customer + (n - run.first_n))
     }
 
     fn locate(&self, customer: u32) -> Option<(&ArrivalRun, u32)> {
-        let after = self.given.partition_point(|run| run.first_customer <= customer);
-        let run = self.given[..after].last()?;
+        let after = self.arrival_runs.partition_point(|run| run.first_customer <= customer);
+        let run = self.arrival_runs[..after].last()?;
         let offset = customer - run.first_customer;
         (offset < run.count).then_some((run, offset))
     }

@@ -211,21 +211,21 @@ impl Customers {
     /// make up most of the state.
     pub fn hash(&self) -> blake3::Hash {
         let Customers { groups, next_customer, next_subscription, numbers } = self;
-        let mut stretches = Vec::new();
+        let mut segments = Vec::new();
         for GroupCustomers { created, blocks } in &groups.0 {
-            stretches.push(HashSegment::new(size_of::<u32>() + size_of::<u64>(), |hasher| {
+            segments.push(HashSegment::new(size_of::<u32>() + size_of::<u64>(), |hasher| {
                 created.feed(hasher);
                 (blocks.len() as u64).feed(hasher);
             }));
             let block = |block| HashSegment::new(Block::canonical_length(block), |hasher| block.feed(hasher));
-            stretches.extend(blocks.iter().map(block));
+            segments.extend(blocks.iter().map(block));
         }
         let mut rest = CanonicalHasher::collector(0);
         (*next_customer, *next_subscription).feed(&mut rest);
         numbers.feed(&mut rest);
         let rest = rest.into_bytes();
-        stretches.push(HashSegment::new(rest.len(), move |hasher| hasher.append_bytes(&rest)));
-        hash_segments(&stretches)
+        segments.push(HashSegment::new(rest.len(), move |hasher| hasher.append_bytes(&rest)));
+        hash_segments(&segments)
     }
 
     /// Returns all non-empty blocks in group and block order.
@@ -242,10 +242,10 @@ impl Customers {
 /// Runs one job per block, on several threads if there are many blocks. Results keep the order of the jobs.
 fn run_in_parallel<J: Send, R: Send>(
     jobs: Vec<J>,
-    shares: WorkSplit,
+    work_split: WorkSplit,
     work: impl Fn(J) -> R + Sync,
 ) -> Vec<R> {
-    match shares {
+    match work_split {
         _ if jobs.len() < MIN_PARALLEL_BLOCKS => jobs.into_iter().map(work).collect(),
         WorkSplit::Small => jobs.into_par_iter().with_max_len(MAX_SMALL_SPLIT_BLOCKS).map(&work).collect(),
         WorkSplit::Large => jobs.into_par_iter().with_min_len(MIN_LARGE_SPLIT_BLOCKS).map(&work).collect(),

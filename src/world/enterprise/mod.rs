@@ -220,8 +220,8 @@ impl Enterprise {
     fn remove_finished(&mut self, is_over: impl Fn(&Thread) -> bool) {
         self.threads.retain(|thread| !is_over(thread));
         let still: BTreeSet<u32> = self.threads.iter().map(|thread| thread.customer).collect();
-        let gone = |company: &EnterpriseCustomer| matches!(company.status, EnterpriseStatus::Lost(_));
-        self.companies.retain(|company| !gone(company) || still.contains(&company.customer));
+        let is_lost = |company: &EnterpriseCustomer| matches!(company.status, EnterpriseStatus::Lost(_));
+        self.companies.retain(|company| !is_lost(company) || still.contains(&company.customer));
     }
 }
 

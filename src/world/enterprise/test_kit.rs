@@ -127,10 +127,14 @@ impl NegotiationKit {
 
     /// Runs `check` with the negotiation context of the day.
     pub fn with_negotiation<R>(&self, check: impl FnOnce(&NegotiationContext<'_>) -> R) -> R {
-        let law = (&self.params, &self.streams);
-        with_day_context(&self.morning, &self.settings, &ServiceDay::without_load(), law, |day| {
-            check(&NegotiationContext { day, product: &self.product, drift: &self.drift })
-        })
+        let params_and_streams = (&self.params, &self.streams);
+        with_day_context(
+            &self.morning,
+            &self.settings,
+            &ServiceDay::without_load(),
+            params_and_streams,
+            |day| check(&NegotiationContext { day, product: &self.product, drift: &self.drift }),
+        )
     }
 
     /// Runs the enterprise step of a day. Afterwards, the facts contain only that day.

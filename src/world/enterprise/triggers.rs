@@ -27,17 +27,17 @@ pub fn improvement(best: f64, present: f64, sales: &Sales) -> f64 {
 impl NegotiationStep<'_> {
     /// Opens threads for subscribers that had no thread this morning.
     pub(super) fn open_subscriber_threads(&mut self, busy: &BTreeSet<u32>) {
-        let mut wishes: Vec<(u32, u32, SubscriberRequest)> = Vec::new();
+        let mut requests: Vec<(u32, u32, SubscriberRequest)> = Vec::new();
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
             for at in (0..block.len()).filter(|at| !busy.contains(&block.customer[*at])) {
                 let row = block.row(at);
                 if let Some(subscriber_request) = self.context.subscriber_request(group, &row) {
-                    wishes.push((row.customer, row.seats as u32, subscriber_request));
+                    requests.push((row.customer, row.seats as u32, subscriber_request));
                 }
             }
         }
-        wishes.sort_by_key(|(customer, ..)| *customer);
-        for (customer, seats, request) in wishes {
+        requests.sort_by_key(|(customer, ..)| *customer);
+        for (customer, seats, request) in requests {
             self.start_thread(customer, seats, request);
         }
     }
@@ -170,17 +170,17 @@ mod tests {
     #[test]
     fn threat_depends_on_the_agreed_price() {
         let kit = kit_on_day(4);
-        let wish = |agreed: f64, charged: f64| {
+        let request_at_prices = |agreed: f64, charged: f64| {
             let row =
                 Subscriber { effective_price: charged, ..subscriber(&kit, Plan::B, agreed, 0.6, 5500.0) };
             kit.with_negotiation(|day| day.subscriber_request(kit.group, &row))
         };
         assert_eq!(
-            wish(45.0, 5.0),
+            request_at_prices(45.0, 5.0),
             Some(SubscriberRequest::Leave),
             "a discount does not change the surplus of a deal"
         );
-        assert_eq!(wish(30.0, 90.0), None, "the charged price does not count");
+        assert_eq!(request_at_prices(30.0, 90.0), None, "the charged price does not count");
     }
 
     #[test]

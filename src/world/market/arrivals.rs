@@ -96,17 +96,18 @@ pub fn process_arrivals(
     enterprise: &mut Enterprise,
     facts: &mut Facts,
 ) -> LeadCounts {
-    let mut party: Vec<ArrivalRun> = Vec::new();
+    let mut arrival_runs: Vec<ArrivalRun> = Vec::new();
     for group in Group::all() {
         let keys = [u64::from(arrivals.day.day()), group.index() as u64];
         let expected = factors[group].expected();
         let number = arrivals.day.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
-        party.extend(customers.record_arrival(arrivals.day.day(), group, number).split(LEADS_PER_BATCH));
+        arrival_runs
+            .extend(customers.record_arrival(arrivals.day.day(), group, number).split(LEADS_PER_BATCH));
     }
-    let leads_by_run: Vec<(ArrivalRun, Vec<Lead>)> = party
+    let leads_by_run: Vec<(ArrivalRun, Vec<Lead>)> = arrival_runs
         .into_par_iter()
         .with_max_len(1)
-        .map(|some| (some, evaluate_leads(arrivals, factors, &some)))
+        .map(|arrival_run| (arrival_run, evaluate_leads(arrivals, factors, &arrival_run)))
         .collect();
     let mut counts = LeadCounts::default();
     let first = customers.next_subscription;
@@ -130,17 +131,17 @@ const LEADS_PER_BATCH: u32 = 64;
 fn evaluate_leads(
     arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
-    some: &ArrivalRun,
+    arrival_run: &ArrivalRun,
 ) -> Vec<Lead> {
     let &ArrivalContext { day: &DayContext { params, streams, .. }, market } = arrivals;
-    let group = some.group;
+    let group = arrival_run.group;
     let offers = plan_offers(arrivals, group);
     let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
-    let keys: Vec<[u64; 2]> = some.numbers().map(|(n, _)| [group.index() as u64, n.into()]).collect();
+    let keys: Vec<[u64; 2]> = arrival_run.numbers().map(|(n, _)| [group.index() as u64, n.into()]).collect();
     let traits = streams.keys(Part::Traits, &keys);
     let sources = streams.first_words(Part::LeadSource, &keys);
     let noises = streams.first_words(Part::LeadNoise, &keys);
-    let draws = some.numbers().zip(traits).zip(sources.into_iter().zip(noises));
+    let draws = arrival_run.numbers().zip(traits).zip(sources.into_iter().zip(noises));
     draws
         .map(|(((_, customer), key), (source, noise))| {
             let traits = draw_traits_from_stream(Stream::from_key(key), group, velocity, params);

@@ -31,8 +31,8 @@ impl Market {
             let mut stream = streams.open(Part::MarketResearch, [u64::from(self.attempts)]);
             draw_attempt(&undiscovered, research.market_research_discover_prob, &mut stream)
         };
-        let given = params.replayed_series().and_then(|series| series.attempt(self.attempts));
-        let found = given.unwrap_or_else(drawn).filter(|group| undiscovered.contains(group));
+        let recorded_outcome = params.replayed_series().and_then(|series| series.attempt(self.attempts));
+        let found = recorded_outcome.unwrap_or_else(drawn).filter(|group| undiscovered.contains(group));
         Attempt { earlier: self.attempts, cost: research.discovery_cost_level_1, found }
     }
 

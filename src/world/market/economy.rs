@@ -122,13 +122,13 @@ pub fn index_on_day(day: u32, yesterday: f64, params: &Params, streams: &Streams
 pub fn step(
     day: u32,
     economy: &mut Economy,
-    held: bool,
+    is_fixed: bool,
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
 ) {
     let macro_economy = &params.economy;
-    if !held {
+    if !is_fixed {
         economy.pmi = index_on_day(day, economy.pmi, params, streams);
     }
     economy.started = true;

@@ -309,7 +309,7 @@ mod tests {
                 response_days: days,
             })
         };
-        for (id, level, values, cap, of_company) in [
+        for (id, level, values, cap, expected_enterprise) in [
             ("E1", 1, [19.62, 52.1, 0.736, 0.0516, 0.07558], 1471, company(25, 740, 6, 5.2)),
             ("E3", 3, [101.61, 114.4, 0.719, 0.0801, 0.03472], 116, company(247, 1963, 15, 22.1)),
         ] {
@@ -322,7 +322,7 @@ mod tests {
                 insights.lockin_aversion,
             ];
             assert_eq!((shown, insights.market_cap), (values, cap), "{id} at level {level}");
-            assert_eq!(insights.enterprise, of_company, "{id}");
+            assert_eq!(insights.enterprise, expected_enterprise, "{id}");
         }
         let ten = estimates("D_E10", 1, 0);
         assert_eq!((ten.willingness_to_pay, ten.usage_volume, ten.quality_floor), (53.07, 98.7, 0.55));

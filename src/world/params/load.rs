@@ -296,11 +296,12 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
                 (found.span(), value.into_inner())
             }
             DeValue::Array(values) => {
-                let called =
+                let has_name =
                     |value: &Spanned<DeValue<'_>>| entry_name(value.get_ref()).as_deref() == Some(part);
-                let of_group =
+                let group_position =
                     || Group::parse(part).map(Group::index).filter(|_| values.len() == Group::COUNT);
-                let at = values.iter().position(called).or_else(of_group).or_else(|| part.parse().ok())?;
+                let at =
+                    values.iter().position(has_name).or_else(group_position).or_else(|| part.parse().ok())?;
                 let value = values.into_iter().nth(at)?;
                 (value.span(), value.into_inner())
             }

@@ -16,8 +16,8 @@ pub(super) fn element_name(list: &[Value], at: usize) -> String {
         Value::Integer(number) => Some(number.to_string()),
         _ => None,
     });
-    let of_group = || Group::all().nth(at).filter(|_| is_by_group(list)).map(|group| group.id().to_owned());
-    text.or_else(of_group).unwrap_or_else(|| at.to_string())
+    let group_name = || Group::all().nth(at).filter(|_| is_by_group(list)).map(|group| group.id().to_owned());
+    text.or_else(group_name).unwrap_or_else(|| at.to_string())
 }
 
 /// Returns the index of a list element with a given name.
@@ -85,8 +85,8 @@ pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let all = keys(tables);
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
     let text = last(key);
-    let is_place = text.parse::<usize>().is_ok();
-    let ends_alike = |one: &&String| !is_place && last(one) == text;
+    let is_index = text.parse::<usize>().is_ok();
+    let ends_alike = |one: &&String| !is_index && last(one) == text;
     let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
     let near = match alike.is_empty() {
         // The user probably meant a key with the same last part, even if the distance is large.

@@ -14,7 +14,7 @@ use crate::settings::AdsStrength;
 pub struct AdLoad<'a> {
     setting: &'a AdsStrength,
     by_group: ByGroup<f64>,
-    personal: bool,
+    has_customer_settings: bool,
     params: &'a Params,
 }
 
@@ -24,7 +24,7 @@ impl<'a> AdLoad<'a> {
         AdLoad {
             setting,
             by_group: ByGroup::from_fn(|group| ads_effect(setting.for_group(group), &params.ads)),
-            personal: !setting.by_customer.is_empty(),
+            has_customer_settings: !setting.by_customer.is_empty(),
             params,
         }
     }
@@ -38,7 +38,11 @@ impl<'a> AdLoad<'a> {
     /// Returns the effective strength for satisfaction and revenue: global + group + customer.
     #[inline]
     pub fn for_customer(&self, group: Group, customer: u32) -> f64 {
-        if self.personal { self.for_single_customer(group, customer) } else { self.by_group[group] }
+        if self.has_customer_settings {
+            self.for_single_customer(group, customer)
+        } else {
+            self.by_group[group]
+        }
     }
 
     /// Returns the strength for a customer with an individual setting. A separate function keeps the common case fast.

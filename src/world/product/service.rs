@@ -65,8 +65,8 @@ pub fn compute_service(
     let load =
         fixed_service.map_or(total_usage, |held| (total_usage as f64 * held.load_factor).round() as u64);
     let overload = overload(load, f64::from(capacity_units), operations);
-    let luck_of = fixed_service.map_or(morning.day, |held| held.draw_day);
-    let mut stream = streams.open(Part::Service, [u64::from(luck_of)]);
+    let stream_day = fixed_service.map_or(morning.day, |held| held.draw_day);
+    let mut stream = streams.open(Part::Service, [u64::from(stream_day)]);
     let outage = stream.bernoulli(outage_probability(morning.core.operations, overload, operations));
     let downtime_minutes = if outage { draw_downtime_minutes(&mut stream, operations) } else { 0 };
     let service = ServiceDay {

@@ -57,9 +57,10 @@ pub fn collect_payments(
     for block_bills in late {
         let early =
             billed.next_if(|early| (early.group, early.number) == (block_bills.group, block_bills.number));
-        let of_block = || early.iter().chain([&block_bills]);
-        received += of_block().flat_map(|bills| &bills.payments).map(|payment| payment.amount).sum::<f64>();
-        for bills in of_block() {
+        let bills_of_block = || early.iter().chain([&block_bills]);
+        received +=
+            bills_of_block().flat_map(|bills| &bills.payments).map(|payment| payment.amount).sum::<f64>();
+        for bills in bills_of_block() {
             facts.payments.extend_from_slice(&bills.payments);
             facts.changes.extend_from_slice(&bills.changes);
         }

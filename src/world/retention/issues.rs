@@ -156,15 +156,15 @@ pub fn allocate_resolutions(
     calls: &mut [IssueBatch],
     settings: &Settings,
     customers: &Customers,
-    issue_desk: &mut IssueCounter,
+    issue_counter: &mut IssueCounter,
     day: &DayContext<'_>,
 ) {
     let &DayContext { params, streams, .. } = day;
     let day = day.day();
     ResolutionRound { day, calls, customers, params, streams }.resolve_all(settings);
     for issue_batch in calls {
-        issue_batch.first_issue = issue_desk.next_issue;
-        issue_desk.next_issue += issue_batch.new.len() as u32;
+        issue_batch.first_issue = issue_counter.next_issue;
+        issue_counter.next_issue += issue_batch.new.len() as u32;
     }
 }
 
@@ -315,15 +315,15 @@ mod tests {
         let (params, streams) = (Params::bundled(), Streams::new(4));
         let mut settings = Settings::initial(&params);
         settings.core.operations = operations;
-        let (mut facts, mut issue_desk) = (Facts::default(), IssueCounter { next_issue: 10_000 });
+        let (mut facts, mut issue_counter) = (Facts::default(), IssueCounter { next_issue: 10_000 });
         let quiet = ServiceDay::without_load();
         let settled = with_day_context(&morning(3), &settings, &quiet, (&params, &streams), |day| {
             let mut calls = customers.sweep(|group, number, block| find_issues(group, number, block, day));
-            allocate_resolutions(&mut calls, &settings, customers, &mut issue_desk, day);
+            allocate_resolutions(&mut calls, &settings, customers, &mut issue_counter, day);
             customers.sweep_with(calls, |_, _, block, issue_batch| update_issues(block, &issue_batch, day))
         });
         record_issues(settled, &mut facts);
-        (facts, issue_desk)
+        (facts, issue_counter)
     }
 
     #[test]
@@ -355,10 +355,10 @@ mod tests {
     fn new_issues_match_their_rate_and_are_numbered() {
         let mut customers = Customers::default();
         (1..=4000).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
-        let (facts, issue_desk) = run_day(&mut customers, 0.0);
+        let (facts, issue_counter) = run_day(&mut customers, 0.0);
         let opened = facts.issues_opened.len() as u32;
         assert!((270..410).contains(&opened), "binomial of 340: {opened}");
         assert!(!facts.issues_aged);
-        assert_eq!(issue_desk.next_issue, 10_000 + opened);
+        assert_eq!(issue_counter.next_issue, 10_000 + opened);
     }
 }

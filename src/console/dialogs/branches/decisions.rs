@@ -219,10 +219,10 @@ impl DecisionList {
             rows.extend(self.weeks_with_decisions(history).map(Row::Week));
         }
         let is_here = |listed: &ListedChange| listed.change.week(history) == self.week;
-        let free =
+        let has_own_row =
             |listed: &ListedChange| !matches!(listed.change, Change::Recorded { .. }) || !is_here(listed);
         let mut others: Vec<usize> =
-            (0..self.changes().len()).filter(|at| free(&self.changes()[*at])).collect();
+            (0..self.changes().len()).filter(|at| has_own_row(&self.changes()[*at])).collect();
         others.sort_by_key(|at| !is_here(&self.changes()[*at]));
         rows.extend(others.into_iter().map(Row::Change));
         rows.push(Row::Add);

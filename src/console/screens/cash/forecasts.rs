@@ -151,9 +151,9 @@ impl ForecastsState {
         match company.forecast_scores.get(self.horizon).filter(|score| score.scored > 0) {
             Some(score) if !company.shows_calibration() => vec![format!("{} came due", score.scored)],
             Some(score) => {
-                let (inside, miss) =
+                let (inside, forecast_error) =
                     (format!("{} of {} in range", score.covered, score.scored), percent(score.mean_error, 1));
-                vec![format!("{inside} · mean error {miss}"), format!("{inside} · error {miss}"), inside]
+                vec![format!("{inside} · mean error {forecast_error}"), format!("{inside} · error {forecast_error}"), inside]
             }
             None => vec!["no forecast due".to_owned()],
         }
@@ -188,9 +188,9 @@ impl ForecastsState {
 
 fn forecast_row(filed: &ScoredForecast) -> Vec<TableCell> {
     let amount = |value: f64| TableCell::from_number(value, short_dollars(value));
-    let (outcome, miss) = match (filed.outcome, filed.relative_error(), filed.describe_error()) {
-        (Some(outcome), Some(miss), Some(shown)) => {
-            (amount(outcome).with_role(Role::Strong), TableCell::from_number(miss, shown))
+    let (outcome, forecast_error) = match (filed.outcome, filed.relative_error(), filed.describe_error()) {
+        (Some(outcome), Some(forecast_error), Some(shown)) => {
+            (amount(outcome).with_role(Role::Strong), TableCell::from_number(forecast_error, shown))
         }
         _ => (TableCell::from_text("–").with_role(Role::Dim), TableCell::from_text("–").with_role(Role::Dim)),
     };
@@ -206,7 +206,7 @@ fn forecast_row(filed: &ScoredForecast) -> Vec<TableCell> {
         amount(filed.forecast.point),
         amount(filed.forecast.upper).with_role(Role::Dim),
         outcome,
-        miss,
+        forecast_error,
         verdict,
     ]
 }

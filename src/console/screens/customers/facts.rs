@@ -43,17 +43,17 @@ impl Pane<Customers> for FactsPane {
             return show_rows_effect(self.figure(customers, context));
         }
         let lines = self.lines(customers, context, 0);
-        let held: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].figure.is_some()).collect();
+        let selectable_lines: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].figure.is_some()).collect();
         let fact = &mut customers.group_state.fact_line;
-        let place = held.iter().position(|at| *at >= *fact).unwrap_or(0);
+        let place = selectable_lines.iter().position(|at| *at >= *fact).unwrap_or(0);
         let place = match action {
             Action::Up => place.saturating_sub(1),
-            Action::Down if held.get(place) == Some(fact) => place + 1,
+            Action::Down if selectable_lines.get(place) == Some(fact) => place + 1,
             Action::First => 0,
-            Action::Last => held.len(),
+            Action::Last => selectable_lines.len(),
             _ => place,
         };
-        *fact = held.get(place.min(held.len().saturating_sub(1))).copied().unwrap_or(0);
+        *fact = selectable_lines.get(place.min(selectable_lines.len().saturating_sub(1))).copied().unwrap_or(0);
         Vec::new()
     }
 
@@ -129,19 +129,19 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
         "SELECT customer_id, created_day, acquisition_source FROM customers\nWHERE group_id = '{group}' AND customer_type = \
          'large'\nORDER BY customer_id DESC"
     );
-    let of_group = format!("\nWHERE c.group_id = '{group}'");
+    let group_filter = format!("\nWHERE c.group_id = '{group}'");
     let mut lines = vec![heading_line("enterprises, whole run", String::new())];
     for (name, count, sql) in [
         ("arrived", funnel.enterprises, arrivals_sql.clone()),
         ("no suitable plan", funnel.lost_before_request(), arrivals_sql),
-        ("asked for an offer", funnel.requests, format!("{asked}{of_group}")),
+        ("asked for an offer", funnel.requests, format!("{asked}{group_filter}")),
         (
             "signed",
             funnel.deals,
             format!(
                 "SELECT c.customer_id, t.day, t.offer_json, t.seat_count\nFROM customers c\nJOIN enterprise_turns t ON \
                  t.customer_id = c.customer_id AND t.thread_type = 'new_lead' AND t.close_reason = 'accepted' AND t.sender = \
-                 'customer'{of_group}"
+                 'customer'{group_filter}"
             ),
         ),
     ] {

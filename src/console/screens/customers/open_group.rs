@@ -44,14 +44,14 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
         Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
     };
     let columns = |constraints: [Constraint; 3]| Layout::horizontal(constraints).areas::<3>(area);
-    let ways = ACTION_COUNT as u16 + 2;
+    let actions_height = ACTION_COUNT as u16 + 2;
     if area.width >= 150 && area.height >= 30 {
         let [left, middle, right] =
             columns([Constraint::Percentage(40), Constraint::Min(0), Constraint::Length(44)]);
         let [fit, weeks] = split(left, FIT_ROWS.min(area.height / 2));
         let [quality, rest] = split(middle, area.height / 3);
         let [cohorts, study] = split(rest, rest.height / 2);
-        let [facts, go] = split(right, area.height - ways);
+        let [facts, go] = split(right, area.height - actions_height);
         let upper = [(fit, Fit), (weeks, Weeks), (quality, Quality), (cohorts, Cohorts)];
         for (area, pane) in upper.into_iter().chain([(study, Study), (facts, Facts), (go, Actions)]) {
             draw_pane(customers, pane, canvas, area, context);
@@ -59,7 +59,7 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
     } else if area.width >= 104 && area.height >= 30 {
         let [left, _, right] = columns([Constraint::Min(0), Constraint::Length(0), Constraint::Length(44)]);
         let [above, below] = split(left, FIT_ROWS.min(area.height * 3 / 5));
-        let [facts, go] = split(right, area.height - ways);
+        let [facts, go] = split(right, area.height - actions_height);
         draw_stack(customers, &[Fit, Weeks], canvas, above, context);
         draw_stack(customers, &[Quality, Cohorts, Study], canvas, below, context);
         draw_pane(customers, Facts, canvas, facts, context);
@@ -72,7 +72,7 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
     } else {
         let [left, _, right] =
             columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
-        let [facts, go] = split(right, area.height.saturating_sub(ways));
+        let [facts, go] = split(right, area.height.saturating_sub(actions_height));
         draw_stack(customers, &[Fit, Quality, Weeks, Cohorts, Study], canvas, left, context);
         draw_pane(customers, Facts, canvas, facts, context);
         draw_pane(customers, Actions, canvas, go, context);

@@ -150,8 +150,8 @@ impl Inbox {
                 .cloned()
                 .or(self.last_offer.take());
         }
-        let of_done = self.threads.threads.iter().filter(|thread| done.contains(&thread.customer));
-        for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {
+        let processed_threads = self.threads.threads.iter().filter(|thread| done.contains(&thread.customer));
+        for number in processed_threads.map(|thread| thread.number).collect::<Vec<_>>() {
             self.marked.remove(&number);
             self.drafts.remove(&number);
         }

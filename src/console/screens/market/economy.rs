@@ -172,10 +172,10 @@ fn draw_curve(
     if lanes == 0 {
         return;
     }
-    let [published_row, rivals] = [0, 1].map(|lane| Rect { y: upper.bottom() + lane, height: 1, ..area });
+    let [published_row, competitor_row] = [0, 1].map(|lane| Rect { y: upper.bottom() + lane, height: 1, ..area });
     let names = Rect { width: plot.x - area.x, ..published_row };
     canvas.draw_text(names, "publ", Role::Dim);
-    canvas.draw_text(Rect { y: rivals.y, ..names }, "news", Role::Dim);
+    canvas.draw_text(Rect { y: competitor_row.y, ..names }, "news", Role::Dim);
     for measurement in view.economy {
         let (from, to) = (column(measurement.day), column(measurement.day + company.tool_limits.economy_lag_days));
         let role = if measurement.day == here.day { Role::Strong } else { Role::Series(0) };
@@ -193,12 +193,12 @@ fn draw_curve(
     let max = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
     for (x, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
         let level = (count * NEWS_SYMBOLS.len()).div_ceil(max) - 1;
-        canvas.draw_text(Rect { x, width: 1, ..rivals }, NEWS_SYMBOLS[level.min(NEWS_SYMBOLS.len() - 1)], Role::Series(1));
+        canvas.draw_text(Rect { x, width: 1, ..competitor_row }, NEWS_SYMBOLS[level.min(NEWS_SYMBOLS.len() - 1)], Role::Series(1));
     }
 }
 
-fn count_competitor_news(news: &[CompetitorNews], holds: impl Fn(u32) -> bool) -> usize {
-    news.iter().filter(|item| item.competitor.is_some() && holds(item.post.day)).count()
+fn count_competitor_news(news: &[CompetitorNews], is_in_column: impl Fn(u32) -> bool) -> usize {
+    news.iter().filter(|item| item.competitor.is_some() && is_in_column(item.post.day)).count()
 }
 
 /// Returns the area of the curve without the axes, which the chart has already drawn.

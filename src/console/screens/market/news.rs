@@ -25,8 +25,8 @@ pub struct CompetitorNews {
 pub fn competitor_news(company: &DisplayedCompany) -> Vec<CompetitorNews> {
     let press = company.posts.iter().filter(|post| post.kind == PostKind::Press);
     let item = |post: &Arc<Post>| {
-        let rival = company.tool_limits.competitors.iter().find(|name| post.text.contains(name.as_str()));
-        CompetitorNews { post: post.clone(), competitor: rival.cloned() }
+        let competitor_name = company.tool_limits.competitors.iter().find(|name| post.text.contains(name.as_str()));
+        CompetitorNews { post: post.clone(), competitor: competitor_name.cloned() }
     };
     press.map(item).collect()
 }

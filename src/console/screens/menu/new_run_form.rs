@@ -206,7 +206,7 @@ impl NewRunForm {
         let used = (FORM_ROWS.len() + gap + usize::from(inside.height > 10)) as u16;
         let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
         let mut lines: Vec<(String, Role)> = Vec::new();
-        let mut say = |text: &str, role: Role| {
+        let mut push_text = |text: &str, role: Role| {
             lines.extend(wrap(text, below.width.min(100) as usize).into_iter().map(|line| (line, role)));
         };
         let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
@@ -217,13 +217,13 @@ impl NewRunForm {
             false => (help, &*scenario),
         };
         match &self.rejection {
-            Some(problem) => say(&format!("! {problem}"), Role::Bad),
-            None => say(first, Role::Text),
+            Some(problem) => push_text(&format!("! {problem}"), Role::Bad),
+            None => push_text(first, Role::Text),
         }
         let mode = Mode::SELECTABLE[self.mode];
-        say("", Role::Dim);
-        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
-        say(last, Role::Text);
+        push_text("", Role::Dim);
+        push_text(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
+        push_text(last, Role::Text);
         for (row, (line, role)) in row_rects(below).zip(&lines) {
             canvas.draw_text(row, line, *role);
         }

@@ -219,19 +219,19 @@ impl StartMenu {
             MenuQuestion::OpenError(..) | MenuQuestion::Consent(..) => return None,
         };
         let run = self.runs().iter().find(|run| run.id == *id)?;
-        let stand = format!("day {} of {}, {}", run.day, run.days, dollars(run.cash));
+        let run_progress = format!("day {} of {}, {}", run.day, run.days, dollars(run.cash));
         let give_up = matches!(self.question, Some(MenuQuestion::EndRun(_)));
         Some(match give_up {
             true => (
                 "Give up",
                 format!(
-                    "Run {id} is at {stand}. Giving up ends the run for good, without a score. You can still open it and branch from it."
+                    "Run {id} is at {run_progress}. Giving up ends the run for good, without a score. You can still open it and branch from it."
                 ),
             ),
             false => (
                 "Delete",
                 format!(
-                    "Run {id} is at {stand}. Deleting the run permanently removes its record and everything in its folder."
+                    "Run {id} is at {run_progress}. Deleting the run permanently removes its record and everything in its folder."
                 ),
             ),
         })

@@ -25,17 +25,17 @@ pub fn used_and_set_tiers(company: &DisplayedCompany, days: &[ServiceDay]) -> (O
 }
 
 /// Returns one-line summaries of capacity, the longest first.
-fn summary(company: &DisplayedCompany, rungs: &[CapacityTier], days: &[ServiceDay]) -> Vec<String> {
+fn summary(company: &DisplayedCompany, all_tiers: &[CapacityTier], days: &[ServiceDay]) -> Vec<String> {
     let (_, set) = used_and_set_tiers(company, days);
-    let Some(rung) = rungs.iter().find(|rung| rung.tier == set) else { return Vec::new() };
-    let Some((mean, peak)) = last_week(days).filter(|_| rung.units > 0.0) else {
-        return vec![format!("tier {set} · {} units a day", compact_number(rung.units))];
+    let Some(tier_facts) = all_tiers.iter().find(|tier_facts| tier_facts.tier == set) else { return Vec::new() };
+    let Some((mean, peak)) = last_week(days).filter(|_| tier_facts.units > 0.0) else {
+        return vec![format!("tier {set} · {} units a day", compact_number(tier_facts.units))];
     };
-    let [mean, peak] = [mean, peak].map(|units| capacity_share(units, rung.units));
+    let [mean, peak] = [mean, peak].map(|units| capacity_share(units, tier_facts.units));
     let used = format!("tier {set} · used {mean}, peak {peak}");
     let coming = PeakProjection::from_weeks(&company.weeks).filter(|_| company.is_running());
     let Some(next) = coming else { return vec![used] };
-    let (growth, next) = (next.format_growth(), capacity_share(next.next_peak(), rung.units));
+    let (growth, next) = (next.format_growth(), capacity_share(next.next_peak(), tier_facts.units));
     vec![
         format!("{used} · next week {next} at last week's growth ({growth})"),
         format!("tier {set} · peak {peak} → {next} at last week's growth ({growth})"),
@@ -75,8 +75,8 @@ impl ProductPanel for CapacityPane {
     }
 
     fn open_effect(&self, product: &Product, _: &DisplayedCompany) -> Effect {
-        let rung = product.capacity_tiers.get(product.selected_row(self.id()));
-        prefill_tier_effect(ToolId::SetCapacityTier, rung.map(|rung| rung.tier))
+        let tier_facts = product.capacity_tiers.get(product.selected_row(self.id()));
+        prefill_tier_effect(ToolId::SetCapacityTier, tier_facts.map(|tier_facts| tier_facts.tier))
     }
 
     fn selected_figure(&self, product: &Product, company: &DisplayedCompany) -> Option<Figure> {
@@ -103,7 +103,7 @@ impl ProductPanel for CapacityPane {
 }
 
 fn draw_tiers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
-    let (area, rungs, days) = (placement.area, &product.capacity_tiers, &product.days);
+    let (area, all_tiers, days) = (placement.area, &product.capacity_tiers, &product.days);
     let selected = product.selected_row(ProductPane::Capacity);
     let head = format!("{:<6}{:>10}{:>10}{:>9}{:>9}{:>8}", "tier", "units/day", "$/day", "mean", "peak", "");
     canvas.draw_text(area, &head, Role::Header);
@@ -113,19 +113,19 @@ fn draw_tiers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlaceme
     if placement.focused {
         canvas.page_rows = below.height.max(1);
     }
-    let from = canvas.scroll_to_row(below, selected, rungs.len());
-    for (row, (at, rung)) in row_rects(below).zip(rungs.iter().enumerate().skip(from)) {
+    let from = canvas.scroll_to_row(below, selected, all_tiers.len());
+    for (row, (at, tier_facts)) in row_rects(below).zip(all_tiers.iter().enumerate().skip(from)) {
         let (mean, peak) = used.map_or(("–".to_owned(), "–".to_owned()), |(mean, peak)| {
-            (capacity_share(mean, rung.units), capacity_share(peak, rung.units))
+            (capacity_share(mean, tier_facts.units), capacity_share(peak, tier_facts.units))
         });
-        let mark = match rung.tier {
+        let mark = match tier_facts.tier {
             tier if Some(tier) == in_force && tier == set => "◆ now",
             tier if Some(tier) == in_force => "◆ until next day",
             tier if tier == set => "▸ set",
-            _ if used.is_some_and(|(_, peak)| peak > rung.units) => "! too small",
+            _ if used.is_some_and(|(_, peak)| peak > tier_facts.units) => "! too small",
             _ => "",
         };
-        let role = match (placement.focused && at == selected, rung.tier == set, mark.starts_with('!')) {
+        let role = match (placement.focused && at == selected, tier_facts.tier == set, mark.starts_with('!')) {
             (true, ..) => Role::Selection,
             (_, true, _) => Role::Strong,
             (_, _, true) => Role::Dim,
@@ -134,29 +134,29 @@ fn draw_tiers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlaceme
         canvas.clear(row, role);
         let text = format!(
             "{:<6}{:>10}{:>10}{mean:>9}{peak:>9}  {mark}",
-            rung.tier,
-            compact_number(rung.units),
-            dollars(rung.cost)
+            tier_facts.tier,
+            compact_number(tier_facts.units),
+            dollars(tier_facts.cost)
         );
         canvas.draw_text(row, &text, role);
         canvas.register_click(row, Click::Row(placement.index, at));
     }
 }
 
-fn draw_history(canvas: &mut Canvas<'_>, area: Rect, rungs: &[CapacityTier], days: &[ServiceDay]) {
+fn draw_history(canvas: &mut Canvas<'_>, area: Rect, all_tiers: &[CapacityTier], days: &[ServiceDay]) {
     let most = days.iter().map(|day| day.usage.max(day.capacity)).fold(0.0, f64::max);
     let (Some(first), Some(last)) = (days.first(), days.last()) else {
         return canvas.draw_text(area, canvas.empty_chart_text, Role::Dim);
     };
     let step = (f64::from(last.day - first.day) / 24.0).max(1.0);
-    let near = rungs.iter().filter(|rung| rung.units > most / 20.0 && rung.units <= most);
-    let dotted = |rung: &CapacityTier| {
+    let near = all_tiers.iter().filter(|tier_facts| tier_facts.units > most / 20.0 && tier_facts.units <= most);
+    let dotted = |tier_facts: &CapacityTier| {
         let days = (0..=24).map(|at| f64::from(first.day) + step * f64::from(at));
         let days = days.filter(|day| *day <= f64::from(last.day));
-        Curve { is_scatter: true, ..Curve::from_points(days.map(|day| (day, rung.units)).collect(), Role::Dim) }
+        Curve { is_scatter: true, ..Curve::from_points(days.map(|day| (day, tier_facts.units)).collect(), Role::Dim) }
     };
     let tiers: Vec<String> =
-        near.clone().map(|rung| format!("{} {}", rung.tier, compact_number(rung.units))).collect();
+        near.clone().map(|tier_facts| format!("{} {}", tier_facts.tier, compact_number(tier_facts.units))).collect();
     let words = format!("usage below capacity; dotted: tier {}", tiers.join(", "));
     let key = Rect { height: u16::from(area.height >= 8), ..area };
     canvas.draw_text(key, &words, Role::Dim);

@@ -139,8 +139,8 @@ impl ScreenState for Product {
         self.plans = model::plans(&self.sales, context.company);
         if !self.has_selected_current_tier {
             let (_, set) = capacity::used_and_set_tiers(context.company, &self.days);
-            let rung = self.capacity_tiers.iter().position(|rung| rung.tier == set);
-            *self.selected_row_mut(ProductPane::Capacity) = rung.unwrap_or(0);
+            let tier_index = self.capacity_tiers.iter().position(|tier_index| tier_index.tier == set);
+            *self.selected_row_mut(ProductPane::Capacity) = tier_index.unwrap_or(0);
             self.has_selected_current_tier = true;
         }
     }

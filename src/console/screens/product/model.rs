@@ -65,14 +65,14 @@ pub struct CapacityTier {
 
 /// Returns all capacity tiers, the smallest first.
 pub fn capacity_tiers(company: &DisplayedCompany) -> Vec<CapacityTier> {
-    let rung = |(tier, facts): (&u8, &CapacityTierFacts)| CapacityTier {
+    let capacity_tier = |(tier, facts): (&u8, &CapacityTierFacts)| CapacityTier {
         tier: u32::from(*tier),
         units: f64::from(facts.capacity_units),
         cost: f64::from(facts.cost_per_day),
     };
-    let mut ladder: Vec<CapacityTier> = company.price_list.capacity_tiers.iter().map(rung).collect();
-    ladder.sort_by_key(|rung| rung.tier);
-    ladder
+    let mut sorted_tiers: Vec<CapacityTier> = company.price_list.capacity_tiers.iter().map(capacity_tier).collect();
+    sorted_tiers.sort_by_key(|capacity_tier| capacity_tier.tier);
+    sorted_tiers
 }
 
 /// Usage, capacity and service quality on one day.

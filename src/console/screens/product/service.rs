@@ -97,12 +97,12 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[ServiceDay]) {
 
 fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together): &ServiceMeasure, days: &[ServiceDay]) {
     let values: Vec<f64> = days.iter().map(read).collect();
-    let of_days = |count: usize| match &values[values.len().saturating_sub(count)..] {
+    let aggregate_days = |count: usize| match &values[values.len().saturating_sub(count)..] {
         [] => "–".to_owned(),
         last => write(together(last)),
     };
     let last = values.last().map_or("–".to_owned(), |value| write(*value));
-    let text = format!("{name:<16}{last:>8}{:>9}{:>9}", of_days(7), of_days(28));
+    let text = format!("{name:<16}{last:>8}{:>9}{:>9}", aggregate_days(7), aggregate_days(28));
     canvas.draw_text(row, &text, Role::Text);
     if row.width > 44 {
         let room = row.width - 44;

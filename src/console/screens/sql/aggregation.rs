@@ -70,7 +70,7 @@ struct Subquery {
 }
 
 impl Subquery {
-    fn from_statement(sql: &str, columns: &[String], meant: &RowFilter) -> Option<Subquery> {
+    fn from_statement(sql: &str, columns: &[String], covered_rows: &RowFilter) -> Option<Subquery> {
         let body = strip_header(sql).trim().trim_end_matches(';').trim_end();
         let first = tokenize(body).into_iter().next()?;
         if body[first.range].eq_ignore_ascii_case("EXPLAIN") {
@@ -85,7 +85,7 @@ impl Subquery {
             given.extend(std::iter::once(first.clone()).chain(numbered).find(free));
         }
         let names: Vec<String> = given.iter().map(|name| quote_identifier(name)).collect();
-        let clause = meant.where_clause(&names);
+        let clause = covered_rows.where_clause(&names);
         // SQLite interprets an unknown quoted name as a string, so columns are renamed if their names are not plain
         // identifiers or not unique.
         Some(match given == columns && names == given {
@@ -119,22 +119,22 @@ fn sql_literal(cell: &Cell) -> Option<String> {
 }
 
 /// Returns a statement that counts the values of a column in the result of `sql`, the most frequent first.
-pub fn count_statement(sql: &str, columns: &[String], at: usize, meant: &RowFilter) -> Option<String> {
-    let source = Subquery::from_statement(sql, columns, meant)?;
+pub fn count_statement(sql: &str, columns: &[String], at: usize, covered_rows: &RowFilter) -> Option<String> {
+    let source = Subquery::from_statement(sql, columns, covered_rows)?;
     let name = source.names.get(at)?;
     Some(format!(
         "-- title: {} counted{}\n{}SELECT {name}, count(*) AS count,\n    \
          round(100.0 * count(*) / sum(count(*)) OVER (), 1) AS percent\nFROM {}\nGROUP BY 1\nORDER BY 2 DESC, 1",
         single_line(&columns[at]),
-        meant.label(),
+        covered_rows.label(),
         source.with,
         source.from
     ))
 }
 
 /// Returns a statement that pivots the rows of the result of `sql` that pass the row filter.
-pub fn pivot_statement(sql: &str, query_result: &QueryResult, shape: PivotShape, meant: &RowFilter) -> Option<String> {
-    let source = Subquery::from_statement(sql, &query_result.columns, meant)?;
+pub fn pivot_statement(sql: &str, query_result: &QueryResult, shape: PivotShape, covered_rows: &RowFilter) -> Option<String> {
+    let source = Subquery::from_statement(sql, &query_result.columns, covered_rows)?;
     let PivotShape { row_column: rows, header_column: across, value_column: values, aggregate } = shape;
     let name = |at: usize| source.names.get(at).map(String::as_str);
     let aggregated = aggregate.sql(values.and_then(name));
@@ -166,7 +166,7 @@ pub fn pivot_statement(sql: &str, query_result: &QueryResult, shape: PivotShape,
     Some(format!(
         "-- title: {}{}\n{}SELECT {}\nFROM {}\nGROUP BY 1\nORDER BY 1",
         pivot_title(query_result, shape),
-        meant.label(),
+        covered_rows.label(),
         source.with,
         cells.join(",\n    "),
         source.from

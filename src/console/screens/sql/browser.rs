@@ -60,15 +60,15 @@ impl TableBrowser {
     /// Returns the visible rows of the tree.
     fn visible_rows(&self) -> Vec<BrowserRow> {
         let wanted = self.filter.to_lowercase();
-        let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
+        let matches_filter = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
         let mut entries = Vec::new();
         let interface = self.interface;
         let count = tables(interface).len() + if self.shows_hidden { hidden_tables().len() } else { 0 };
         for (at, table) in (0..count).map(|at| (at, table_at(interface, at))) {
-            let found = |column: usize| !wanted.is_empty() && holds(&table.columns[column].name);
+            let found = |column: usize| !wanted.is_empty() && matches_filter(&table.columns[column].name);
             let columns = (0..table.columns.len()).filter(|number| self.open.contains(&at) || found(*number));
             let columns: Vec<usize> = columns.collect();
-            if holds(&table.name) || !columns.is_empty() {
+            if matches_filter(&table.name) || !columns.is_empty() {
                 entries.push(BrowserRow { interface, table: at, column: None });
                 entries.extend(columns.into_iter().map(|column| BrowserRow { interface, table: at, column: Some(column) }));
             }

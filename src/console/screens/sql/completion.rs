@@ -83,8 +83,8 @@ fn table_candidate(table: &Table) -> Candidate {
 /// Returns the columns of the table that has a name or alias in the statement, or a name in the database.
 fn source_candidates(name: &str, sources: &[NamedTable], interface: Interface) -> Option<Vec<Candidate>> {
     let named_source = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
-    let meant = named_source.or_else(|| table(interface, name))?;
-    Some(meant.columns.iter().map(|column| column_candidate(meant, column)).collect())
+    let source_table = named_source.or_else(|| table(interface, name))?;
+    Some(source_table.columns.iter().map(|column| column_candidate(source_table, column)).collect())
 }
 
 /// Returns the suggestions for a word that does not follow a period.

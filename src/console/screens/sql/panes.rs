@@ -265,19 +265,19 @@ impl Sql {
         let (Some(sql), Some((rows, at))) = (self.results.statement(), result_view.focused_column()) else {
             return complain(if result_view.is_rejected() { REJECTED_ERROR } else { NO_RESULT_ERROR });
         };
-        let meant = result_view.row_filter();
-        let warning = meant.warning().map(Effect::ShowStatus);
+        let covered_rows = result_view.row_filter();
+        let warning = covered_rows.warning().map(Effect::ShowStatus);
         if self.is_running() {
             return complain("A query is running. Cancel it with esc.");
         }
         if action == Action::Pivot {
-            match PivotForm::new(sql, result_view.filtered_rows(&meant), at, meant) {
+            match PivotForm::new(sql, result_view.filtered_rows(&covered_rows), at, covered_rows) {
                 Some(choice) => self.overlay = Some(SqlOverlay::Pivot(choice)),
                 None => return complain(NOT_A_TABLE_ERROR),
             }
             return warning.into_iter().collect();
         }
-        let Some(counting) = count_statement(sql, &rows.columns, at, &meant) else { return complain(NOT_A_TABLE_ERROR) };
+        let Some(counting) = count_statement(sql, &rows.columns, at, &covered_rows) else { return complain(NOT_A_TABLE_ERROR) };
         let mut effects = self.edit_and_run_derived(&counting);
         effects.extend(warning);
         effects

@@ -41,7 +41,7 @@ pub enum PivotResult {
 impl PivotForm {
     /// Returns the form for a pivot whose rows are the values of a column. Returns `None` if the statement cannot be
     /// pivoted.
-    pub fn new(sql: &str, query_result: QueryResult, rows: usize, meant: RowFilter) -> Option<PivotForm> {
+    pub fn new(sql: &str, query_result: QueryResult, rows: usize, covered_rows: RowFilter) -> Option<PivotForm> {
         let numeric: Vec<usize> =
             (0..query_result.columns.len()).filter(|at| *at != rows && is_numeric(&query_result, *at)).collect();
         let few = |at: &usize| {
@@ -55,8 +55,8 @@ impl PivotForm {
         let aggregate = if values.is_some() { Aggregate::Sum } else { Aggregate::Count };
         let shape = PivotShape { row_column: rows, header_column: across, value_column: values, aggregate };
         // The form is not opened if no statement can be derived.
-        pivot_statement(sql, &query_result, shape, &meant)?;
-        Some(PivotForm { sql: sql.to_owned(), filter: meant, rows: query_result, shape, numeric, line: 0 })
+        pivot_statement(sql, &query_result, shape, &covered_rows)?;
+        Some(PivotForm { sql: sql.to_owned(), filter: covered_rows, rows: query_result, shape, numeric, line: 0 })
     }
 
     pub fn handle_action(&mut self, action: Action) -> PivotResult {

@@ -118,9 +118,9 @@ impl ResultView {
     }
 
     /// Returns the loaded rows that pass a row filter.
-    pub fn filtered_rows(&self, meant: &RowFilter) -> QueryResult {
+    pub fn filtered_rows(&self, covered_rows: &RowFilter) -> QueryResult {
         let Some(all) = self.rows() else { return QueryResult::default() };
-        match (meant, self.visible_rows()) {
+        match (covered_rows, self.visible_rows()) {
             (RowFilter::Containing { .. }, Some(query_result)) => QueryResult { truncated: all.truncated, ..query_result },
             _ => all.clone(),
         }

@@ -123,8 +123,8 @@ pub(super) fn outcome_lines(
     }
     // The output of code has precedence over the call text.
     let answer = form.answer.as_ref().filter(|_| !form.sheet.is_changed() || form.spec.id.executes_code());
-    let is_said = answer.is_some() && form.spec.id.executes_code();
-    if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.changes_company()) {
+    let is_output_shown = answer.is_some() && form.spec.id.executes_code();
+    if !dense && !is_output_shown && (form.sheet.is_changed() || !form.spec.kind.changes_company()) {
         paragraph(&format!("≡ {}", form.call_text()), Role::Dim);
     }
     if let Some(words) = form.cell_names().and_then(|(channel, group)| tools.leads.pair_summary(channel, group)) {

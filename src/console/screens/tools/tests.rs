@@ -412,7 +412,7 @@ fn small_window_shows_all_values_and_plan_margins() {
 }
 
 #[test]
-fn form_of_prices_shows_the_curve_and_both_conversions_at_the_drafted_prices() {
+fn price_form_shows_the_curve_and_both_conversions_at_the_drafted_prices() {
     use novamind_insight::CurveExplorer;
     use novamind_worker::page_questions::EstimatedCurveQuestion;
 

@@ -93,9 +93,9 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> InspectionC
     if !xray.can_inspect {
         return InspectionContent::Sentence(capitalize(INSPECTION_REJECTED) + ".", Role::Dim);
     }
-    let is_of_words = xray.view() == XrayView::Commands;
+    let is_command_view = xray.view() == XrayView::Commands;
     let wanted = xray.current_question();
-    let seen = match is_of_words {
+    let seen = match is_command_view {
         true => xray.command_output.as_ref().filter(|_| xray.pending_command().is_none()),
         false => xray.inspection.as_ref().filter(|seen| Some(&seen.question) == wanted.as_ref()),
     };
@@ -103,8 +103,8 @@ fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> InspectionC
         Some(Ok(found)) => InspectionContent::Found(found),
         Some(Err(problem)) => sentence(problem, Role::Bad),
         None if wanted.is_some() => sentence("re-simulating …", Role::Dim),
-        None if is_of_words && xray.pending_command().is_some() => sentence("re-simulating …", Role::Dim),
-        None if is_of_words => {
+        None if is_command_view && xray.pending_command().is_some() => sentence("re-simulating …", Role::Dim),
+        None if is_command_view => {
             let text = format!(
                 "Press {} and type a plain-mode command, for example find churn(S1) > 5% over 7, who cash 84, diff 83 84, \
                  or set group.S1.c_max_mean 300 from 30 in a debug run",

@@ -35,10 +35,10 @@ pub fn competitor_engagement(
         Severity::Transformative => competitor.competitor_post_base_views_transformative,
     };
     let views = (f64::from(base) * (1.0 + views)).trunc();
-    let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
+    let count_from_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
     Engagement {
-        likes: of_views(competitor.competitor_post_likes_ratio, likes),
-        shares: of_views(competitor.competitor_post_shares_ratio, shares),
+        likes: count_from_views(competitor.competitor_post_likes_ratio, likes),
+        shares: count_from_views(competitor.competitor_post_shares_ratio, shares),
         virality: 0.0,
     }
 }
@@ -81,10 +81,10 @@ pub fn economy_tone(trend: Trend) -> Sentiment {
 /// Returns the engagement of a post about the economy.
 pub fn economy_engagement([views, likes, shares]: [f64; 3], economy: &MacroEconomy) -> Engagement {
     let views = (economy.macro_post_views_base * (1.0 + views)).trunc();
-    let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
+    let count_from_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
     Engagement {
-        likes: of_views(economy.macro_post_likes_ratio, likes),
-        shares: of_views(economy.macro_post_shares_ratio, shares),
+        likes: count_from_views(economy.macro_post_likes_ratio, likes),
+        shares: count_from_views(economy.macro_post_shares_ratio, shares),
         virality: 0.0,
     }
 }

@@ -65,10 +65,10 @@ fn apply_post_reactions(
     for &(group, effect) in &verdict.effects {
         effects[group] = effect;
         let keys = [u64::from(verdict.post), group.index() as u64];
-        let luck = streams
+        let noise_factor = streams
             .open(Part::CeoViews, keys)
             .log_normal(posts.views_noise_lognormal_mu, posts.views_noise_lognormal_sigma);
-        views += (expected_views(effect, subscribers[group], posts) * luck) as u64;
+        views += (expected_views(effect, subscribers[group], posts) * noise_factor) as u64;
         if effect.abs() >= posts.viral_threshold {
             let mut stream = streams.open(Part::CeoReply, keys);
             let author = pick_author(group, customers, params, streams, &mut stream);

@@ -75,7 +75,7 @@ impl ClassPage {
         if let Some(row) = rows.next() {
             draw_cells(canvas, row, ["", "student", score, "goals", "tries", "hints"], is_wide, Role::Header);
         }
-        let lit = self.highlighted_index(ranking);
+        let highlighted = self.highlighted_index(ranking);
         let measure = wrap(&format!("by {}", view.describe_measure()), inside.width as usize);
         // The figure that determines the ranking is named below the list if there are enough rows.
         let room = inside.height.saturating_sub(1);
@@ -84,9 +84,9 @@ impl ClassPage {
         let shown = (room - for_measure) as usize;
         canvas.page_rows = shown as u16;
         let list = Rect { height: shown as u16, ..inside };
-        let from = canvas.scroll_to_row(list, lit.unwrap_or(0), ranking.len());
+        let from = canvas.scroll_to_row(list, highlighted.unwrap_or(0), ranking.len());
         for (row, (at, student)) in rows.take(shown).zip(ranking.iter().enumerate().skip(from)) {
-            let here = lit == Some(at);
+            let here = highlighted == Some(at);
             if here {
                 canvas.clear(row, Role::Selection);
             }
@@ -126,9 +126,9 @@ impl ClassPage {
         ranking: &[RankedStudent<'_>],
         sign: &str,
     ) -> String {
-        let lit = self.highlighted_index(ranking).map(|at| format!("{} {sign}", ranking[at].name));
+        let highlighted = self.highlighted_index(ranking).map(|at| format!("{} {sign}", ranking[at].name));
         let part = view.part_title(self.part).map(str::to_owned);
-        part.into_iter().chain(lit).collect::<Vec<_>>().join(" · ")
+        part.into_iter().chain(highlighted).collect::<Vec<_>>().join(" · ")
     }
 
     fn draw_curves(
@@ -184,13 +184,16 @@ impl ClassPage {
         units: (&dyn Fn(f64) -> String, AxisUnit),
         diagonal: Option<[(f64, f64); 2]>,
     ) {
-        let lit = |student_points: &&StudentPoints<'_>| {
+        let highlighted = |student_points: &&StudentPoints<'_>| {
             student_points.label == self.shown.highlighted_student.as_deref()
         };
-        let others =
-            points.iter().filter(|series| !lit(series)).flat_map(|series| series.points.clone()).collect();
+        let others = points
+            .iter()
+            .filter(|series| !highlighted(series))
+            .flat_map(|series| series.points.clone())
+            .collect();
         let mine: Vec<(f64, f64)> =
-            points.iter().filter(lit).flat_map(|series| series.points.clone()).collect();
+            points.iter().filter(highlighted).flat_map(|series| series.points.clone()).collect();
         let scattered = |points, role| Curve { is_scatter: true, ..Curve::from_points(points, role) };
         let mut lines = vec![scattered(others, Role::Text), scattered(mine.clone(), Role::Series(0))];
         lines.extend(diagonal.map(|ends| Curve::from_points(ends.to_vec(), Role::Dim)));

@@ -124,7 +124,8 @@ impl Session {
         Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
-    /// Creates a run like [`Session::create`], and calls `tell` for each day that is simulated at the start of a lesson.
+    /// Creates a run like [`Session::create`], and calls `progress` for each day that is simulated at the start of a
+    /// lesson.
     ///
     /// # Errors
     /// The same errors as [`Session::create`].

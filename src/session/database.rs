@@ -33,7 +33,7 @@ impl RunDatabase {
         RunDatabase { projector, ..RunDatabase::default() }
     }
 
-    /// Opens the database file of an ended run that follows the interface of a release.
+    /// Opens the database file of an ended run. `interface` is the interface of the release that the tables follow.
     pub(crate) fn from_file(location: DatabaseLocation, interface: Interface) -> RunDatabase {
         RunDatabase { finished_file: Some((location, interface)), ..RunDatabase::default() }
     }

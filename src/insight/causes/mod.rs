@@ -2,11 +2,10 @@
 //!
 //! A cause is a difference from the previous week. Causes are the settings and calls of the player, by tool, and the
 //! world inputs that the company does not control. The contribution of a cause is its Shapley value. World inputs are
-//! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs.
-//! The contribution of a single change is therefore exactly the difference to a branch without the change.
-//! Settings and market moves that continue from the previous week are causes as well (`continued.rs`).
-//! The residual has two sources: other customers have their billing day in the explained week, and every day has new
-//! random draws.
+//! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs. The
+//! contribution of a single change is therefore exactly the difference from a branch without the change. Settings and
+//! market moves that continue from the previous week are causes as well (`continued.rs`). The residual has two sources:
+//! other customers have their billing day in the explained week, and every day has new random draws.
 
 mod attribution;
 mod cause;

@@ -143,12 +143,12 @@ impl WeekResimulation {
         self.simulated_weeks.len() - 1 + WEEKS_PER_CONTINUED_SET * self.continued_weeks.len()
     }
 
-    /// Returns the figures of the week without the excluded causes, which must be simulated already.
+    /// Returns the figures of the week without the excluded causes. This simulation must have been run already.
     pub(super) fn week_without(&self, without: ExcludedCauses) -> &SimulatedWeek {
         &self.simulated_weeks[&without]
     }
 
-    /// Simulates the week for each set of causes without a cached result. Returns `None` if `progress` stopped the
+    /// Simulates the week for each set of causes that has no cached result. Returns `None` if `progress` stopped the
     /// simulation.
     pub(super) fn simulate_missing(
         &mut self,

@@ -85,8 +85,8 @@ impl RecordedDecision {
         }
     }
 
-    /// Describes the status of the decision: rejected, undo, redo, or the first day of a parameter. Returns an empty
-    /// string for other decisions.
+    /// Describes the status of the decision: rejected, undo, redo, or the first day on which a parameter change
+    /// applies. Returns an empty string for other decisions.
     pub fn describe_status(&self) -> String {
         match self {
             RecordedDecision::Call(RecordedCall { accepted: false, .. }) => "rejected".to_owned(),

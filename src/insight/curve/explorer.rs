@@ -46,7 +46,7 @@ pub struct PlanPoint {
     pub list_price: f64,
     /// Delivered quality of the plan.
     pub quality: f64,
-    /// Quota, units per day; infinite without a quota.
+    /// Quota, units per day; infinite if the plan has no quota.
     pub quota: f64,
 }
 

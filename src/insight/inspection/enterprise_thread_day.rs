@@ -57,7 +57,7 @@ pub struct EnterpriseThreadDay {
     pub reply_day: Option<u32>,
     /// The player's newest offers; empty on the player's turn.
     pub offerings: Vec<Offering>,
-    /// The answer that the enterprise would give today; `None` without offers.
+    /// The answer that the enterprise would give today; `None` if there are no offers.
     pub answer: Option<OfferResponse>,
 }
 

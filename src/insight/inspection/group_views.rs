@@ -73,7 +73,7 @@ impl Inspector<'_> {
             .map(|seen| ReputationEquation::new(group, day, &seen.reputation, recent_days))
     }
 
-    /// Returns a group's values at the end of a day and of up to 27 days before.
+    /// Returns a group's values at the end of a day and of up to 27 earlier days.
     fn values_of_recent_days<T>(
         &mut self,
         permit: &InspectionPermit,

@@ -196,7 +196,7 @@ impl DecisionEdit {
         Ok(())
     }
 
-    /// Adds the edit to a rejection of its arguments, because a branch can have several edits.
+    /// Adds the edit to the message of a rejection, because a branch can have several edits.
     fn name_in(&self, refusal: Rejection) -> Rejection {
         match self {
             DecisionEdit::Change { .. } | DecisionEdit::Add { .. } if refusal.code != "line_unknown" => {
@@ -292,7 +292,7 @@ fn check_number_ranges(spec: &ToolSpec, arguments: &Arguments) -> Result<(), Rej
     Ok(())
 }
 
-/// Multiplies the current settings with calls that precede all others, and multiplies the numbers in recorded calls.
+/// Scales the current settings by adding calls that precede all others, and scales the numbers in recorded calls.
 fn scale_settings(
     tool: ToolId,
     factor: f64,

@@ -21,7 +21,7 @@ pub struct DecisionHistory {
 }
 
 impl DecisionHistory {
-    /// Returns the history of decisions that changed initial settings.
+    /// Creates the history of decisions. `settings` contains the settings before the first decision.
     pub fn new(decisions: Vec<RecordedDecision>, settings: &Settings, days_per_week: u32) -> DecisionHistory {
         let initial = ToolId::all().map(|tool| (tool, tool.tool().current_arguments(settings))).collect();
         let mut undone_lines = BTreeSet::new();

@@ -114,12 +114,12 @@ fn lesson_capacity_rule_applies_in_every_branch() {
         is_distinguished |= other.company().capacity_tier_by_rule(UsageCapacityRule::BusiestDay)
             != other.company().capacity_tier_by_rule(UsageCapacityRule::StepByStep);
     }
-    assert!(is_distinguished, "another rule would lead elsewhere");
+    assert!(is_distinguished, "the capacity rule must affect the result");
     let tier = |session: &Session| session.settings().core.capacity_tier;
-    assert!(tier(&other) > tier(&session), "the lesson rents more where more is used");
+    assert!(tier(&other) > tier(&session), "more usage leads to a higher capacity tier");
     let [was, decided] = &ahead.branches[..] else { panic!("{:?}", ahead.branches) };
-    assert_eq!(cash_of_branch(was), weekly_cash(&session), "weeks that are still to come go as they do");
-    assert_eq!(cash_of_branch(decided), weekly_cash(&other), "and so does what is decided otherwise");
+    assert_eq!(cash_of_branch(was), weekly_cash(&session), "the unchanged branch equals the weeks that were played later");
+    assert_eq!(cash_of_branch(decided), weekly_cash(&other), "the edited branch equals the run with this decision");
     let adopted = create_branch_with_decisions(
         &session,
         1,

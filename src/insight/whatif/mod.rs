@@ -53,7 +53,7 @@ use novamind_world::events::DayFigures;
 pub const MAX_ALTERNATIVES: usize = 3;
 /// Minimum number of simulated weeks, unless the run ends earlier.
 const MIN_WEEKS: u32 = 12;
-/// Number of weeks before the start of the branches that figures over several days include.
+/// Number of weeks before the start of the branches that are simulated for figures over several days.
 const LOOKBACK_WEEKS: u32 = 5;
 
 /// A callback that receives the number of simulated days and the total, and can stop the simulation.

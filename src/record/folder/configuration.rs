@@ -287,7 +287,7 @@ impl Configuration {
         Ok(source.map(|source| ConsentText { file: source.name, text: source.text }))
     }
 
-    /// Returns the path of a user lesson, or `None` without a configuration folder.
+    /// Returns the path of a user lesson, or `None` if there is no configuration folder.
     pub fn user_lesson_file(&self, name: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join("lessons").join(format!("{name}.toml")))
     }

@@ -9,7 +9,7 @@ use std::path::Path;
 use super::medium::Medium;
 use super::writer::Durability;
 
-/// A file that consists of `synced` bytes, which survive a power cut, and the bytes of `unsynced`.
+/// A file that consists of `synced` bytes, which survive a power cut, and the bytes in `unsynced`.
 pub(super) struct SyncedFile {
     medium: Box<dyn Medium>,
     /// Length of the prefix that a successful sync covers.

@@ -43,8 +43,8 @@ impl Export {
     /// should be on the same disk as the archive. `key` is the seal key of the run's snapshots.
     ///
     /// # Errors
-    /// [`RunError::Damaged`] if the run is damaged; names the file, the line and the data that is safe. Other errors
-    /// if the run was recorded with another version, or if `parent` cannot be written.
+    /// [`RunError::Damaged`] if the run is damaged; the error names the file, the line and the data that is safe. Other
+    /// errors if the run was recorded with another version, or if `parent` cannot be written.
     pub fn prepare(folder: &Path, parent: &Path, key: &SealKey) -> Result<Export, RunError> {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();

@@ -73,7 +73,7 @@ impl IdempotentResponses {
         }
     }
 
-    /// Returns the stored response to the request with an id, or `None` if no request has the id.
+    /// Returns the stored response to the request with this id, or `None` if no request has the id.
     pub(crate) fn find_by_id(&self, id: &str) -> Option<&IdempotentResponse> {
         self.by_id.get(id).map(|(_, response)| response)
     }

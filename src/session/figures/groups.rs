@@ -143,14 +143,14 @@ pub(crate) fn finish_week(
     }
 }
 
-/// Subscriptions of a plan that could use the product on the last day, and what they pay.
+/// The subscriptions of a plan that could use the product on the last day, and their revenue.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanRevenue {
     /// Number of subscriptions.
     pub subscriptions: u32,
     /// Number of whole seats of the subscriptions.
     pub seats: f64,
-    /// Revenue of the subscriptions, dollars a month.
+    /// Revenue of the subscriptions, dollars per month.
     pub monthly: f64,
 }
 

@@ -205,8 +205,8 @@ pub struct ObservedDays<'a> {
 
 impl ObservedDays<'_> {
     /// Simulates at least one day of a debug run and passes the days to the observer. Each inspection is recorded on
-    /// the last day, because even the decision to continue or stop reveals hidden state. Without inspections, the
-    /// observer does not receive any days.
+    /// the last day, because even the decision to continue or stop reveals hidden state. If there are no inspections,
+    /// the observer does not receive any days.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have been simulated.

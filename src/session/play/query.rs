@@ -42,7 +42,7 @@ impl Session {
         Ok(self.up_to_date_database()?.interrupt_handle()?.issue_ticket())
     }
 
-    /// Runs an SQL statement with these limits without recording the query.
+    /// Runs an SQL statement with these limits. Does not record the query.
     ///
     /// # Errors
     /// A rejection whose code begins with `sql_`.

@@ -125,7 +125,7 @@ impl<'a> ActivityLog<'a> {
         self.log.clock.is_stopped_by_limit &= event != ClockEvent::Started;
     }
 
-    /// Returns the time limits that are near or reached and not reported yet. Records each limit event once.
+    /// Returns the time limits that are near or reached but have not been reported yet. Records each limit event once.
     pub fn check_limits(&mut self) -> Vec<Limit> {
         if self.is_over || self.log.is_clock_stopped() {
             return Vec::new();

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use novamind_record::clock::scripted_monotonic_time;
 
-/// Pseudonyms of the machine. Records from the same machine have the same values, which do not identify the machine.
+/// Pseudonyms of a machine. All records from the machine have the same values, but the values do not reveal which
+/// machine it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     /// Pseudonym of the machine: 16 hexadecimal digits.

@@ -21,8 +21,8 @@ pub(crate) const AFTERWARDS_FILE: &str = "afterwards.jsonl";
 /// The state for writing the record of a run. A read-only run has no recorder.
 pub(crate) struct Recorder {
     trajectory: TrajectoryWriter,
-    /// Durability of the line of an accepted call. The line is synced before the call is confirmed, or in headless
-    /// runs together with the week.
+    /// Durability of the line of an accepted call. The line is synced before the call is confirmed. In headless runs,
+    /// it is synced together with the week.
     call_durability: Durability,
     /// Folder of the run; `None` for a run in memory.
     folder: Option<PathBuf>,
@@ -149,7 +149,7 @@ impl Recorder {
         self.trajectory.sync_written()
     }
 
-    /// Returns why no more lines can be saved, after the recorder has detected the problem.
+    /// Returns the reason why no more lines can be saved, or `None` if the recorder has not detected a problem.
     pub(crate) fn loss_reason(&self) -> Option<&str> {
         self.trajectory.loss_reason()
     }

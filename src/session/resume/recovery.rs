@@ -37,7 +37,7 @@ pub fn recover(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
     recover_prefix(folder, key).map_err(without_recovery_hint)
 }
 
-/// Removes the advice to recover the run, which has just failed.
+/// Removes the hint to recover the run, because the recovery has just failed.
 fn without_recovery_hint(error: RunError) -> RunError {
     match error {
         RunError::Damaged { path, line, problem, remedy } => {

@@ -10,23 +10,26 @@ use novamind_world::events::Category;
 
 /// Share of the growth rate of sign-ups that remains after a day: 75 % after a week.
 const GROWTH_KEPT_PER_DAY: f64 = 0.959_74;
-/// Limits of the growth rate of sign-ups per week, as a logarithm.
+/// Lower and upper limit of the weekly growth rate of sign-ups, as logarithms.
 const GROWTH_LIMITS: [f64; 2] = [-0.4, 0.15];
-/// Rate at which sign-ups decrease without a trend, per week. Competitors and saturation reduce the sign-ups of most
-/// companies.
+/// Rate at which sign-ups decrease per week if they have no trend. Competitors and saturation reduce the sign-ups of
+/// most companies.
 const SIGN_UP_DECAY_PER_WEEK: f64 = 0.08;
-/// Number of sign-ups at which half of the observed growth rate counts, because few sign-ups vary by chance.
+/// Number of sign-ups at which half of the observed growth rate counts. The growth of fewer sign-ups is mostly due to
+/// chance.
 const SIGN_UPS_OF_HALF_TREND: f64 = 10.0;
-/// Churn of individuals per billing period that is assumed before any renewal, and its weight in subscribers.
+/// Assumed churn of individuals per billing period before any renewal, and the weight of this assumption, in
+/// subscribers.
 const ASSUMED_CHURN: (f64, f64) = (0.3, 20.0);
-/// Churn of enterprise seats per billing period that is assumed before any renewal, and its weight in seats.
+/// Assumed churn of enterprise seats per billing period before any renewal, and the weight of this assumption, in
+/// seats.
 const ASSUMED_SEAT_CHURN: (f64, f64) = (0.05, 100.0);
 /// Days until an enterprise receives its first bill, on average.
 const FIRST_ENTERPRISE_BILL_DAYS: usize = 15;
 /// Limits of the logarithmic growth of new enterprise revenue and of lead costs.
 const MAX_ENTERPRISE_GROWTH: f64 = 0.7;
 const MAX_LEAD_COST_GROWTH: f64 = 1.5;
-/// Largest share of monthly revenue that compute or ads amount to on a day.
+/// Upper limit of daily compute and of daily ad revenue, each as a share of monthly revenue.
 const MAX_DAILY_SHARE: f64 = 1.0 / 7.0;
 
 /// Cash and cumulative flows by day, beginning with today.
@@ -92,7 +95,7 @@ impl CashPath {
         self.day(days).cash
     }
 
-    /// Returns the cumulative income and variable costs of a number of days.
+    /// Returns the cumulative income and variable costs of a number of days, in dollars.
     pub(super) fn flows(&self, days: u32) -> (f64, f64) {
         let day = self.day(days);
         (day.income, day.variable)

@@ -99,7 +99,8 @@ impl DatabaseQuestion {
     }
 }
 
-/// Senders to the two query threads, so that the user's queries and the readings of screens do not wait for each other.
+/// Senders to the two query threads. There are two threads so that the user's queries and the queries of screens do not
+/// wait for each other.
 #[derive(Clone)]
 pub(super) struct QueryThreads {
     user: Sender<QueryJob>,

@@ -80,8 +80,8 @@ impl WeekResimulation {
         Some(())
     }
 
-    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's calls of
-    /// the explained week, and with the world inputs of the previous week.
+    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's
+    /// calls of the explained week, and with the world inputs of the previous week.
     fn simulate_two_weeks(
         &self,
         acting: u32,

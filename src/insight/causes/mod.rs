@@ -76,10 +76,9 @@ impl CauseAnalysis {
     /// stopped the analysis.
     ///
     /// # Errors
-    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not know;
-    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`; `no_value`
-    /// if the figure
-    /// has no value in one of the two weeks.
+    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not
+    /// know; `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`;
+    /// `no_value` if the figure has no value in one of the two weeks.
     pub fn explain(
         &mut self,
         week_question: WeekQuestion,
@@ -124,8 +123,7 @@ impl CauseAnalysis {
 }
 
 /// Prepares the answer to a question. If the figure is hidden in unfinished runs, records an inspection first. Returns
-/// the folder for
-/// [`CauseAnalysis::explain`].
+/// the folder for [`CauseAnalysis::explain`].
 ///
 /// # Errors
 /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.

@@ -1,6 +1,5 @@
-//! The contribution of a changed setting equals the difference to a branch without the change. Contributions add up.
-//! Hidden state
-//! stays hidden.
+//! The contribution of a changed setting equals the difference from a branch without the change. Contributions add up.
+//! Hidden state stays hidden.
 
 use std::ops::ControlFlow;
 

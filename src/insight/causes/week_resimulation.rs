@@ -155,7 +155,8 @@ impl WeekResimulation {
         wanted: &[ExcludedCauses],
         progress: CauseProgressFn<'_>,
     ) -> Option<()> {
-        // Fixed inputs include the utilization, which is computed from the usage in a simulation without the player's calls.
+        // Fixed inputs include the utilization, which is computed from the usage in a simulation without the player's
+        // calls.
         let undone = ExcludedCauses { calls: (1 << self.calls.len()) - 1, inputs: 0 };
         if self.days_without_calls.is_empty() && wanted.iter().any(|without| without.inputs != 0) {
             let outcome = self.simulate(undone, &mut |_| ControlFlow::Continue(()))?;
@@ -225,8 +226,8 @@ fn selected_causes(candidates: &[RemovableCause], set: u32) -> impl Iterator<Ite
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, candidate)| candidate)
 }
 
-/// Returns the player's calls in the week as removable causes, one per tool. A setting that returned to its initial value is
-/// included only if the week was simulated in several steps.
+/// Returns the player's calls in the week as removable causes, one per tool. A setting that returned to its initial
+/// value is included only if the week was simulated in several steps.
 fn removable_call_causes(
     eve: &MemorySnapshot,
     moves: &[RecordedStep],

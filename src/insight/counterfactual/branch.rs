@@ -247,7 +247,8 @@ impl<'a> BranchSimulation<'a> {
         }
     }
 
-    /// Plans a call. Argument bounds are checked only for new calls, because the run has already accepted the recorded calls.
+    /// Plans a call. Argument bounds are checked only for new calls, because the run has already accepted the recorded
+    /// calls.
     fn plan_call(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Rejection> {
         let Simulation { world, params, feed, .. } = &self.simulation;
         let numbers = || self.numbers.get_or_init(|| ParameterNumbers::from_params(params).into()).clone();
@@ -286,7 +287,8 @@ impl<'a> BranchSimulation<'a> {
         Ok(())
     }
 
-    /// Applies a parameter change. Records a rejection instead if the value is invalid in the branch, now or on a later day.
+    /// Applies a parameter change. Records a rejection instead if the value is invalid in the branch, now or on a later
+    /// day.
     fn apply_parameter_change(&mut self, change: ParameterChange) {
         let (day, key) = (self.simulation.world.day, change.key.clone());
         match self.simulation.overrides.add_change(&self.simulation.params, change) {

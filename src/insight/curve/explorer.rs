@@ -50,7 +50,8 @@ pub struct PlanPoint {
     pub quota: f64,
 }
 
-/// Quantiles of the required quality at a price. A quantile is infinite if the price is above the budget of too many leads.
+/// Quantiles of the required quality at a price. A quantile is infinite if the price is above the budget of too many
+/// leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
     /// Price, $ per month; for enterprises, per seat.
@@ -170,7 +171,8 @@ impl CurveExplorer {
         }
     }
 
-    /// Returns the highest price of the curve, $ per month. All plan prices and nearly all budgets are below this price.
+    /// Returns the highest price of the curve, $ per month. All plan prices and nearly all budgets are below this
+    /// price.
     fn max_price(&self) -> f64 {
         let budget = self.markets[0].sample.budget_quantile(0.9);
         let plans = self.plans.iter().map(|plan_point| 1.2 * plan_point.list_price);

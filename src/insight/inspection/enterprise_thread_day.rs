@@ -25,7 +25,8 @@ pub struct EvaluatedPlan {
     /// Whether the enterprise accepts every price, because the perceived quality exceeds the highest quality that the
     /// enterprise requires.
     pub accepts_any_price: bool,
-    /// Price that the enterprise would name in its next turn, $ per seat per month; 0 if the enterprise would not answer.
+    /// Price that the enterprise would name in its next turn, $ per seat per month; 0 if the enterprise would not
+    /// answer.
     #[serde(rename = "would_name")]
     pub counter: f64,
 }

@@ -11,7 +11,8 @@ use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
 impl Inspector<'_> {
-    /// Returns the quality equation of a group on a day, by default the last day. Records the inspection in the trajectory.
+    /// Returns the quality equation of a group on a day, by default the last day. Records the inspection in the
+    /// trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.

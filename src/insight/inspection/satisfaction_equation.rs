@@ -175,8 +175,8 @@ pub struct SatisfactionEquation {
 }
 
 impl SatisfactionEquation {
-    /// Creates the equation of a group on a day. `subscribers` and `mean_satisfaction` are the number and the mean satisfaction
-    /// of the subscribers at the end of the day.
+    /// Creates the equation of a group on a day. `subscribers` and `mean_satisfaction` are the number and the mean
+    /// satisfaction of the subscribers at the end of the day.
     pub(crate) fn new(
         group: Group,
         day: u32,

@@ -1,4 +1,5 @@
-//! Inspections show the values that the simulator used, in the equations of a recorded run and the draws of simulated days.
+//! Inspections show the values that the simulator used, in the equations of a recorded run and the draws of simulated
+//! days.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

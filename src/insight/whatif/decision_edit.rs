@@ -61,8 +61,7 @@ pub enum DecisionEdit {
         value: Value,
     },
     /// Ignores calls that set the capacity. At the start of every week, sets the smallest tier that covers the busiest
-    /// day of the
-    /// previous week.
+    /// day of the previous week.
     CapacityFollowsUsage,
 }
 

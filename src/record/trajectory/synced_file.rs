@@ -16,7 +16,8 @@ pub(super) struct SyncedFile {
     synced: u64,
     /// Accepted bytes after the synced prefix.
     unsynced: Vec<u8>,
-    /// Whether the content after `synced` is unknown. If true, `unsynced` must be rewritten before more bytes are accepted.
+    /// Whether the content after `synced` is unknown. If true, `unsynced` must be rewritten before more bytes are
+    /// accepted.
     needs_rewrite: bool,
 }
 

@@ -28,7 +28,8 @@ use novamind_record::trajectory::{Line, Trajectory};
 
 /// A verified copy of a run, ready to be inspected and archived.
 ///
-/// The copy contains the files of the run at the time of the export. Another program can play the run during the export.
+/// The copy contains the files of the run at the time of the export. Another program can play the run during the
+/// export.
 pub struct Export {
     session: Session,
     trajectory: Trajectory,

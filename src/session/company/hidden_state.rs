@@ -87,8 +87,8 @@ impl<'a> HiddenState<'a> {
         self.world.market.yields[channel][group]
     }
 
-    /// Returns the mean satisfaction and the mean relationship of a group's active subscribers; `None` if there are no active
-    /// subscribers.
+    /// Returns the mean satisfaction and the mean relationship of a group's active subscribers; `None` if there are no
+    /// active subscribers.
     pub fn mean_satisfaction(&self, group: Group) -> Option<(f64, f64)> {
         mean_satisfaction(self.world, group)
     }

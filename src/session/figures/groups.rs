@@ -169,8 +169,8 @@ pub(crate) fn plan_revenue(world: &World) -> ByPlan<PlanRevenue> {
     revenue
 }
 
-/// Returns the mean satisfaction and the mean relationship of a group's active subscribers, or `None` if the group has no
-/// active subscribers.
+/// Returns the mean satisfaction and the mean relationship of a group's active subscribers, or `None` if the group has
+/// no active subscribers.
 pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();
     let count: usize = blocks().map(Block::len).sum();

@@ -27,7 +27,8 @@ impl Session {
         self.write_snapshot_with_hash(state_hash(), SnapshotTarget::new(folder, &self.seal_key), closing);
     }
 
-    /// Writes a snapshot of the current state. If `closing` is true, the snapshot contains the digest of the database file.
+    /// Writes a snapshot of the current state. If `closing` is true, the snapshot contains the digest of the database
+    /// file.
     pub(crate) fn write_snapshot(&self, place: SnapshotTarget, closing: bool) {
         self.write_snapshot_with_hash(self.state_hash().0, place, closing);
     }

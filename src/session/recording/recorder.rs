@@ -12,7 +12,8 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::manifest::to_start_record;
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
 
-/// File in the run folder with lines recorded after the end of the run. The hash chain of these lines continues the trajectory.
+/// File in the run folder with lines recorded after the end of the run. The hash chain of these lines continues the
+/// trajectory.
 ///
 /// The `end` line is the last line of a trajectory, so a finished run never changes. Notes, saved statements,
 /// inspections and answers to questions can follow the end.
@@ -115,7 +116,8 @@ impl Recorder {
     ) -> Result<String, RunError> {
         let Some(folder) = &self.folder else { return Ok(now()) };
         if self.trajectory.has_unsynced_lines() {
-            // The new line contains the hash of the `end` line, which would differ if the last week had to be simulated again.
+            // The new line contains the hash of the `end` line, which would differ if the last week had to be simulated
+            // again.
             self.trajectory.sync()?;
         }
         if self.afterwards.is_none() {

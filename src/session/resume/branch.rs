@@ -167,7 +167,8 @@ fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
 }
 
-/// Returns whether a language model produced the line. The lines of a model are written before the decisions of the day.
+/// Returns whether a language model produced the line. The lines of a model are written before the decisions of the
+/// day.
 fn is_voice_line(line: &Line) -> bool {
     matches!(line.record, Record::Voice(_))
 }

@@ -103,8 +103,8 @@ impl Session {
         Session::open_with_cache(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
-    /// Writes the snapshot of an ended run that a read-only command has simulated. Does nothing if the run is in use, or if its
-    /// folder cannot be written.
+    /// Writes the snapshot of an ended run that a read-only command has simulated. Does nothing if the run is in use,
+    /// or if its folder cannot be written.
     fn store_final_snapshot(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
             self.write_snapshot(SnapshotTarget::new(folder, self.seal_key()), false);
@@ -151,7 +151,8 @@ mod tests {
         DERIVED_FILES.into_iter().filter(|file| folder.join(file).exists()).collect()
     }
 
-    /// Returns the number of lines that the next command has to simulate, and whether that command uses the database file.
+    /// Returns the number of lines that the next command has to simulate, and whether that command uses the database
+    /// file.
     fn next_open_cost(folder: &Path) -> (usize, bool) {
         let manifest = ManifestCheck::read(folder).expect("a manifest").manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");

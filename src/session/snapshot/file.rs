@@ -1,4 +1,5 @@
-//! The snapshot file, `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens quickly.
+//! The snapshot file, `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens
+//! quickly.
 //!
 //! A snapshot is used only if it is intact, if this version wrote it for this run and these parameters, and if its
 //! line is in the trajectory. Otherwise, the run is simulated from its start, which takes longer

@@ -28,8 +28,8 @@ pub struct Advance {
     pub request: Option<RequestId>,
 }
 
-/// Returns whether at least one submitted forecast that ends within the run is a naive forecast, or `None` if there are no
-/// forecasts. `days_left` is the number of days from the submission to the last day of the run.
+/// Returns whether at least one submitted forecast that ends within the run is a naive forecast, or `None` if there are
+/// no forecasts. `days_left` is the number of days from the submission to the last day of the run.
 pub fn has_naive_forecasts(forecasts: &[SubmittedForecast], days_left: u32) -> Option<bool> {
     let all = forecasts.iter().map(|forecast| (forecast.horizon_days, forecast.filled_naively));
     (!forecasts.is_empty()).then(|| is_naive_week(all, days_left))

@@ -1,6 +1,6 @@
 //! Expected cash by day. Current subscribers are billed on their billing dates and renew or cancel at recent rates.
-//! Sign-ups continue their trend, which fades. Compute and ad revenue are proportional to recurring revenue. Costs to which
-//! the settings commit the company stay as they are.
+//! Sign-ups continue their trend, which fades. Compute and ad revenue are proportional to recurring revenue. Costs to
+//! which the settings commit the company stay as they are.
 //!
 //! The constants minimize the mean absolute error in `novamind lab forecasts`.
 

@@ -118,8 +118,8 @@ impl ErrorIntervals {
         self.interval.iter().find(|interval| (interval.stage, interval.horizon) == (stage, horizon))
     }
 
-    /// Returns the distances from the expected cash to both ends of the range for each day of a path. They grow linearly
-    /// between measured horizons and never decrease.
+    /// Returns the distances from the expected cash to both ends of the range for each day of a path. They grow
+    /// linearly between measured horizons and never decrease.
     pub(super) fn widths(&self, stage: GrowthStage, level: Level, path: &CashPath) -> Vec<[f64; 2]> {
         let mut widths = vec![[0.0; 2]];
         for interval in self.interval.iter().filter(|interval| interval.stage == stage) {

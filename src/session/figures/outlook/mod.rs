@@ -160,7 +160,8 @@ impl Runway {
     }
 }
 
-/// Returns the number of weeks after which cash is below zero, or `None` if cash is not negative on any day until `last`.
+/// Returns the number of weeks after which cash is below zero, or `None` if cash is not negative on any day until
+/// `last`.
 fn weeks_above_zero(last: u32, cash: impl Fn(u32) -> f64) -> Option<f64> {
     let day = (1..=last).find(|day| cash(*day) < 0.0)?;
     let (before, after) = (cash(day - 1).max(0.0), cash(day));

@@ -61,7 +61,7 @@ pub struct NewRun {
     pub handout: Option<HandoutOptions>,
     /// Where the run is stored.
     pub storage: Storage,
-    /// Whether the database is written. Without a database, queries are rejected.
+    /// Whether the database is written. If the run has no database, queries are rejected.
     pub projection: bool,
     /// Whether every call is synced before it is confirmed; otherwise calls are synced once a week.
     pub sync_calls: bool,

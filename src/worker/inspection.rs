@@ -127,7 +127,7 @@ impl SessionThread {
 
     fn read_only_rejection(&self) -> Option<Rejection> {
         match &self.active_run {
-            Some(ActiveRun::Playback(_)) => Some(Rejection::new("read_only", "a replay is read-only")),
+            Some(ActiveRun::Playback(_)) => Some(Rejection::new("read_only", "a playback is read-only")),
             Some(ActiveRun::Live(session)) if !session.log().is_written() && session.folder().is_some() => {
                 Some(Rejection::new("read_only", "this run is open read-only"))
             }

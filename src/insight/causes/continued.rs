@@ -43,7 +43,8 @@ impl WeekResimulation {
         progress: CauseProgressFn<'_>,
     ) -> Option<Vec<CauseContribution>> {
         self.simulate_continued(progress)?;
-        // Without advertising, the leads are so few and so different that their conversion would be mostly chance.
+        // If there is no advertising, the leads are so few and so different that their conversion is mostly due to
+        // chance.
         let is_valued = |at: &usize| {
             quantity.figure() != WeekFigure::Conversion
                 || self.continued[*at] != Cause::Continued(SuspendedSetting::Advertising)

@@ -90,9 +90,9 @@ pub(crate) fn simulate_branch_with_hashes(
     Some(branch.into_outcome())
 }
 
-/// Returns the first day, at most `until`, at whose end two edits of the same steps lead to different states. The
-/// inner `Option` is `None` if the states are equal on all days. The outer `Option` is `None` if `progress`, which is
-/// called once per simulated day, stops the simulation.
+/// Returns the first day, at most `until`, at the end of which two edits of the same steps lead to different states.
+/// The inner `Option` is `None` if the states are equal on all days. The outer `Option` is `None` if `progress`, which
+/// is called once per simulated day, stops the simulation.
 pub(crate) fn first_different_day(
     start: &MemorySnapshot,
     moves: &[RecordedStep],

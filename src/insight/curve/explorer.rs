@@ -62,8 +62,8 @@ pub struct CurvePoint {
     pub median: f64,
     /// Quality that is sufficient for 90 % of the leads.
     pub p90: f64,
-    /// Lowest and highest median among the groups that match the estimates. With true traits, the lowest and the
-    /// highest median equal [`CurvePoint::median`].
+    /// Lowest and highest median among the groups that match the estimates. If the curve shows true traits, both equal
+    /// [`CurvePoint::median`].
     pub median_range: (f64, f64),
 }
 

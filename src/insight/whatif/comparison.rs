@@ -44,7 +44,7 @@ pub struct BranchFigures {
     /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. The branch does not
     /// execute these calls.
     pub newly_accepted: Vec<(u64, u32, ToolId)>,
-    /// First day at whose end the branch differs from the unchanged run; `None` if the branch never differs.
+    /// First day at the end of which the branch differs from the unchanged run; `None` if the branch never differs.
     pub first_different_day: Option<u32>,
 }
 

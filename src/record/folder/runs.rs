@@ -328,8 +328,8 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
 }
 
-/// Returns the earlier runs of a participant in all related folders. Without a label, returns the unlabeled runs in
-/// this folder.
+/// Returns the earlier runs of a participant in all related folders. If there is no label, returns the unlabeled runs
+/// in this folder.
 pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());

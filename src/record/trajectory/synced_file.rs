@@ -94,8 +94,8 @@ impl SyncedFile {
         }
     }
 
-    /// Uses the same file descriptor, which reports each write-back error since it was opened. A new descriptor would
-    /// not report earlier errors.
+    /// Rewrites and syncs the bytes after the synced prefix. Uses the same file descriptor, because a new descriptor
+    /// would not report earlier write-back errors.
     fn rewrite_unsynced(&mut self) -> io::Result<()> {
         self.restore_unsynced()?;
         self.sync_once()

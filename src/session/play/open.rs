@@ -47,7 +47,7 @@ impl Session {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// Opens a run like [`Session::open`], whose snapshots are sealed with `key`.
+    /// Opens a run like [`Session::open`]. The snapshots of the run are sealed with `key`.
     ///
     /// # Errors
     /// The same errors as [`Session::open`].

@@ -16,8 +16,8 @@ impl Session {
     }
 
     /// Stores the current state as a snapshot and commits the database. A run in memory has no snapshot. If `closing`
-    /// is true, the snapshot also contains the digest of the database file. Ignores disk errors: without a snapshot,
-    /// opening the run only takes longer.
+    /// is true, the snapshot also contains the digest of the database file. Ignores disk errors: if there is no
+    /// snapshot, opening the run only takes longer.
     pub(super) fn save_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.log.is_written()) else {
             return self.commit_projection();

@@ -325,7 +325,7 @@ fn unseal_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &
 pub(crate) struct SnapshotTarget {
     path: PathBuf,
     key_mark: u8,
-    /// Keys of the run; `None` if the trajectory is missing. Without keys, no snapshot is written.
+    /// Keys of the run; `None` if the trajectory is missing. If there are no keys, no snapshot is written.
     keys: Option<RunKeys>,
 }
 

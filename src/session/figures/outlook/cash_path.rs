@@ -141,7 +141,7 @@ impl Trend {
         let days = sum(&|week| week.days_run).max(1.0);
         let before = weeks.len().checked_sub(SIGN_UP_WEEKS + 1).map(|at| &weeks[at]);
         let periods = days / calendar.individuals.len().max(1) as f64;
-        // Before the first renewals, cancellations say nothing about renewals.
+        // Before the first renewals, cancellations provide no information about renewals.
         let churn = |left: f64, base: Option<u32>, (assumed, weight): (f64, f64)| {
             let (left, base) = base.map_or((0.0, 0.0), |base| (left / periods, f64::from(base)));
             ((left + assumed * weight) / (base + weight)).clamp(0.0, 1.0)
@@ -149,7 +149,7 @@ impl Trend {
         let (daily_sign_ups, growth_rate) =
             sign_up_trend(&calendar.signed_up[..recent.len()], sum(&|week| week.new_individual_subscribers));
         let seat_price = calendar.enterprises.iter().sum::<f64>() / f64::from(last.enterprise_seats.max(1));
-        // Revenue at the middle of the last two weeks, on which their compute and ad revenue depend.
+        // Revenue in the middle of the last two weeks. Compute and ad revenue of these weeks depend on this revenue.
         let revenue_before = recent.iter().rev().nth(1).map_or(0.0, |week| week.recurring_revenue);
         let revenue = (revenue_before + last.recurring_revenue) / 2.0;
         let share = |category| match revenue > 1.0 {

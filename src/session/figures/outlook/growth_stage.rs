@@ -1,4 +1,4 @@
-//! Stages of a company by the trend of its income.
+//! Stages of a company, determined by the trend of its income.
 
 use serde::{Deserialize, Serialize};
 

@@ -27,7 +27,7 @@ pub struct Outlook {
     /// Stage of the company, which determines the width of the ranges.
     pub stage: GrowthStage,
     path: CashPath,
-    /// Distances from the expected cash to the ends of each range by day, dollars.
+    /// Distances from the expected cash to the endpoints of each range by day, dollars.
     widths: [Vec<[f64; 2]>; 2],
 }
 

@@ -250,7 +250,7 @@ mod tests {
             let mut pending = Pending::default();
             let reply = pending.ask(query).reply::<Query>(news.clone()).expect("a query");
             let _ = thread.send(QueryJob::Ask(DatabaseQuestion::Query(sql.to_owned(), via, reply)));
-            let Ok(Message::Delivered(delivery)) = answers.recv() else { panic!("other news") };
+            let Ok(Message::Delivered(delivery)) = answers.recv() else { panic!("an unexpected message") };
             delivery.deliver();
             pending.try_take().expect("an answer").1
         };

@@ -258,7 +258,9 @@ fn unchanged_settings_are_not_causes_and_contributions_add_up() {
         }
         last_values = values;
     }
-    let value = |quantity| last_values.iter().find(|(known, _)| *known == quantity).expect("it was asked").1;
+    let value = |quantity| {
+        last_values.iter().find(|(known, _)| *known == quantity).expect("the value was requested").1
+    };
     let s1 = Group::parse("S1").expect("a group");
     assert_eq!(
         value(group_quantity(WeekFigure::Reputation, "S1")),

@@ -38,7 +38,7 @@ pub(crate) struct Edits {
     pub suspended_settings: Vec<SuspendedSetting>,
     /// Parameters that replace the parameters of the run.
     pub params: Option<Arc<Params>>,
-    /// New random draws from a later day on.
+    /// New random draws that replace the draws of the run after a day.
     pub redraw: Option<Redraw>,
 }
 

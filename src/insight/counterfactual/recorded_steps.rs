@@ -146,8 +146,8 @@ pub(crate) fn steps_from_lines(lines: &[Line]) -> Vec<RecordedStep> {
     lines.iter().filter_map(|line| step_from_line(line, &mut scores)).collect()
 }
 
-/// Returns the step that an event records, if any. Collects scores in `scores` until the simulated days to which they
-/// apply.
+/// Returns the step that an event records, if any. Collects scores in `scores` until the event of the simulated days to
+/// which the scores apply.
 fn step_from_line(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
     if let Some(closing) = line.record.closed_days() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());

@@ -137,7 +137,7 @@ impl HiddenDayRecorder {
         self.with_day(day, HiddenDay::clone)
     }
 
-    /// Removes and returns the threads of a day, which are too large to be stored twice.
+    /// Removes and returns the threads of a day. They are not copied, because they are too large to be stored twice.
     pub(crate) fn take_threads(&self, day: u32) -> Vec<EnterpriseThreadDay> {
         let at = day.checked_sub(1).map(|at| at as usize);
         let mut pages = self.lock();

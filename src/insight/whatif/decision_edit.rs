@@ -21,7 +21,7 @@ use novamind_world::settings::Settings;
 /// Maximum factor of [`DecisionEdit::Scale`].
 pub const MAX_FACTOR: f64 = 1000.0;
 
-/// An edit of the decisions from the start of a week on.
+/// An edit of the decisions at and after the start of a week.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionEdit {
     /// Multiplies the current and later settings of a tool by a factor from 0 to 1,000.

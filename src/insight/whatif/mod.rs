@@ -173,7 +173,7 @@ impl WhatIf {
         }
     }
 
-    /// Returns the decisions of the run from the start of a week on. Edits can change these decisions.
+    /// Returns the decisions of the run at and after the start of a week. Edits can change these decisions.
     ///
     /// # Errors
     /// `week_unknown`, and `guess_first` if the lesson waits for a guess.

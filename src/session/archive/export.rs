@@ -40,8 +40,8 @@ pub struct Export {
 }
 
 impl Export {
-    /// Copies the run in a folder and verifies it by simulation. The copies are in a hidden folder in `parent`, which
-    /// should be on the same disk as the archive. `key` is the seal key of the run's snapshots.
+    /// Copies the run in a folder and verifies the copy by simulation. The copies are in a hidden folder in `parent`,
+    /// which should be on the same disk as the archive. `key` is the seal key of the run's snapshots.
     ///
     /// # Errors
     /// [`RunError::Damaged`] if the run is damaged; the error names the file, the line and the data that is safe. Other

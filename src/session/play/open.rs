@@ -27,7 +27,8 @@ pub enum Access {
     Read,
 }
 
-/// Functions that store the results of a simulation, so that the next read-only command need not repeat it.
+/// Functions that store the results of a simulation, so that the next read-only command does not need to repeat the
+/// simulation.
 #[derive(Clone, Copy)]
 pub(crate) struct StoreFunctions {
     /// Returns whether the state at the end of the run may be stored.

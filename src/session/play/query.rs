@@ -121,7 +121,7 @@ impl Session {
         self.history.query_history.drain(..surplus);
     }
 
-    /// Returns the database after all rows are written. Repairs the database if it could not be written before.
+    /// Returns the database after all rows are written. Repairs the database if an earlier write failed.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -80,7 +80,7 @@ pub struct Observation {
     pub companies: u32,
     /// Number of seats of active enterprises.
     pub seats: u32,
-    /// Known groups, in fixed order.
+    /// Known groups, in a fixed order.
     pub known_groups: Vec<Group>,
     /// Reason for the end of the run; `None` if the run is unfinished.
     pub ended: Option<RunEndReason>,

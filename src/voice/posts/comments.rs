@@ -13,7 +13,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
         .expect("the bundled grammars are valid")
 });
 
-/// Writes a comment by a group. `judgement` supplies the reason, if it is known.
+/// Writes a comment by a group. `judgement` supplies the reason for the reaction, if the reason is known.
 pub(super) fn write_comment(
     group: Group,
     effect: f64,

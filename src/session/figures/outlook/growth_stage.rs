@@ -50,7 +50,7 @@ impl GrowthStage {
     ];
 
     /// Returns the stage of a company after these weeks. Compares the income of the last two weeks with the income four
-    /// weeks earlier. `advertises` is whether the current settings have an advertising budget.
+    /// weeks earlier. `advertises` states whether the current settings include an advertising budget.
     pub fn from_weeks(weeks: &[WeekFigures], advertises: bool) -> GrowthStage {
         let end = weeks.len();
         if daily_income(&weeks[end.saturating_sub(RECENT_WEEKS)..]) <= 0.0 {

@@ -1,4 +1,4 @@
-//! Time of a run by kind: active, idle, away. Tables and time limits use these definitions.
+//! Time spent in a run, by kind: active, idle, away. Tables and time limits use these definitions.
 //!
 //! Time is measured between two lines. `session` and `clock` lines determine the kind of the time. Before the first
 //! `session` line, a gap of more than ten minutes is a break. Time in which the program simulates days or waits for a

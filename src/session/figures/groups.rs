@@ -18,7 +18,7 @@ pub struct PaidLeads {
     pub leads: u32,
     /// Advertising spending, dollars.
     pub spend: f64,
-    /// Individuals among the leads who signed up and were billed on the day of their arrival.
+    /// Number of individual leads that signed up and were billed on the day of their arrival.
     pub billed: u32,
 }
 
@@ -33,8 +33,8 @@ pub struct GroupWeek {
     pub word_of_mouth: u32,
     /// Results of advertising to the group, by channel.
     pub paid: ByChannel<PaidLeads>,
-    /// Enterprises among the leads that opened a thread. The other enterprises found no plan of sufficient quality at
-    /// any price.
+    /// Number of enterprise leads that opened a thread. All other enterprise leads found no plan of sufficient quality
+    /// at any price.
     pub asked: u32,
     /// Number of individuals who signed up, or of enterprises that accepted a first deal.
     pub signed: u32,

@@ -199,7 +199,7 @@ pub struct ObservedDays<'a> {
     pub replays_past_days: bool,
     /// Function that returns whether to continue after a day.
     pub should_continue: &'a dyn Fn(u32) -> bool,
-    /// Inspections to record afterward: their kind, and the subject of each inspection.
+    /// Inspections to record after the simulation: their kind, and the subject of each inspection.
     pub inspections: (&'a str, Vec<String>),
 }
 

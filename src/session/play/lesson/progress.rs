@@ -1,4 +1,4 @@
-//! Restrictions of a lesson before a week, and its progress after a week.
+//! Restrictions of a lesson before a week, and progress of the lesson after a week.
 
 use serde_json::json;
 

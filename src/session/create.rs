@@ -369,7 +369,8 @@ mod tests {
         assert_eq!(days(&exact), (100, 100, 100));
         assert_eq!(days(&above), (105, 105, 100));
         assert_eq!(days(&below), (98, 98, 98));
-        // Whole weeks above have the market of the exact length; whole weeks below have that of the shorter length.
+        // With `whole_weeks_above`, the market is that of the exact length. With `whole_weeks_below`, the market is
+        // that of the shorter length.
         assert_eq!(above_states[..14], exact_states[..14]);
         assert_eq!(below_states, play(98, "exact").1);
         assert_ne!(below_states.last(), exact_states.get(13));

@@ -5,7 +5,7 @@
 //! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs. The
 //! contribution of a single change is therefore exactly the difference from a branch without the change. Settings and
 //! market moves that continue from the previous week are causes as well (`continued.rs`). The residual has two sources:
-//! other customers have their billing day in the explained week, and every day has new random draws.
+//! different customers have their billing day in the explained week, and every day has new random draws.
 
 mod attribution;
 mod cause;

@@ -174,7 +174,7 @@ impl WeekResimulation {
         Some(())
     }
 
-    /// Applies a simulation to every set of causes in parallel. Returns `None` if `progress` stopped the simulations.
+    /// Runs a simulation for every set of causes, in parallel. Returns `None` if `progress` stopped the simulations.
     pub(super) fn simulate_in_parallel<S: Copy + Sync, R: Send>(
         &self,
         wanted: &[S],

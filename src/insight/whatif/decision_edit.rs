@@ -44,7 +44,7 @@ pub enum DecisionEdit {
     },
     /// Adds a call after the recorded calls of its day.
     Add {
-        /// Week before which the call is executed, counted from 1; `None` for the first week of the what-if.
+        /// Week, counted from 1, at the start of which the call is executed; `None` for the first week of the what-if.
         week: Option<u32>,
         /// Tool of the added call.
         tool: ToolId,
@@ -53,7 +53,7 @@ pub enum DecisionEdit {
     },
     /// Sets a parameter after the calls of the day. Only debug runs allow this edit.
     Set {
-        /// Week before which the parameter is set, counted from 1; `None` for the first week of the what-if.
+        /// Week, counted from 1, at the start of which the parameter is set; `None` for the first week of the what-if.
         week: Option<u32>,
         /// Full key of the parameter.
         key: String,

@@ -43,7 +43,7 @@ impl DecisionHistory {
         self.days_per_week.max(1)
     }
 
-    /// Returns the week, counted from 1, before which or during which a decision was made.
+    /// Returns the week, counted from 1, at the start of which or during which a decision was made.
     pub fn week_of(&self, decision: &RecordedDecision) -> u32 {
         decision.day() / self.days_per_week() + 1
     }

@@ -8,9 +8,9 @@ use novamind_world::events::Category;
 /// Number of recent weeks that determine whether a company has income. Also the maximum age of a young company, in
 /// weeks.
 const RECENT_WEEKS: usize = 4;
-/// Ratio of the income of two weeks to the income four weeks earlier above which a company is surging.
+/// A company is surging if the ratio of its income in two weeks to its income four weeks earlier is above this value.
 const MIN_SURGE_RATIO: f64 = 2.0;
-/// Ratio of these incomes above which a company is growing. The company is shrinking if the inverse ratio is above this
+/// A company is growing if this ratio is above this value, and shrinking if the inverse of the ratio is above this
 /// value.
 const MIN_GROWTH_RATIO: f64 = 1.3;
 

@@ -1,8 +1,8 @@
 //! Explanations of a run by simulation: causes of changes, results of other decisions, participation curves, and
 //! hidden state.
 //!
-//! Every public function first checks permissions. Hidden state is read by inspections of the session. Each inspection is
-//! rejected or recorded.
+//! Every public function first checks permissions. Hidden state is read only through inspections of the session. Each
+//! inspection is rejected or recorded.
 
 mod causes;
 mod counterfactual;

@@ -25,8 +25,9 @@ impl ReplayedWorld {
     /// Reads the world of a finished run.
     ///
     /// # Errors
-    /// `not_in_this_mode` if the run is unfinished and not a debug run, or if its study shows no results; `not_possible` if
-    /// parameters were changed during the run, or if its lesson starts with preset decisions; `not_readable`.
+    /// `not_in_this_mode` if the run is unfinished and not a debug run, or if its study shows no results;
+    /// `not_possible` if parameters were changed during the run, or if its lesson starts with preset decisions;
+    /// `not_readable`.
     pub fn from_run(folder: &Path) -> Result<ReplayedWorld, Rejection> {
         let past = RecordedRun::open(folder).map_err(|error| unreadable_record_rejection(&error))?;
         if input_visibility(&past.manifest, past.is_ended)? != InputVisibility::EveryInput {

@@ -1,7 +1,7 @@
 //! Consent of participants before a baseline session.
 //!
-//! The experimenter writes the consent text to `consent.md` in the configuration folder. Each participant sees the
-//! text once, and again after each change. Without this file, no consent is required.
+//! The experimenter writes the consent text to `consent.md` in the configuration folder. Each participant sees the text
+//! once, and again after each change. If this file does not exist, no consent is required.
 
 use crate::clock::now;
 use serde::{Deserialize, Serialize};

@@ -53,8 +53,8 @@ pub fn parent_folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Syncs the directory entries of a folder, on systems that support it. After an error, the caller must create the
-/// directory entry again: a later successful sync does not cover the entry.
+/// Syncs the directory entries of a folder, on systems that support this operation. After an error, the caller must
+/// create the directory entry again: a later successful sync does not cover the entry.
 ///
 /// # Errors
 /// The folder cannot be synced.

@@ -87,12 +87,12 @@ pub struct HandoutOptions {
 }
 
 impl HandoutOptions {
-    /// Returns the values for the first run of a handout, which has the run id in the handout.
+    /// Returns the values for the first run of a handout. This run gets the run id that the handout names.
     pub fn for_first_run(stamp: HandoutStamp) -> HandoutOptions {
         HandoutOptions { run: Some(stamp.run.clone()), stamp }
     }
 
-    /// Returns the values for a later run of the same handout, which gets a new id.
+    /// Returns the values for a later run of the same handout. This run gets a new id.
     pub fn for_later_run(stamp: HandoutStamp) -> HandoutOptions {
         HandoutOptions { stamp, run: None }
     }

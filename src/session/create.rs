@@ -61,7 +61,7 @@ pub struct NewRun {
     pub handout: Option<HandoutOptions>,
     /// Where the run is stored.
     pub storage: Storage,
-    /// Whether the database is written. Without a database, queries are rejected.
+    /// Whether the database is written. If the run has no database, queries are rejected.
     pub projection: bool,
     /// Whether every call is synced before it is confirmed; otherwise calls are synced once a week.
     pub sync_calls: bool,
@@ -124,7 +124,8 @@ impl Session {
         Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
-    /// Creates a run like [`Session::create`], and calls `tell` for each day that is simulated at the start of a lesson.
+    /// Creates a run like [`Session::create`], and calls `progress` for each day that is simulated at the start of a
+    /// lesson.
     ///
     /// # Errors
     /// The same errors as [`Session::create`].
@@ -368,7 +369,8 @@ mod tests {
         assert_eq!(days(&exact), (100, 100, 100));
         assert_eq!(days(&above), (105, 105, 100));
         assert_eq!(days(&below), (98, 98, 98));
-        // Whole weeks above have the market of the exact length; whole weeks below have that of the shorter length.
+        // With `whole_weeks_above`, the market is that of the exact length. With `whole_weeks_below`, the market is
+        // that of the shorter length.
         assert_eq!(above_states[..14], exact_states[..14]);
         assert_eq!(below_states, play(98, "exact").1);
         assert_ne!(below_states.last(), exact_states.get(13));

@@ -33,7 +33,7 @@ impl RunDatabase {
         RunDatabase { projector, ..RunDatabase::default() }
     }
 
-    /// Opens the database file of an ended run that follows the interface of a release.
+    /// Opens the database file of an ended run. `interface` is the interface of the release that the tables follow.
     pub(crate) fn from_file(location: DatabaseLocation, interface: Interface) -> RunDatabase {
         RunDatabase { finished_file: Some((location, interface)), ..RunDatabase::default() }
     }
@@ -54,8 +54,8 @@ impl RunDatabase {
         self.projector.as_ref().map_or(Ok(()), Projector::flush)
     }
 
-    /// Calls `work` after all pending entries are written. Passes the digest of the file if `digest` is true. Without
-    /// a database, calls `work` immediately.
+    /// Calls `work` after all pending entries are written. Passes the digest of the file if `digest` is true. If the
+    /// run has no database, calls `work` immediately.
     pub(crate) fn after_writes(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         match &self.projector {
             Some(projector) => projector.run_after_commit(digest, work),
@@ -150,7 +150,7 @@ impl RunDatabase {
 pub struct EntryWriter<'a>(Option<&'a Projector>);
 
 impl EntryWriter<'_> {
-    /// Sends an entry to the database. Without a database, the entry is not created.
+    /// Sends an entry to the database. If the run has no database, the entry is not created.
     pub(crate) fn send(self, entry: impl FnOnce() -> ProjectionEntry) {
         if let Some(projector) = self.0 {
             projector.enqueue(entry());

@@ -1,8 +1,8 @@
 //! Sessions of a run: open, act, query, advance, record, resume and replay. Only this crate changes the world of a run.
 //!
-//! A call is first planned, which changes nothing. Then the line of the call is written, and then the world changes. Applying a planned
-//! call never fails. Therefore memory is never ahead of the trajectory, and a run can always be rebuilt from
-//! `run.toml` and `trajectory.jsonl`.
+//! A call is first planned, which changes nothing. Then the line of the call is written, and then the world changes.
+//! Applying a planned call never fails. Therefore memory is never ahead of the trajectory, and a run can always be
+//! rebuilt from `run.toml` and `trajectory.jsonl`.
 
 pub mod archive;
 mod company;

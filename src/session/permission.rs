@@ -16,8 +16,8 @@ const INSPECTION_REJECTED_IN_LESSON: &str =
     "hidden state of a lesson is shown after its last part: the next part can have the same random draws";
 
 /// Returns whether hidden state of a run may be shown. Hidden state may be shown in debug runs and in runs that have
-/// ended, unless the study withholds results. Every study withholds results of practice runs. For lesson runs, the last part
-/// of the lesson must have ended.
+/// ended, unless the study withholds results. Every study withholds results of practice runs. For lesson runs, the last
+/// part of the lesson must have ended.
 pub fn can_inspect(manifest: &Manifest, ended: Option<RunEndReason>, folder: Option<&Path>) -> bool {
     let is_open = manifest.mode == Mode::Debug || (ended.is_some() && is_lesson_over(folder, manifest));
     is_open && !manifest.session_rules().hides_result(ended.is_some())

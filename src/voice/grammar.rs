@@ -1,8 +1,8 @@
 //! A grammar for sentences: rules with alternatives, which are expanded with the values and tags of a context
 //! (docs/mechanics/market/social/texts.md#grammar).
 //!
-//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` lists optional values, and
-//! `tags` lists possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
+//! A grammar is a TOML file. `given` lists the values that every context has, `maybe` lists optional values, and `tags`
+//! lists possible conditions. `[rules]` contains the rules; nested tables create dotted names. In an alternative:
 //!
 //! | notation | meaning |
 //! |---|---|
@@ -154,8 +154,7 @@ impl Grammar {
     }
 
     /// Expands a rule. Within one text, an alternative is repeated only after all other alternatives of its rule have
-    /// been used. An
-    /// unknown rule expands to an empty text.
+    /// been used. An unknown rule expands to an empty text.
     pub fn expand(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
         let mut writer =
             Expansion { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };

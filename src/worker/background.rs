@@ -70,7 +70,7 @@ mod tests {
             news.into_iter()
                 .map(|message| match message {
                     Message::Response(Response::FilesWritten(written)) => written,
-                    _ => panic!("other news"),
+                    _ => panic!("an unexpected message"),
                 })
                 .collect::<Vec<_>>()
         };

@@ -29,8 +29,8 @@ pub enum BranchesQuestion {
         /// The decision edits of the alternative.
         edits: Vec<DecisionEdit>,
     },
-    /// Compare alternatives that differ from the recorded decisions from a week on. With futures, also simulate new
-    /// random draws.
+    /// Compare alternatives that differ from the recorded decisions in one week and all later weeks. If `futures` is
+    /// set, also simulate the branches with new random draws.
     Compare {
         /// First week in which the alternatives differ from the recorded decisions.
         week: u32,

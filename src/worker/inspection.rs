@@ -19,7 +19,7 @@ use novamind_session::identifiers::Group;
 use novamind_session::{Access, INSPECTION_REJECTED, Session};
 use novamind_tools::Rejection;
 
-/// A question about hidden state. A day stands for the state at the end of this day.
+/// A question about hidden state. A day means the state at the end of that day.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InspectionQuestion {
     /// The lead equation of a group on a day, with some factors fixed at given values.
@@ -127,7 +127,7 @@ impl SessionThread {
 
     fn read_only_rejection(&self) -> Option<Rejection> {
         match &self.active_run {
-            Some(ActiveRun::Playback(_)) => Some(Rejection::new("read_only", "a replay is read-only")),
+            Some(ActiveRun::Playback(_)) => Some(Rejection::new("read_only", "a playback is read-only")),
             Some(ActiveRun::Live(session)) if !session.log().is_written() && session.folder().is_some() => {
                 Some(Rejection::new("read_only", "this run is open read-only"))
             }
@@ -136,7 +136,7 @@ impl SessionThread {
     }
 
     /// Returns a writable session of the open run, because each inspection is recorded. If the open session is
-    /// read-only, returns a second session. With `with_rows`, the session has a database.
+    /// read-only, returns a second session. If `with_rows` is true, the session has a database.
     pub(super) fn inspection_session(&mut self, with_rows: bool) -> Result<&mut Session, Rejection> {
         let (is_allowed, folder) = match &self.active_run {
             None => return Err(Rejection::new("not_possible", "no run is open")),

@@ -1,7 +1,7 @@
 //! The worker threads of the console: one owns the session, two query the database.
 //!
-//! The console sends jobs and never blocks. Results are sent through the same channel as input. A result is the answer
-//! to the page that asked ([`question`]), or a response if the result affects more than one page. A query waits for the
+//! The console sends jobs and never blocks. Results are sent through the same channel as input. A result is either an
+//! answer to the page that asked ([`question`]) or, if it affects more than one page, a response. A query waits for the
 //! session thread, so that all confirmed actions are visible. While a week is simulated, a query does not wait and
 //! reads the state before the week.
 

@@ -140,7 +140,8 @@ pub enum Response {
     ReportFilesReady(Vec<(&'static str, String)>),
     /// Files were written, with a message, or writing failed.
     FilesWritten(Result<String, String>),
-    /// An external program of the user ended, with a title and its output, or did not end normally.
+    /// An external program of the user ended. Contains a title and the output of the program, or the error if the
+    /// program did not end normally.
     ProgramEnded(Result<(String, String), String>),
     /// The run was closed. Contains the error if saving failed.
     Closed(Option<String>),

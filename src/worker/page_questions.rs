@@ -49,8 +49,8 @@ impl Question for CurveQuestion {
     }
 }
 
-/// A question that asks for the curve of a group by the estimates of market studies, for panes that show the curve
-/// without a request of the user. The answer reveals no hidden state and is not recorded.
+/// A question that asks for the curve of a group according to the estimates of market studies, for panes that show the
+/// curve without a request of the user. The answer reveals no hidden state and is not recorded.
 #[derive(Debug, Clone)]
 pub struct EstimatedCurveQuestion(pub Group);
 
@@ -104,8 +104,8 @@ impl Question for RelatedRunsQuestion {
     }
 }
 
-/// A question that asks for the results of strong policies. Its function simulates these policies with the scenario and
-/// seed of the open run.
+/// A question that asks for the results of strong policies. The function in the question simulates these policies with
+/// the scenario and seed of the open run.
 #[derive(Debug, Clone)]
 pub struct OpponentsQuestion(pub PlayOpponentsFn);
 

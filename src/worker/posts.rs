@@ -94,7 +94,7 @@ impl Post {
 /// Posts of other authors, newest first. Successive readings share unchanged posts.
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
-/// Initial limit for reading new posts, which is usually higher than the number of posts in a week.
+/// Initial limit on the number of new posts to read. It is usually higher than the number of posts in a week.
 const INITIAL_POSTS: usize = 64;
 
 /// Reads the posts of other authors. If some posts are known, requests only newer posts.

@@ -1,4 +1,5 @@
-//! Preferences that the user chose by key, for the appearance and the columns of tables, saved as `console.toml` in the configuration folder.
+//! Preferences for the appearance and for the columns of tables, which the user sets by pressing keys. They are saved
+//! as `console.toml` in the configuration folder.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +22,7 @@ pub struct Preferences {
     /// Characters with which charts are drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marker: Option<Glyphs>,
-    /// Layouts of the columns by the name of the table.
+    /// Column layouts, by table name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub tables: BTreeMap<String, ColumnLayout>,
 }

@@ -99,7 +99,8 @@ impl DatabaseQuestion {
     }
 }
 
-/// Senders to the two query threads, so that the user's queries and the readings of screens do not wait for each other.
+/// Senders to the two query threads. There are two threads so that the user's queries and the queries of screens do not
+/// wait for each other.
 #[derive(Clone)]
 pub(super) struct QueryThreads {
     user: Sender<QueryJob>,
@@ -249,7 +250,7 @@ mod tests {
             let mut pending = Pending::default();
             let reply = pending.ask(query).reply::<Query>(news.clone()).expect("a query");
             let _ = thread.send(QueryJob::Ask(DatabaseQuestion::Query(sql.to_owned(), via, reply)));
-            let Ok(Message::Delivered(delivery)) = answers.recv() else { panic!("other news") };
+            let Ok(Message::Delivered(delivery)) = answers.recv() else { panic!("an unexpected message") };
             delivery.deliver();
             pending.try_take().expect("an answer").1
         };

@@ -368,7 +368,7 @@ mod tests {
             workers.ask(&pending.ask(question), false);
             deliver_until_answer(&messages);
             let (_, answer) = pending.try_take().expect("an answer");
-            let rejection = answer.expect_err("a refusal");
+            let rejection = answer.expect_err("a rejection");
             assert!(rejection.code == "internal_error" && rejection.message.contains(words), "{rejection}");
             workers.shut_down();
         }

@@ -122,7 +122,7 @@ pub enum StudyRequest {
     RecordShownQuestion(Box<DueQuestion>),
     /// The participant submits the answers on a page.
     SubmitAnswers(Vec<GivenAnswer>),
-    /// The participant has confirmed to withdraw from the study.
+    /// The participant has confirmed the withdrawal from the study.
     Withdraw,
     /// Check the experimenter code that was entered.
     CheckCode(String),
@@ -172,7 +172,8 @@ impl Request {
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
-    /// Returns whether the request is forbidden for participants of a study, because it affects more than their current run.
+    /// Returns whether the request is forbidden for participants of a study, because it affects more than their current
+    /// run.
     pub fn is_forbidden_for_participants(&self) -> bool {
         match self {
             Request::ListRuns
@@ -199,7 +200,8 @@ impl Request {
         }
     }
 
-    /// Returns the status text that is shown until the response, or `None` if the user can continue before the response.
+    /// Returns the status text that is shown until the response, or `None` if the user can continue before the
+    /// response.
     pub fn busy_label(&self) -> Option<&'static str> {
         Some(match self {
             Request::Create(_) => "starting the run",

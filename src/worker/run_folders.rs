@@ -113,7 +113,8 @@ impl SessionThread {
         self.show_opened_run(opened, id, None);
     }
 
-    /// Rejects playing a run of a participant: only the participant may continue the run, under the protocol of the study.
+    /// Rejects playing a run of a participant: only the participant may continue the run, under the protocol of the
+    /// study.
     fn reject_study_session(&self, folder: &Path, access: Access) -> Result<(), RunError> {
         let is_elsewhere = folder.parent() != Some(self.runs_folder.as_path());
         if self.lists_all_participants && access == Access::Write && is_elsewhere {

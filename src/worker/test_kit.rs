@@ -17,7 +17,7 @@ pub fn played_session(weeks: usize) -> Session {
     played_session_of(DEFAULT_SCENARIO, weeks)
 }
 
-/// Returns the session of a run as [`played_session`], with a scenario.
+/// Returns a session like [`played_session`], in the given scenario.
 pub fn played_session_of(scenario: &str, weeks: usize) -> Session {
     let (seed, days, scenario) = (Some(7), Some(200), scenario.to_owned());
     let new = NewRun { seed, days, scenario, storage: Storage::Memory, ..NewRun::default() };

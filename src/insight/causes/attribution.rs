@@ -55,7 +55,8 @@ pub struct CauseContribution {
 #[derive(Clone)]
 struct CauseGroup {
     cause: Cause,
-    /// Bit mask of the members: a bit's position is the index of a member in the list of calls or in the list of inputs.
+    /// Bit mask of the members: a bit's position is the index of a member in the list of calls or in the list of
+    /// inputs.
     members: u32,
     details: Vec<CauseDetail>,
 }

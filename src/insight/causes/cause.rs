@@ -17,7 +17,7 @@ pub enum Cause {
     EarlierPurchases,
     /// A setting that continued in both weeks, whether or not the player changed the setting.
     Continued(SuspendedSetting),
-    /// Moves of the market in the previous week, which act on all days of the explained week.
+    /// Market moves in the previous week that affect all days of the explained week.
     EarlierMarket,
     /// All hidden market inputs, merged into one cause.
     Market,
@@ -108,7 +108,7 @@ pub enum CauseDetail {
     Setting(SettingChange),
     /// A world input with different values in the two weeks.
     Input(InputDetail),
-    /// First and last day without the cause in the re-simulations that value the cause.
+    /// First and last day without the cause in the re-simulations that evaluate the cause.
     Removed {
         /// First day without the cause.
         first: u32,

@@ -1,7 +1,7 @@
 //! Causes that continue: settings that act in both weeks, and moves of the market in the previous week.
 //!
 //! An unchanged setting can change a figure. Development, for example, raises quality on every day. A continuing cause
-//! is valued without any difference between the weeks: both weeks are simulated without the player's calls of the
+//! is evaluated without any difference between the weeks: both weeks are simulated without the player's calls of the
 //! explained week and with the world inputs of the previous week, once with the cause and once without the cause.
 
 use super::CauseProgressFn;
@@ -35,15 +35,16 @@ pub(super) fn continued_causes(start: &MemorySnapshot, eve: &MemorySnapshot) -> 
 }
 
 impl WeekResimulation {
-    /// Returns the contributions of the continuing causes to the change in a figure, which the causes that differ between
-    /// the weeks do not explain. Returns `None` if `progress` stopped the simulations.
+    /// Returns the contributions of the continuing causes to the change in a figure. The causes that differ between the
+    /// weeks do not explain these contributions. Returns `None` if `progress` stopped the simulations.
     pub(super) fn continued_contributions(
         &mut self,
         quantity: WeekQuantity,
         progress: CauseProgressFn<'_>,
     ) -> Option<Vec<CauseContribution>> {
         self.simulate_continued(progress)?;
-        // Without advertising, the leads are so few and so different that their conversion would be mostly chance.
+        // If there is no advertising, the leads are so few and so different that their conversion is mostly due to
+        // chance.
         let is_valued = |at: &usize| {
             quantity.figure() != WeekFigure::Conversion
                 || self.continued[*at] != Cause::Continued(SuspendedSetting::Advertising)
@@ -80,8 +81,8 @@ impl WeekResimulation {
         Some(())
     }
 
-    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's calls of
-    /// the explained week, and with the world inputs of the previous week.
+    /// Simulates the previous week and the explained week with some of the continuing causes, without the player's
+    /// calls of the explained week, and with the world inputs of the previous week.
     fn simulate_two_weeks(
         &self,
         acting: u32,
@@ -130,9 +131,9 @@ impl WeekResimulation {
     }
 }
 
-/// Returns the candidates without which the change has a value, alone and together. If the change has no value without
-/// several causes, for example conversion without leads, the causes with the smallest effects are left out. Returns no
-/// cause if the change with all causes has no value.
+/// Returns the candidates that can be removed, alone and together, so that the change still has a value. If the change
+/// has no value without several causes, for example conversion without leads, the causes with the smallest effects are
+/// left out. Returns no cause if the change with all causes has no value.
 fn causes_with_values(mut candidates: Vec<usize>, all: u32, change: impl Fn(u32) -> f64) -> Vec<usize> {
     let effect = |at: &usize| (change(all) - change(all & !(1 << at))).abs();
     candidates.retain(|at| !effect(at).is_nan());

@@ -2,11 +2,10 @@
 //!
 //! A cause is a difference from the previous week. Causes are the settings and calls of the player, by tool, and the
 //! world inputs that the company does not control. The contribution of a cause is its Shapley value. World inputs are
-//! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs.
-//! The contribution of a single change is therefore exactly the difference to a branch without the change.
-//! Settings and market moves that continue from the previous week are causes as well (`continued.rs`).
-//! The residual has two sources: other customers have their billing day in the explained week, and every day has new
-//! random draws.
+//! evaluated without the player's changes. The player's changes are evaluated with the recorded world inputs. The
+//! contribution of a single change is therefore exactly the difference from a branch without the change. Settings and
+//! market moves that continue from the previous week are causes as well (`continued.rs`). The residual has two sources:
+//! different customers have their billing day in the explained week, and every day has new random draws.
 
 mod attribution;
 mod cause;
@@ -77,10 +76,9 @@ impl CauseAnalysis {
     /// stopped the analysis.
     ///
     /// # Errors
-    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not know;
-    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`; `no_value`
-    /// if the figure
-    /// has no value in one of the two weeks.
+    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not
+    /// know; `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`;
+    /// `no_value` if the figure has no value in one of the two weeks.
     pub fn explain(
         &mut self,
         week_question: WeekQuestion,
@@ -125,8 +123,7 @@ impl CauseAnalysis {
 }
 
 /// Prepares the answer to a question. If the figure is hidden in unfinished runs, records an inspection first. Returns
-/// the folder for
-/// [`CauseAnalysis::explain`].
+/// the folder for [`CauseAnalysis::explain`].
 ///
 /// # Errors
 /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.

@@ -97,8 +97,7 @@ impl FromStr for WeekQuestion {
     type Err = ConditionParseError;
 
     /// Parses a figure and an optional week, for example `churn(S1) 44` or `new subscribers`. The words of a figure
-    /// name can be joined by spaces, hyphens or
-    /// underscores.
+    /// name can be joined by spaces, hyphens or underscores.
     fn from_str(text: &str) -> Result<WeekQuestion, ConditionParseError> {
         let (name, rest) = text.split_at(name_length(text));
         let figure = parse_figure(name)?;

@@ -1,6 +1,5 @@
-//! The contribution of a changed setting equals the difference to a branch without the change. Contributions add up.
-//! Hidden state
-//! stays hidden.
+//! The contribution of a changed setting equals the difference from a branch without the change. Contributions add up.
+//! Hidden state stays hidden.
 
 use std::ops::ControlFlow;
 
@@ -259,7 +258,9 @@ fn unchanged_settings_are_not_causes_and_contributions_add_up() {
         }
         last_values = values;
     }
-    let value = |quantity| last_values.iter().find(|(known, _)| *known == quantity).expect("it was asked").1;
+    let value = |quantity| {
+        last_values.iter().find(|(known, _)| *known == quantity).expect("the value was requested").1
+    };
     let s1 = Group::parse("S1").expect("a group");
     assert_eq!(
         value(group_quantity(WeekFigure::Reputation, "S1")),

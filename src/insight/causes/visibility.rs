@@ -15,7 +15,7 @@ pub(crate) enum InputVisibility {
     EveryInput,
 }
 
-/// Returns the level of detail of world inputs that a run permits.
+/// Returns the level of detail at which world inputs of a run may be shown.
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, and for a run whose study shows no results.

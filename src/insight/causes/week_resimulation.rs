@@ -143,19 +143,20 @@ impl WeekResimulation {
         self.simulated_weeks.len() - 1 + WEEKS_PER_CONTINUED_SET * self.continued_weeks.len()
     }
 
-    /// Returns the figures of the week without the excluded causes, which must be simulated already.
+    /// Returns the figures of the week without the excluded causes. This simulation must have been run already.
     pub(super) fn week_without(&self, without: ExcludedCauses) -> &SimulatedWeek {
         &self.simulated_weeks[&without]
     }
 
-    /// Simulates the week for each set of causes without a cached result. Returns `None` if `progress` stopped the
+    /// Simulates the week for each set of causes that has no cached result. Returns `None` if `progress` stopped the
     /// simulation.
     pub(super) fn simulate_missing(
         &mut self,
         wanted: &[ExcludedCauses],
         progress: CauseProgressFn<'_>,
     ) -> Option<()> {
-        // Fixed inputs include the utilization, which is computed from the usage in a simulation without the player's calls.
+        // Fixed inputs include the utilization, which is computed from the usage in a simulation without the player's
+        // calls.
         let undone = ExcludedCauses { calls: (1 << self.calls.len()) - 1, inputs: 0 };
         if self.days_without_calls.is_empty() && wanted.iter().any(|without| without.inputs != 0) {
             let outcome = self.simulate(undone, &mut |_| ControlFlow::Continue(()))?;
@@ -173,7 +174,7 @@ impl WeekResimulation {
         Some(())
     }
 
-    /// Applies a simulation to every set of causes in parallel. Returns `None` if `progress` stopped the simulations.
+    /// Runs a simulation for every set of causes, in parallel. Returns `None` if `progress` stopped the simulations.
     pub(super) fn simulate_in_parallel<S: Copy + Sync, R: Send>(
         &self,
         wanted: &[S],
@@ -225,8 +226,8 @@ fn selected_causes(candidates: &[RemovableCause], set: u32) -> impl Iterator<Ite
     candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, candidate)| candidate)
 }
 
-/// Returns the player's calls in the week as removable causes, one per tool. A setting that returned to its initial value is
-/// included only if the week was simulated in several steps.
+/// Returns the player's calls in the week as removable causes, one per tool. A setting that returned to its initial
+/// value is included only if the week was simulated in several steps.
 fn removable_call_causes(
     eve: &MemorySnapshot,
     moves: &[RecordedStep],

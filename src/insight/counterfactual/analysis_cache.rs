@@ -1,4 +1,5 @@
-//! A cache for the analysis of the most recently used record. The next question about the record reuses its simulations.
+//! A cache for the analysis of the most recently used record. The next question about the record reuses its
+//! simulations.
 
 use std::path::{Path, PathBuf};
 

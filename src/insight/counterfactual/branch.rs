@@ -29,7 +29,7 @@ pub(crate) struct BranchOutcome {
     pub weeks: Vec<WeekFigures>,
     /// Figures of every simulated day.
     pub days: Vec<DayFigures>,
-    /// Mean satisfaction of individual subscribers at the end of each completed week; NaN without subscribers.
+    /// Mean satisfaction of individual subscribers at the end of each completed week; NaN if there are no subscribers.
     pub satisfaction: Vec<f64>,
     /// Figures of every group in each completed week.
     pub groups: Vec<ByGroup<GroupFigures>>,
@@ -63,8 +63,8 @@ pub(crate) struct RejectedCall {
     pub rejection: Rejection,
 }
 
-/// Re-simulates the days after a state, with edits to the recorded steps. Days after the last step keep the current settings.
-/// `progress` is called once per simulated day. Returns `None` if `progress` stops the simulation.
+/// Re-simulates the days after a state, with edits to the recorded steps. The current settings stay in force on days
+/// after the last step. `progress` is called once per simulated day. Returns `None` if `progress` stops the simulation.
 pub(crate) fn simulate_branch(
     start: &MemorySnapshot,
     moves: &[RecordedStep],
@@ -90,9 +90,9 @@ pub(crate) fn simulate_branch_with_hashes(
     Some(branch.into_outcome())
 }
 
-/// Returns the first day, at most `until`, at whose end two edits of the same steps lead to different states. The
-/// inner `Option` is `None` if the states are equal on all days. The outer `Option` is `None` if `progress`, which is
-/// called once per simulated day, stops the simulation.
+/// Returns the first day, at most `until`, at the end of which two edits of the same steps lead to different states.
+/// The inner `Option` is `None` if the states are equal on all days. The outer `Option` is `None` if `progress`, which
+/// is called once per simulated day, stops the simulation.
 pub(crate) fn first_different_day(
     start: &MemorySnapshot,
     moves: &[RecordedStep],
@@ -129,7 +129,7 @@ struct BranchSimulation<'a> {
     call_entries: Vec<LedgerEntry>,
     /// Whether the text of posts is generated and facts are hashed.
     processes_text: bool,
-    /// Whether the text of the last day is still to be processed.
+    /// Whether the text of the last day has not been processed yet.
     has_unprocessed_text: bool,
     numbers: OnceLock<Arc<ParameterNumbers>>,
     weeks: Vec<WeekFigures>,
@@ -219,7 +219,7 @@ impl<'a> BranchSimulation<'a> {
         self.simulate_days(until, progress)
     }
 
-    /// Executes a recorded call, unless it is dropped, with changed arguments if the edits contain any.
+    /// Executes a recorded call, unless the edits drop it. Uses changed arguments if the edits contain any.
     fn replay_call(&mut self, call: &RecordedCall) {
         if self.edits.dropped_lines.contains(&call.seq) {
             return;
@@ -247,7 +247,8 @@ impl<'a> BranchSimulation<'a> {
         }
     }
 
-    /// Plans a call. Argument bounds are checked only for new calls, because the run has already accepted the recorded calls.
+    /// Plans a call. Argument bounds are checked only for new calls, because the run has already accepted the recorded
+    /// calls.
     fn plan_call(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Rejection> {
         let Simulation { world, params, feed, .. } = &self.simulation;
         let numbers = || self.numbers.get_or_init(|| ParameterNumbers::from_params(params).into()).clone();
@@ -286,7 +287,8 @@ impl<'a> BranchSimulation<'a> {
         Ok(())
     }
 
-    /// Applies a parameter change. Records a rejection instead if the value is invalid in the branch, now or on a later day.
+    /// Applies a parameter change. Records a rejection instead if the value is invalid in the branch, now or on a later
+    /// day.
     fn apply_parameter_change(&mut self, change: ParameterChange) {
         let (day, key) = (self.simulation.world.day, change.key.clone());
         match self.simulation.overrides.add_change(&self.simulation.params, change) {
@@ -385,7 +387,8 @@ impl<'a> BranchSimulation<'a> {
         }
     }
 
-    /// Clears the suspended settings for the next day. Returns the settings before, or `None` if no setting is suspended.
+    /// Clears the suspended settings for the next day. Returns the previous settings, or `None` if no setting is
+    /// suspended.
     fn suspend_settings(&mut self) -> Option<Settings> {
         let suspended = &self.edits.suspended_settings;
         let settings = (!suspended.is_empty()).then(|| self.simulation.world.settings.clone());
@@ -446,7 +449,7 @@ impl<'a> BranchSimulation<'a> {
     }
 }
 
-/// Returns the mean satisfaction of individual subscribers; NaN without subscribers.
+/// Returns the mean satisfaction of individual subscribers; NaN if there are no subscribers.
 fn mean_satisfaction(world: &World) -> f64 {
     let individuals = || world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
     let count: usize = individuals().map(|(_, block)| block.len()).sum();

@@ -13,7 +13,7 @@ use novamind_world::customers::customer_numbers::CustomerNumbers;
 use novamind_world::fixed_inputs::FixedInputs;
 use novamind_world::params::Params;
 
-/// Changes to recorded days of a run. Without edits, the re-simulation reproduces the recorded states.
+/// Changes to recorded days of a run. If there are no edits, the re-simulation reproduces the recorded states.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Edits {
     /// Calls that are executed before all recorded steps.
@@ -38,7 +38,7 @@ pub(crate) struct Edits {
     pub suspended_settings: Vec<SuspendedSetting>,
     /// Parameters that replace the parameters of the run.
     pub params: Option<Arc<Params>>,
-    /// New random draws from a later day on.
+    /// New random draws that replace the draws of the run after a day.
     pub redraw: Option<Redraw>,
 }
 

@@ -105,8 +105,7 @@ impl RecordedRun {
     }
 
     /// Returns the state at the end of a day whose state hash is recorded. The state is simulated from the nearest
-    /// stored state. `progress` is
-    /// called once per simulated day. Returns `None` if `progress` stops the simulation.
+    /// stored state. `progress` is called once per simulated day. Returns `None` if `progress` stops the simulation.
     ///
     /// # Errors
     /// Returns an error if the simulation does not reproduce the recorded state.

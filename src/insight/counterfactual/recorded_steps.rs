@@ -85,8 +85,8 @@ impl RecordedDecision {
         }
     }
 
-    /// Describes the status of the decision: rejected, undo, redo, or the first day of a parameter. Returns an empty
-    /// string for other decisions.
+    /// Describes the status of the decision: rejected, undo, redo, or the first day on which a parameter change
+    /// applies. Returns an empty string for other decisions.
     pub fn describe_status(&self) -> String {
         match self {
             RecordedDecision::Call(RecordedCall { accepted: false, .. }) => "rejected".to_owned(),
@@ -146,7 +146,8 @@ pub(crate) fn steps_from_lines(lines: &[Line]) -> Vec<RecordedStep> {
     lines.iter().filter_map(|line| step_from_line(line, &mut scores)).collect()
 }
 
-/// Returns the step that an event records, if any. Collects scores in `scores` until the simulated days to which they apply.
+/// Returns the step that an event records, if any. Collects scores in `scores` until the event of the simulated days to
+/// which the scores apply.
 fn step_from_line(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
     if let Some(closing) = line.record.closed_days() {
         let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
@@ -189,7 +190,8 @@ pub(crate) fn steps_between(moves: &[RecordedStep], from: u32, until: u32) -> &[
     &moves[first..last.max(first)]
 }
 
-/// Returns whether an accepted call replies to another author's post, in which case the simulation needs the texts of posts.
+/// Returns whether an accepted call replies to another author's post, in which case the simulation needs the texts of
+/// posts.
 pub(crate) fn contains_post_replies(moves: &[RecordedStep]) -> bool {
     moves.iter().any(|step| match step {
         RecordedStep::Call(call) => {

@@ -27,7 +27,7 @@ impl SuspendedSetting {
         SuspendedSetting::InAppAds,
     ];
 
-    /// Returns whether the setting has an effect, so that a company without the setting differs.
+    /// Returns whether clearing the setting would change the settings.
     pub(crate) fn is_active(self, settings: &Settings) -> bool {
         let mut without = settings.clone();
         self.clear(&mut without);

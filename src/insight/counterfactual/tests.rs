@@ -197,7 +197,7 @@ fn dropping_parameter_changes_equals_a_run_without_them() {
     let plain = play_with_parameters(folder.path(), false);
     let mut past = RecordedRun::open(changed.folder().expect("a folder")).expect("a run");
     let opening =
-        past.snapshot_at(0, &mut continue_progress).expect("the opening").expect("it is not stopped");
+        past.snapshot_at(0, &mut continue_progress).expect("the state of day 0").expect("it is not stopped");
     let set = |step: &RecordedStep| match step {
         RecordedStep::Parameter(setting) => Some(setting.change.seq),
         RecordedStep::Call(_) | RecordedStep::Days(_) => None,
@@ -217,7 +217,7 @@ fn dropping_parameter_changes_equals_a_run_without_them() {
         .expect("an outcome");
     assert!(
         outcome.weeks[0].new_individual_leads * 2 < changed.weeks()[5].new_individual_leads,
-        "three times as many leads came"
+        "the number of leads tripled"
     );
 }
 

@@ -1,4 +1,5 @@
-//! Access to curves. The true curve requires an inspection. Otherwise the curve is computed from estimates of market studies.
+//! Access to curves. The true curve requires an inspection. Otherwise the curve is computed from estimates of market
+//! studies.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A group according to its market studies. The studies estimate means, but neither the spread of the group nor the
+//! A group as described by its market studies. The studies estimate means, but neither the spread of the group nor the
 //! slope of its curve. The spread and the slope are assumed to be the same for every group and run.
 
 use novamind_session::Estimates;

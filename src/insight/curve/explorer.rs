@@ -46,11 +46,12 @@ pub struct PlanPoint {
     pub list_price: f64,
     /// Delivered quality of the plan.
     pub quality: f64,
-    /// Quota, units per day; infinite without a quota.
+    /// Quota, units per day; infinite if the plan has no quota.
     pub quota: f64,
 }
 
-/// Quantiles of the required quality at a price. A quantile is infinite if the price is above the budget of too many leads.
+/// Quantiles of the required quality at a price. A quantile is infinite if the price is above the budget of too many
+/// leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
     /// Price, $ per month; for enterprises, per seat.
@@ -61,8 +62,8 @@ pub struct CurvePoint {
     pub median: f64,
     /// Quality that is sufficient for 90 % of the leads.
     pub p90: f64,
-    /// Lowest and highest median among the groups that match the estimates. With true traits, the lowest and the
-    /// highest median equal [`CurvePoint::median`].
+    /// Lowest and highest median among the groups that match the estimates. If the curve shows true traits, both equal
+    /// [`CurvePoint::median`].
     pub median_range: (f64, f64),
 }
 
@@ -170,7 +171,8 @@ impl CurveExplorer {
         }
     }
 
-    /// Returns the highest price of the curve, $ per month. All plan prices and nearly all budgets are below this price.
+    /// Returns the highest price of the curve, $ per month. All plan prices and nearly all budgets are below this
+    /// price.
     fn max_price(&self) -> f64 {
         let budget = self.markets[0].sample.budget_quantile(0.9);
         let plans = self.plans.iter().map(|plan_point| 1.2 * plan_point.list_price);

@@ -51,7 +51,8 @@ fn format_explorer(curve_explorer: &CurveExplorer) -> String {
     )
 }
 
-/// Conversions of the first week in the simulator, with one price on all plans (configs/lessons/price-follows-quality.toml).
+/// Conversions of the first week in the simulator, with one price on all plans
+/// (configs/lessons/price-follows-quality.toml).
 #[test]
 fn true_curve_matches_simulated_conversion_within_two_points() {
     let mut session = create_run(Mode::Debug, &[]);

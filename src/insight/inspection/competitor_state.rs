@@ -45,7 +45,8 @@ pub struct CompetitorState {
     pub shared_bonus: f64,
     /// Part of [`CompetitorState::shared_bonus`] that competitors have not copied.
     pub shared_bank: f64,
-    /// For each group with targeted improvements: the group, the quality gain, and the part that competitors have not copied.
+    /// For each group with targeted improvements: the group, the quality gain, and the part that competitors have not
+    /// copied.
     pub group_banks: Vec<(Group, f64, f64)>,
     /// Increase in the expectations of all groups due to competitors and drift.
     pub common_expectation: f64,
@@ -83,7 +84,8 @@ impl Inspector<'_> {
     }
 }
 
-/// Returns the next competitor move after a day. A move that is not simulated yet is predicted from the current parameters.
+/// Returns the next competitor move after a day. A move that is not simulated yet is predicted from the current
+/// parameters.
 pub(super) fn next_competitor_move(
     inside: HiddenState<'_>,
     day: u32,

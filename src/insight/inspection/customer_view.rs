@@ -16,7 +16,8 @@ pub enum CustomerView {
 }
 
 impl Inspector<'_> {
-    /// Returns the hidden state of a customer on a day, by default the last day. Records the inspection in the trajectory.
+    /// Returns the hidden state of a customer on a day, by default the last day. Records the inspection in the
+    /// trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `not_readable`, `not_saved`.

@@ -106,14 +106,14 @@ impl DayObserver for DayEndRecorder {
     }
 }
 
-/// Records the state hashes of every day from day 1, and the complete end of selected days.
+/// Records the state hashes of every day from day 1, and the complete end-of-day data of selected days.
 pub(crate) struct StateHashRecorder {
     parts: Mutex<Vec<Vec<PartHash>>>,
     day_ends: DayEndRecorder,
 }
 
 impl StateHashRecorder {
-    /// Creates a recorder for the hashes of every day and the ends of the days in `wanted`.
+    /// Creates a recorder for the hashes of every day and for the end-of-day data of the days in `wanted`.
     pub(crate) fn with_ends(wanted: &[u32]) -> StateHashRecorder {
         StateHashRecorder { parts: Mutex::default(), day_ends: DayEndRecorder::for_days(wanted) }
     }

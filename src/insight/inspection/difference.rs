@@ -14,7 +14,7 @@ use novamind_world::identifiers::Group;
 /// Maximum number of customers whose differences are listed.
 const MAX_LISTED_CUSTOMERS: usize = 10;
 
-/// Differences between the ends of two days.
+/// Differences between the states at the end of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DayDifference {
     /// The two compared days.
@@ -37,7 +37,7 @@ pub struct DayDifference {
     pub first_customers: Vec<CustomerDifference>,
 }
 
-/// The differences of a customer between the ends of two days.
+/// The differences of a customer between the states at the end of two days.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CustomerDifference {
     /// Number of the customer whose values differ.

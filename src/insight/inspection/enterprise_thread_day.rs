@@ -25,7 +25,8 @@ pub struct EvaluatedPlan {
     /// Whether the enterprise accepts every price, because the perceived quality exceeds the highest quality that the
     /// enterprise requires.
     pub accepts_any_price: bool,
-    /// Price that the enterprise would name in its next turn, $ per seat per month; 0 if the enterprise would not answer.
+    /// Price that the enterprise would name in its next turn, $ per seat per month; 0 if the enterprise would not
+    /// answer.
     #[serde(rename = "would_name")]
     pub counter: f64,
 }
@@ -57,7 +58,7 @@ pub struct EnterpriseThreadDay {
     pub reply_day: Option<u32>,
     /// The player's newest offers; empty on the player's turn.
     pub offerings: Vec<Offering>,
-    /// The answer that the enterprise would give today; `None` without offers.
+    /// The answer that the enterprise would give today; `None` if there are no offers.
     pub answer: Option<OfferResponse>,
 }
 

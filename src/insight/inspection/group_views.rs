@@ -11,7 +11,8 @@ use novamind_tools::Rejection;
 use novamind_world::identifiers::Group;
 
 impl Inspector<'_> {
-    /// Returns the quality equation of a group on a day, by default the last day. Records the inspection in the trajectory.
+    /// Returns the quality equation of a group on a day, by default the last day. Records the inspection in the
+    /// trajectory.
     ///
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
@@ -73,7 +74,7 @@ impl Inspector<'_> {
             .map(|seen| ReputationEquation::new(group, day, &seen.reputation, recent_days))
     }
 
-    /// Returns a group's values at the end of a day and of up to 27 days before.
+    /// Returns a group's values at the end of a day and of up to 27 earlier days.
     fn values_of_recent_days<T>(
         &mut self,
         permit: &InspectionPermit,

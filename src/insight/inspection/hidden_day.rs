@@ -65,7 +65,7 @@ pub(crate) struct GroupDayEnd {
     pub(crate) info_level: u32,
     pub(crate) active: u32,
     pub(crate) reputation: f64,
-    /// Mean satisfaction and mean relationship of active subscriptions; `None` without subscriptions.
+    /// Mean satisfaction and mean relationship of active subscriptions; `None` if there are no subscriptions.
     pub(crate) mean_satisfaction_and_relationship: Option<(f64, f64)>,
     /// Number of active subscriptions with an open issue.
     pub(crate) open_issues: u32,
@@ -137,7 +137,7 @@ impl HiddenDayRecorder {
         self.with_day(day, HiddenDay::clone)
     }
 
-    /// Removes and returns the threads of a day, which are too large to be stored twice.
+    /// Removes and returns the threads of a day. They are not copied, because they are too large to be stored twice.
     pub(crate) fn take_threads(&self, day: u32) -> Vec<EnterpriseThreadDay> {
         let at = day.checked_sub(1).map(|at| at as usize);
         let mut pages = self.lock();
@@ -231,8 +231,8 @@ impl DayObserver for HiddenDayRecorder {
     }
 }
 
-/// Returns whether the enterprise's answer in a thread can still change something. True if the thread is open, or if
-/// the thread is dead and an answer is pending.
+/// Returns whether the enterprise's answer in a thread can still have an effect. True if the thread is open, or if the
+/// thread is dead and an answer is pending.
 fn is_reply_pending(thread: &Thread, reappearing: bool) -> bool {
     thread.is_open() || thread.active_turn(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)
 }

@@ -10,7 +10,7 @@ use novamind_database::{QueryConnection, QueryError, QueryTicket, Table};
 use novamind_world::canonical::canonical_hash;
 use novamind_world::state::World;
 
-/// The database connection of the x-ray. No other connection has hidden tables.
+/// The hidden tables with their database connection. No other connection has hidden tables.
 pub(crate) struct HiddenTables {
     connection: QueryConnection,
     database_number: u32,

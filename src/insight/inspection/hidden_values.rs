@@ -15,7 +15,7 @@ pub struct TrueGroupValues {
     pub is_known: bool,
     /// Reputation of the company in the group.
     pub reputation: f64,
-    /// Mean satisfaction of the group's subscribers; `None` without subscribers.
+    /// Mean satisfaction of the group's subscribers; `None` if there are no subscribers.
     pub satisfaction: Option<f64>,
     /// Expected number of leads on the day.
     pub expected_leads: f64,

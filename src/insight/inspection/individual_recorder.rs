@@ -60,7 +60,7 @@ pub enum SubscriberOutcome {
 /// A subscriber's state on a day, at the time of the decisions.
 #[derive(Debug, Clone)]
 pub struct IndividualDay {
-    /// Day to which this state of the subscriber belongs.
+    /// Day of the state.
     pub day: u32,
     /// Plan of the subscriber at the start of the day.
     pub plan: Plan,
@@ -70,7 +70,7 @@ pub struct IndividualDay {
     pub satisfaction: f64,
     /// Relationship to the company, 0..=1.
     pub relationship: f64,
-    /// Number of days that the current issue has been open.
+    /// Number of days for which the current issue has been open.
     pub open_issue_days: u32,
     /// Whether the day is a billing day.
     pub is_due: bool,

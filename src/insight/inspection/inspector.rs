@@ -89,7 +89,8 @@ impl Inspector<'_> {
                 permit.replay(self.run, self.cache.hidden_days.clone())?
             }
         };
-        // The copy is removed from the cache first, so that the next inspection restarts the re-simulation after an error.
+        // The copy is removed from the cache first, so that the next inspection restarts the re-simulation after an
+        // error.
         shadow.advance(self.run, |_| true, &mut |_| {})?;
         self.cache.replay = Some(shadow);
         Ok(self.cache.hidden_days.clone())

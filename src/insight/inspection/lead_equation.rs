@@ -144,7 +144,7 @@ impl LeadEquation {
 }
 
 impl Inspector<'_> {
-    /// Returns the lead equations of a group on a day, by default the last day, and on up to 27 days before. Records
+    /// Returns the lead equations of a group on a day, by default the last day, and on up to 27 earlier days. Records
     /// the inspection.
     ///
     /// # Errors

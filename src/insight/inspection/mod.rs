@@ -1,7 +1,7 @@
 //! The x-ray: hidden state of debug runs and finished runs (docs/debugging.md).
 //!
-//! Past days are re-simulated and observed in a copy of the run. The views show inputs and results of the simulator's
-//! functions and calculate nothing a second time. Each inspection is recorded as an event in the trajectory.
+//! Past days are re-simulated and observed in a copy of the run. The views show the inputs and results of the
+//! simulator's functions and do not recalculate them. Each inspection is recorded as an event in the trajectory.
 
 pub(crate) mod breakpoint;
 pub(crate) mod competitor_state;

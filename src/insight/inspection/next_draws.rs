@@ -174,8 +174,7 @@ pub const MAX_DRAWS: usize = 1000;
 
 impl Inspector<'_> {
     /// Returns the next draws of a part of the world. `count` limits the draws of each stream; the default is the
-    /// maximum of the part. Records
-    /// the inspection.
+    /// maximum of the part. Records the inspection.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_saved`, `out_of_range` if `count` is 0 or more than [`MAX_DRAWS`].
@@ -276,8 +275,7 @@ fn lead_effect(inside: HiddenState<'_>, group: Group, day: u32) -> DrawEffect {
 }
 
 /// Returns the customers whose payment would fail on the day if the payment were due. Each customer uses the draw at
-/// the customer's
-/// position in the block.
+/// the customer's position in the block.
 fn failed_payment_effect(inside: HiddenState<'_>, group: Group, day: u32) -> DrawEffect {
     let (params, streams) = (inside.params(), inside.streams());
     let rate = group_involuntary_rate(group, day, params, streams);

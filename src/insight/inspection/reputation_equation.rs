@@ -129,7 +129,8 @@ pub struct ReputationEquation {
     pub bounds: f64,
     /// Reputation at the end of the day.
     pub after: f64,
-    /// Reputation at the end of up to 28 days, in ascending order. The last value belongs to the day of the equation.
+    /// Reputation at the end of each of up to 28 days, earliest day first. The last value belongs to the day of the
+    /// equation.
     pub recent_days: Vec<f64>,
     /// Thresholds below which changes are dropped.
     pub thresholds: ChangeThresholds,
@@ -202,7 +203,7 @@ impl Spillover {
         }
     }
 
-    /// Returns the spillover from one group to another, or `None` without a weight or a change.
+    /// Returns the spillover from one group to another, or `None` if there is no weight or no change.
     pub fn spillover_between(&self, from: Group, to: Group) -> Option<SpilloverEffect> {
         self.spillovers.iter().copied().find(|spill| spill.from == from && spill.to == to)
     }

@@ -165,18 +165,18 @@ pub struct SatisfactionEquation {
     pub joined: u32,
     /// Number of subscribers at the end of the day.
     pub subscribers: u32,
-    /// Mean satisfaction of all subscribers at the end of the day; `None` without subscribers.
+    /// Mean satisfaction of all subscribers at the end of the day; `None` if there are no subscribers.
     pub end_of_day: Option<f64>,
-    /// Mean satisfaction at the end of up to 28 days, in ascending order. The last value belongs to the day of the
-    /// equation. `None` without subscribers.
+    /// Mean satisfaction at the end of each of up to 28 days, earliest day first. The last value belongs to the day of
+    /// the equation. `None` if there are no subscribers.
     pub recent_days: Vec<Option<f64>>,
     today: SatisfactionDay,
     yesterday: Option<SatisfactionDay>,
 }
 
 impl SatisfactionEquation {
-    /// Creates the equation of a group on a day. `subscribers` and `mean_satisfaction` are the number and the mean satisfaction
-    /// of the subscribers at the end of the day.
+    /// Creates the equation of a group on a day. `subscribers` and `mean_satisfaction` are the number and the mean
+    /// satisfaction of the subscribers at the end of the day.
     pub(crate) fn new(
         group: Group,
         day: u32,
@@ -204,7 +204,7 @@ impl SatisfactionEquation {
         self.today.sums.count
     }
 
-    /// Returns the mean satisfaction before the day, or `None` without subscribers.
+    /// Returns the mean satisfaction before the day, or `None` if there are no subscribers.
     pub fn before(&self) -> Option<f64> {
         mean(self.today.sums.before, self.today.sums.count)
     }

@@ -1,4 +1,5 @@
-//! Inspections show the values that the simulator used, in the equations of a recorded run and the draws of simulated days.
+//! Inspections show the values that the simulator used, in the equations of a recorded run and the draws of simulated
+//! days.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -105,7 +106,7 @@ impl DayObserver for WorldObserver {
 fn run_and_days(place: &Path) -> (Session, Vec<ObservedDay>) {
     let mut session = recorded_run(place);
     let used = Arc::new(WorldObserver::default());
-    let permit = InspectionPermit::start(&mut session, "metrics", "days", None).expect("a look");
+    let permit = InspectionPermit::start(&mut session, "metrics", "days", None).expect("an inspection");
     permit.replay_until(&session, permit.day(), used.clone()).expect("it is simulated again");
     let days = std::mem::take(&mut *used.days.lock().expect("a lock"));
     assert_eq!(days.len(), 119);
@@ -125,7 +126,7 @@ fn quality_equation_equals_delivered_quality_bit_for_bit() {
         let used = &days[day as usize - 1];
         for group in Group::all() {
             let quality_equation: QualityEquation =
-                session.inspect().quality_equation(group, Some(day)).expect("a look");
+                session.inspect().quality_equation(group, Some(day)).expect("an inspection");
             for plan in Plan::ALL {
                 let plan_quality = quality_equation.plans[plan];
                 let product = quality_equation.product_quality(plan_quality.multiplier);
@@ -156,7 +157,7 @@ fn satisfaction_terms_add_up_to_the_mean() {
         let used = &days[day as usize - 1];
         for group in Group::all() {
             let satisfaction_equation =
-                session.inspect().satisfaction_equation(group, Some(day)).expect("a look");
+                session.inspect().satisfaction_equation(group, Some(day)).expect("an inspection");
             let satisfactions = &used.satisfaction_at_day_end[group];
             assert_eq!(satisfaction_equation.subscribers as usize, satisfactions.len());
             let mean = satisfactions.iter().sum::<f64>() / satisfactions.len() as f64;
@@ -205,10 +206,10 @@ fn reputation_terms_add_up_to_the_reputation() {
     let (mut gave_up, mut lost, mut number, mut dropped) = (0, 0, 0, 0);
     for day in COMPARED_DAYS.into_iter().chain(100..118) {
         let used = &days[day as usize - 1];
-        let all = session.inspect().spillover(Some(day)).expect("a look");
+        let all = session.inspect().spillover(Some(day)).expect("an inspection");
         for group in Group::all() {
             let reputation_equation =
-                session.inspect().reputation_equation(group, Some(day)).expect("a look");
+                session.inspect().reputation_equation(group, Some(day)).expect("an inspection");
             assert_eq!(
                 reputation_equation.after.to_bits(),
                 used.reputation[group].to_bits(),
@@ -247,7 +248,7 @@ fn competitor_and_drift_state_match_the_world_and_next_move_occurs() {
     assert!(last.len() > 1);
     for day in COMPARED_DAYS.into_iter().chain([58, 59, 64, 65, 72, 73]) {
         let used = &days[day as usize - 1];
-        let rivals = session.inspect().competitor_state(Some(day)).expect("a look");
+        let rivals = session.inspect().competitor_state(Some(day)).expect("an inspection");
         assert_eq!((rivals.shared_bonus, rivals.shared_bank), used.shared);
         for (group, bonus, bank) in &rivals.group_banks {
             assert_eq!((*bonus, *bank), used.group_banks[*group]);
@@ -257,14 +258,14 @@ fn competitor_and_drift_state_match_the_world_and_next_move_occurs() {
         let coming = last.iter().find(|event| event.day > day);
         assert_eq!(rivals.next_move.as_ref().and_then(|next| next.outcome), coming.copied());
         // The predicted next move equals the simulated move.
-        let permit = InspectionPermit::start(&mut session, "streams", "rivals", None).expect("a look");
+        let permit = InspectionPermit::start(&mut session, "streams", "rivals", None).expect("an inspection");
         let (params, streams) =
             (permit.hidden_state(&session).params(), permit.hidden_state(&session).streams());
         let last_event = used.events.last().map(|event| event.day);
         let decided = next_move(day, 119, last_event, params, streams);
         let decided_move = decided.map(|next| (next.day, next.sampled, next.u));
         assert_eq!(decided_move, coming.map(|event| (event.day, event.sampled, event.u)));
-        let drift = session.inspect().drift_state(Some(day)).expect("a look");
+        let drift = session.inspect().drift_state(Some(day)).expect("an inspection");
         assert_eq!(drift.common_expectation, used.drift.global_quality);
         let group = |group: Group| drift.groups[group.index()];
         assert!(
@@ -326,7 +327,7 @@ fn next_day_makes_the_predicted_draws() {
     let mut seen = BTreeMap::new();
     for _ in 0..DRAWN_DAYS {
         let next_draws =
-            RandomPart::ALL.map(|part| session.inspect().next_draws(part, None).expect("a look"));
+            RandomPart::ALL.map(|part| session.inspect().next_draws(part, None).expect("an inspection"));
         let bonus = hidden_state(&session).world().product.shared_bonus;
         session.step(1, &mut |_| {}).expect("a day");
         for draws in next_draws {
@@ -441,7 +442,7 @@ fn purchases_make_the_predicted_draws() {
     let mut found = 0;
     for _ in 0..4 {
         for tier in [1, 2] {
-            let next_draws = session.inspect().next_draws(RandomPart::Research, None).expect("a look");
+            let next_draws = session.inspect().next_draws(RandomPart::Research, None).expect("an inspection");
             session.call("start_research_project", &json!({"tier": tier}), Via::Script).expect("a project");
             let started = hidden_state(&session).world().product.research.last().expect("a project");
             let days = started.due_day - started.started_day;
@@ -449,7 +450,8 @@ fn purchases_make_the_predicted_draws() {
             assert_eq!(next_draws.streams[tier - 1].effect, project);
         }
         for _ in 0..3 {
-            let next_draws = session.inspect().next_draws(RandomPart::Discovery, None).expect("a look");
+            let next_draws =
+                session.inspect().next_draws(RandomPart::Discovery, None).expect("an inspection");
             let before: Vec<Group> = hidden_state(&session).world().market.undiscovered().collect();
             session.call("research_market", &json!({}), Via::Script).expect("an attempt");
             let market = &hidden_state(&session).world().market;

@@ -30,8 +30,8 @@ pub struct AdoptedBranch {
 /// simulated day and can stop the simulation at the end of a week.
 ///
 /// # Errors
-/// Same errors as [`Session::branch`], and the rejections of [`WhatIf::compare`](super::WhatIf::compare) for an edit. After
-/// an error, or if the program ends during the simulation, no branch is created.
+/// Same errors as [`Session::branch`], and the rejections of [`WhatIf::compare`](super::WhatIf::compare) for an edit.
+/// After an error, or if the program ends during the simulation, no branch is created.
 pub fn create_branch_with_decisions(
     run: &Session,
     week: u32,

@@ -44,7 +44,7 @@ pub struct BranchFigures {
     /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. The branch does not
     /// execute these calls.
     pub newly_accepted: Vec<(u64, u32, ToolId)>,
-    /// First day at whose end the branch differs from the unchanged run; `None` if the branch never differs.
+    /// First day at the end of which the branch differs from the unchanged run; `None` if the branch never differs.
     pub first_different_day: Option<u32>,
 }
 
@@ -145,7 +145,8 @@ impl BranchFigures {
 }
 
 impl BranchComparison {
-    /// Returns the days for which figures are shown: 4, 12 and 26 weeks after the start of the branches, and the last day.
+    /// Returns the days for which figures are shown: 4, 12 and 26 weeks after the start of the branches, and the last
+    /// day.
     pub fn milestone_days(&self, days_per_week: u32) -> Vec<u32> {
         let weeks = [4, 12, 26].map(|weeks| self.from + weeks * days_per_week);
         let mut days: Vec<u32> = weeks.into_iter().filter(|day| *day < self.until).collect();

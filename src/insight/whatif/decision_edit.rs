@@ -21,7 +21,7 @@ use novamind_world::settings::Settings;
 /// Maximum factor of [`DecisionEdit::Scale`].
 pub const MAX_FACTOR: f64 = 1000.0;
 
-/// An edit of the decisions from the start of a week on.
+/// An edit of the decisions at and after the start of a week.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionEdit {
     /// Multiplies the current and later settings of a tool by a factor from 0 to 1,000.
@@ -44,7 +44,7 @@ pub enum DecisionEdit {
     },
     /// Adds a call after the recorded calls of its day.
     Add {
-        /// Week at whose start the call is executed, counted from 1; `None` for the first week of the what-if.
+        /// Week, counted from 1, at the start of which the call is executed; `None` for the first week of the what-if.
         week: Option<u32>,
         /// Tool of the added call.
         tool: ToolId,
@@ -53,7 +53,7 @@ pub enum DecisionEdit {
     },
     /// Sets a parameter after the calls of the day. Only debug runs allow this edit.
     Set {
-        /// Week at whose start the parameter is set, counted from 1; `None` for the first week of the what-if.
+        /// Week, counted from 1, at the start of which the parameter is set; `None` for the first week of the what-if.
         week: Option<u32>,
         /// Full key of the parameter.
         key: String,
@@ -61,8 +61,7 @@ pub enum DecisionEdit {
         value: Value,
     },
     /// Ignores calls that set the capacity. At the start of every week, sets the smallest tier that covers the busiest
-    /// day of the
-    /// previous week.
+    /// day of the previous week.
     CapacityFollowsUsage,
 }
 
@@ -196,7 +195,7 @@ impl DecisionEdit {
         Ok(())
     }
 
-    /// Adds the edit to a rejection of its arguments, because a branch can have several edits.
+    /// Adds the edit to the message of a rejection, because a branch can have several edits.
     fn name_in(&self, refusal: Rejection) -> Rejection {
         match self {
             DecisionEdit::Change { .. } | DecisionEdit::Add { .. } if refusal.code != "line_unknown" => {
@@ -292,7 +291,7 @@ fn check_number_ranges(spec: &ToolSpec, arguments: &Arguments) -> Result<(), Rej
     Ok(())
 }
 
-/// Multiplies the current settings with calls that precede all others, and multiplies the numbers in recorded calls.
+/// Scales the current settings by adding calls that precede all others, and scales the numbers in recorded calls.
 fn scale_settings(
     tool: ToolId,
     factor: f64,

@@ -21,7 +21,7 @@ pub struct DecisionHistory {
 }
 
 impl DecisionHistory {
-    /// Returns the history of decisions that changed initial settings.
+    /// Creates the history of decisions. `settings` contains the settings before the first decision.
     pub fn new(decisions: Vec<RecordedDecision>, settings: &Settings, days_per_week: u32) -> DecisionHistory {
         let initial = ToolId::all().map(|tool| (tool, tool.tool().current_arguments(settings))).collect();
         let mut undone_lines = BTreeSet::new();
@@ -43,7 +43,7 @@ impl DecisionHistory {
         self.days_per_week.max(1)
     }
 
-    /// Returns the week at whose start or within which a decision was made, counted from 1.
+    /// Returns the week, counted from 1, at the start of which or during which a decision was made.
     pub fn week_of(&self, decision: &RecordedDecision) -> u32 {
         decision.day() / self.days_per_week() + 1
     }

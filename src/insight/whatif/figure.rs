@@ -17,8 +17,8 @@ pub enum BranchFigure {
     Subscribers,
     /// Number of seats of active enterprises.
     Seats,
-    /// Cancellations of individuals in the last 30 days, as a share of the subscribers 30 days earlier; NaN without
-    /// subscribers.
+    /// Cancellations of individuals in the last 30 days, as a share of the subscribers 30 days earlier; NaN if there
+    /// are no subscribers.
     Churn,
     /// Number of individual leads in the week.
     Leads,

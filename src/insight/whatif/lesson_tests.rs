@@ -107,19 +107,27 @@ fn lesson_capacity_rule_applies_in_every_branch() {
     advance_weeks(&mut session, 6);
     let mut other = start_lesson(folder.path(), "decided");
     let more = serde_json::json!({"targeted_spend": {"content_marketing": {"S1": 6000}}});
-    other.call("set_targeted_ad_spend", &more, Via::Plain).expect("as by hand");
+    other.call("set_targeted_ad_spend", &more, Via::Plain).expect("the call is accepted");
     let mut is_distinguished = false;
     for _ in 0..10 {
         advance_weeks(&mut other, 1);
         is_distinguished |= other.company().capacity_tier_by_rule(UsageCapacityRule::BusiestDay)
             != other.company().capacity_tier_by_rule(UsageCapacityRule::StepByStep);
     }
-    assert!(is_distinguished, "another rule would lead elsewhere");
+    assert!(is_distinguished, "the capacity rule must affect the result");
     let tier = |session: &Session| session.settings().core.capacity_tier;
-    assert!(tier(&other) > tier(&session), "the lesson rents more where more is used");
+    assert!(tier(&other) > tier(&session), "more usage leads to a higher capacity tier");
     let [was, decided] = &ahead.branches[..] else { panic!("{:?}", ahead.branches) };
-    assert_eq!(cash_of_branch(was), weekly_cash(&session), "weeks that are still to come go as they do");
-    assert_eq!(cash_of_branch(decided), weekly_cash(&other), "and so does what is decided otherwise");
+    assert_eq!(
+        cash_of_branch(was),
+        weekly_cash(&session),
+        "the unchanged branch equals the weeks that were played later"
+    );
+    assert_eq!(
+        cash_of_branch(decided),
+        weekly_cash(&other),
+        "the edited branch equals the run with this decision"
+    );
     let adopted = create_branch_with_decisions(
         &session,
         1,
@@ -136,9 +144,9 @@ fn what_if_stops_at_the_end_of_the_lesson_step() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = start_lesson(folder.path(), "runs");
     advance_weeks(&mut session, 2);
-    let refused = compare(&session, 11, &[MORE_ADVERTISING]).expect_err("it is another step");
+    let refused = compare(&session, 11, &[MORE_ADVERTISING]).expect_err("the week is in another step");
     assert_eq!(refused.code, "week_unknown");
     assert!(refused.message.contains("the step of the lesson, 10"), "{refused}");
     advance_weeks(&mut session, 8);
-    compare(&session, 14, &[MORE_ADVERTISING]).expect("it is this step");
+    compare(&session, 14, &[MORE_ADVERTISING]).expect("the week is in this step");
 }

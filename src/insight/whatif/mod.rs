@@ -53,7 +53,7 @@ use novamind_world::events::DayFigures;
 pub const MAX_ALTERNATIVES: usize = 3;
 /// Minimum number of simulated weeks, unless the run ends earlier.
 const MIN_WEEKS: u32 = 12;
-/// Number of weeks before the start of the branches that figures over several days include.
+/// Number of weeks before the start of the branches that are simulated for figures over several days.
 const LOOKBACK_WEEKS: u32 = 5;
 
 /// A callback that receives the number of simulated days and the total, and can stop the simulation.
@@ -173,7 +173,7 @@ impl WhatIf {
         }
     }
 
-    /// Returns the decisions of the run from the start of a week on. Edits can change these decisions.
+    /// Returns the decisions of the run at and after the start of a week. Edits can change these decisions.
     ///
     /// # Errors
     /// `week_unknown`, and `guess_first` if the lesson waits for a guess.
@@ -259,8 +259,8 @@ impl WhatIf {
     ///
     /// # Errors
     /// `week_unknown`, `line_unknown`, `no_effect`, `edited_twice`, the rejections of the arguments of a call,
-    /// `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished
-    /// lesson `guess_first` if the lesson waits for a guess, and `not_in_this_lesson` for an unavailable tool.
+    /// `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished lesson `guess_first` if the lesson
+    /// waits for a guess, and `not_in_this_lesson` for an unavailable tool.
     pub fn compare(
         &mut self,
         week: u32,
@@ -375,8 +375,8 @@ impl WhatIf {
         }
     }
 
-    /// Returns the last day that can be simulated, with the name of what ends on this day. In an unfinished lesson,
-    /// the simulation stops at the end of the current step, because the next step can ask the student to guess the outcome.
+    /// Returns the last day that can be simulated, with the name of what ends on this day. In an unfinished lesson, the
+    /// simulation stops at the end of the current step, because the next step can ask the student to guess the outcome.
     fn last_possible_day(&self) -> (u32, &'static str) {
         let (days, last) = (self.run.days_per_week(), self.run.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {
@@ -451,7 +451,8 @@ impl BranchPoint {
         (1..=weeks).map(|week| (from + week * days_per_week).min(self.until)).collect()
     }
 
-    /// Returns the figures of the week before the branches start, or `None` if the earlier days do not cover a complete week.
+    /// Returns the figures of the week before the branches start, or `None` if the earlier days do not cover a complete
+    /// week.
     fn week_before(&self, days_per_week: u32) -> Option<WeekFigures> {
         let from = self.earlier.len().checked_sub(days_per_week as usize)?;
         let mut week = WeekFigures::default();
@@ -511,8 +512,8 @@ impl BranchPoint {
     }
 }
 
-/// Returns the latest possible first day on which two branches differ: the end of the first week with different figures, or
-/// `None` if all figures are equal.
+/// Returns the latest possible first day on which two branches differ: the end of the first week with different
+/// figures, or `None` if all figures are equal.
 fn latest_difference_day(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
     let other_figures = one.days.iter().zip(&other.days).find(|(day_figures, their)| day_figures != their);
     if let Some((day, _)) = other_figures {

@@ -1,4 +1,5 @@
-//! The tree of related runs. Each branch is shown with its first week, its first different decision, and its current state.
+//! The tree of related runs. Each branch is shown with its first week, its first different decision, and its current
+//! state.
 
 use std::path::Path;
 
@@ -18,7 +19,7 @@ pub struct RelatedRun {
     pub run: RunSummary,
     /// Number of branches between the run and the root; 0 for the root.
     pub depth: usize,
-    /// Week at whose start the branch begins, counted from 1; `None` for the root.
+    /// First week of the branch, counted from 1; `None` for the root.
     pub branched_in_week: Option<u32>,
     /// First decision that only the branch or only its parent made.
     pub first_change: Option<FirstChange>,
@@ -29,7 +30,7 @@ pub struct RelatedRun {
 pub struct BranchOrigin {
     /// ID of the parent run.
     pub run: String,
-    /// Week at whose start the branch begins.
+    /// First week of the branch.
     pub week: u32,
     /// First decision that only the branch or only its parent made; `None` if there is no such decision or the parent
     /// cannot be read.

@@ -207,7 +207,7 @@ fn history_reproduces_the_settings_before_and_after_each_decision() {
     }
     let week: Vec<&RecordedCall> =
         history.decisions_of_week(present).filter_map(RecordedDecision::call).collect();
-    assert_eq!(week.len(), 5, "without the undone price");
+    assert_eq!(week.len(), 5, "the undone price change is omitted");
     assert_eq!(history.values_before(week[1])["targeted_spend"], json!({"linkedin": {"S1": 40}}));
     assert_eq!(history.values_in_week(ToolId::SetPrices, 1)["B"], json!(25));
 }
@@ -238,7 +238,7 @@ fn futures_share_draws_across_branches_and_calls() {
     // Lower prices retain more subscribers in every future.
     let fewer = difference(1, BranchFigure::Cancellations);
     assert!(fewer.mean < 0.0 && fewer.first_greater == 0, "{fewer:?}");
-    let band = futures.interval(0, BranchFigure::Leads, 91).expect("a band");
+    let band = futures.interval(0, BranchFigure::Leads, 91).expect("an interval");
     assert!(band.low < band.median && band.median < band.high, "{band:?}");
 }
 
@@ -250,7 +250,7 @@ fn futures_redraw_only_after_the_last_recorded_day() {
         .futures(8, Some(12), &[], 4, &continue_progress)
         .expect("an answer")
         .expect("it is not stopped");
-    let band = |week: u32| futures.interval(0, BranchFigure::Cash, 7 * week).expect("a band");
+    let band = |week: u32| futures.interval(0, BranchFigure::Cash, 7 * week).expect("an interval");
     let recorded = session.weeks()[9 - 1].cash;
     assert_eq!((band(9).low, band(9).high), (recorded, recorded));
     assert!(band(11).low < band(11).high);
@@ -262,7 +262,7 @@ fn unknown_weeks_lines_and_customers_are_rejected() {
     let session = play_run(runs.path(), Mode::Debug);
     let mut what_if = open_what_if(&session);
     let mut code = |week, until, alternatives: &[Vec<DecisionEdit>]| {
-        what_if.compare(week, until, alternatives, &continue_progress).expect_err("a refusal").code
+        what_if.compare(week, until, alternatives, &continue_progress).expect_err("a rejection").code
     };
     assert_eq!(code(0, None, &[]), "week_unknown");
     assert_eq!(code(12, None, &[]), "week_unknown");
@@ -278,7 +278,7 @@ fn unknown_weeks_lines_and_customers_are_rejected() {
         });
     assert_eq!(refused.err().map(|refusal| refusal.code), Some("line_unknown"));
     assert_eq!(std::fs::read_dir(runs.path()).expect("runs").count(), 1);
-    assert!(what_if.compare(5, None, &[], &|_, _| ControlFlow::Break(())).expect("no refusal").is_none());
+    assert!(what_if.compare(5, None, &[], &|_, _| ControlFlow::Break(())).expect("no rejection").is_none());
 }
 
 #[test]
@@ -296,10 +296,10 @@ fn unfinished_baseline_rejects_what_if_and_sandbox_hides_satisfaction() {
         let mut what_if = WhatIf::open(&folder).expect("it is read");
         let mut tells = |is_recorded| {
             what_if.set_shows_hidden(is_recorded);
-            let all = what_if.compare(4, None, &[], &|_, _| ControlFlow::Continue(())).expect("no refusal");
+            let all = what_if.compare(4, None, &[], &|_, _| ControlFlow::Continue(())).expect("no rejection");
             all.expect("it was not stopped").figures.contains(&BranchFigure::Satisfaction)
         };
-        assert!(!tells(false), "{mode}: not without a line");
+        assert!(!tells(false), "{mode}: satisfaction requires a recorded inspection");
         let is_recorded = record_what_if_inspection(&mut session, 4);
         assert_eq!((is_recorded, tells(is_recorded)), (shown, shown), "{mode}");
         drop(session);
@@ -309,7 +309,10 @@ fn unfinished_baseline_rejects_what_if_and_sandbox_hides_satisfaction() {
             usize::from(shown)
         );
         let mut read = Session::open(&folder, Access::Read, false).expect("it opens");
-        assert!(!record_what_if_inspection(&mut read, 4), "{mode}: nothing writes a line");
+        assert!(
+            !record_what_if_inspection(&mut read, 4),
+            "{mode}: a read-only session records no inspection"
+        );
     }
 }
 
@@ -468,7 +471,7 @@ fn invalid_parameters_are_rejected() {
     let code = |session: &Session, edit: &str| {
         open_what_if(session)
             .compare(3, None, &[parse_edits(&[edit])], &continue_progress)
-            .expect_err("a refusal")
+            .expect_err("a rejection")
             .code
     };
     let debug = play_weeks(runs.path(), Mode::Debug, 3, None);

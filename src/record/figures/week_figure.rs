@@ -29,7 +29,7 @@ macro_rules! define_figures {
     ($($figure:ident = $name:literal, $unit:ident, $company:expr, $group:expr;)*) => {
         /// A figure of a week that explanations and lessons can name.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-        #[allow(missing_docs)] // Each is described by its name.
+        #[allow(missing_docs)] // The name of each figure describes it.
         pub enum WeekFigure { $($figure),* }
 
         impl WeekFigure {
@@ -107,7 +107,7 @@ define_figures! {
 }
 
 impl WeekFigure {
-    /// Returns the figure with this name on screens. A comma and a unit or `peak` may follow the name.
+    /// Returns the figure with this name on screens. The name may be followed by a comma and a unit or `peak`.
     pub fn parse_label(name: &str) -> Option<WeekFigure> {
         let is_named = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
         let longer = match name {
@@ -146,8 +146,8 @@ impl WeekFigure {
         matches!(self, WeekFigure::Satisfaction | WeekFigure::Reputation)
     }
 
-    /// Returns the value of the figure from the visible figures of a week, or NaN if the figure has no value. Returns
-    /// `None` if the figure needs group data or is hidden.
+    /// Computes the value of the figure from the visible figures of a week. Returns NaN if the figure has no value.
+    /// Returns `None` if the figure needs group data or is hidden.
     pub fn company_value(self, figures: &WeekFigures) -> Option<f64> {
         use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
         if matches!(self, Leads | Churn | Satisfaction | Reputation) {

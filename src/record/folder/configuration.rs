@@ -164,9 +164,11 @@ impl Configuration {
         Ok((params.run.horizon(days).last_day, cash))
     }
 
-    /// Loads the parameters of a scenario and applies the overrides. Each override is a pair `(table.key, value as TOML)`.
+    /// Loads the parameters of a scenario and applies the overrides. Each override is a pair `(table.key, value as
+    /// TOML)`.
     ///
-    /// `with_world_files` also applies the user's files in the folder `world`; baseline runs use bundled parameters only.
+    /// `with_world_files` also applies the user's files in the folder `world`; baseline runs use bundled parameters
+    /// only.
     ///
     /// # Errors
     /// A parameter value is invalid; the error names the position of the first invalid value.
@@ -196,8 +198,8 @@ impl Scenario {
         ParameterSource { name: self.source.name.clone(), text }
     }
 
-    /// Returns the length in days and the starting cash, with defaults from the parameters. `run.horizon_rule` derives the
-    /// last day from the length.
+    /// Returns the length in days and the starting cash, with defaults from the parameters. `run.horizon_rule` derives
+    /// the last day from the length.
     pub fn days_and_cash_with(&self, params: &Params) -> (u32, f64) {
         (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }
@@ -287,7 +289,7 @@ impl Configuration {
         Ok(source.map(|source| ConsentText { file: source.name, text: source.text }))
     }
 
-    /// Returns the path of a user lesson, or `None` without a configuration folder.
+    /// Returns the path of a user lesson, or `None` if there is no configuration folder.
     pub fn user_lesson_file(&self, name: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join("lessons").join(format!("{name}.toml")))
     }

@@ -109,7 +109,7 @@ impl Manifest {
         self.parameter("run", "horizon_rule").unwrap_or(HorizonRule::Exact)
     }
 
-    /// Returns the generation of the released simulator whose rules the run has at its start.
+    /// Returns the generation of the released simulator that defines the rules of the run at its start.
     pub fn generation(&self) -> Interface {
         self.parameter("fidelity", "interface").unwrap_or(Interface::Release1)
     }
@@ -310,7 +310,7 @@ fn changed_entries(table: &Table, bundled: &Table) -> Table {
         .collect()
 }
 
-/// Returns the start event, which is the first line of a trajectory, for a manifest.
+/// Converts a manifest to the start event, which is the first line of a trajectory.
 pub fn to_start_record(manifest: &Manifest) -> Record {
     let manifest = manifest.clone();
     Record::Start(Box::new(Start {

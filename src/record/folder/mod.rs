@@ -1,4 +1,5 @@
-//! The runs folder with manifests, locks, run lists and previews, and the configuration with scenarios, consent and queries.
+//! The runs folder with manifests, locks, run lists and previews, and the configuration with scenarios, consent and
+//! queries.
 
 pub mod configuration;
 pub mod lock;

@@ -51,7 +51,7 @@ pub struct RunSummary {
     pub days: u32,
     /// Rule that derived the last day.
     pub horizon_rule: HorizonRule,
-    /// Generation of the released simulator whose rules the run has.
+    /// Generation of the released simulator that defines the rules of the run.
     pub generation: Interface,
     /// Cash on day 0, dollars.
     pub starting_cash: f64,
@@ -263,8 +263,8 @@ fn read_tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
     Ok((String::from_utf8_lossy(&bytes).into_owned(), window >= length))
 }
 
-/// Finds a run to play and returns its folder. `id` is a run id, a unique prefix, or `latest`: the newest unfinished
-/// run.
+/// Finds a run to play and returns its folder. `id` is a run id, a unique prefix of a run id, or `latest` for the
+/// newest unfinished run.
 ///
 /// # Errors
 /// No run matches, or several runs match.
@@ -272,7 +272,8 @@ pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find_matching_run(runs, id, |run| run.ended.is_none())
 }
 
-/// Finds a run to read and returns its folder. `id` is a run id, a unique prefix, or `latest`: the newest run.
+/// Finds a run to read and returns its folder. `id` is a run id, a unique prefix of a run id, or `latest` for the
+/// newest run.
 ///
 /// # Errors
 /// No run matches, or several runs match.
@@ -327,8 +328,8 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
     std::fs::remove_dir_all(&folder).map_err(RunError::io(&folder))
 }
 
-/// Returns the earlier runs of a participant in all related folders. Without a label, returns the unlabeled runs in
-/// this folder.
+/// Returns the earlier runs of a participant in all related folders. If there is no label, returns the unlabeled runs
+/// in this folder.
 pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());

@@ -163,7 +163,7 @@ pub struct LessonStep {
     /// Goals of the step.
     #[serde(rename = "goal", default)]
     pub goals: Vec<LessonGoal>,
-    /// Hints in the order in which they are shown, from vague to almost the complete solution.
+    /// Hints in the order in which they are shown, from a vague hint to the almost complete solution.
     #[serde(default)]
     pub hints: Vec<String>,
 }
@@ -401,7 +401,7 @@ impl TryFrom<RawPitfall> for Pitfall {
     }
 }
 
-/// A play with scheduled calls, with which students' runs are compared.
+/// A play with scheduled calls. Students' runs are compared with this play.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReferencePlay {

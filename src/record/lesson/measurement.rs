@@ -67,7 +67,7 @@ impl TryFrom<RawMeasurement> for Measurement {
             Some(other) => return Err(format!("`over` must be `end`, `sum` or `mean`, not {other}")),
         };
         if over != WeekAggregation::Last && matches!(source, NumberSource::Sql(_)) {
-            return Err("remove over: an SQL statement has to select the days itself".to_owned());
+            return Err("remove `over`: an SQL statement has to select the days itself".to_owned());
         }
         Ok(Measurement { source, aggregation: over })
     }
@@ -83,7 +83,7 @@ impl Measurement {
         }
     }
 
-    /// Describes the figure: `cash`, `sum of payments`. Returns `None` for a statement.
+    /// Describes the figure, for example `cash` or `sum of payments`. Returns `None` for a statement.
     pub fn describe(&self) -> Option<String> {
         let name = match &self.source {
             NumberSource::Cash => "cash",
@@ -105,7 +105,8 @@ impl Measurement {
         }
     }
 
-    /// Returns the aggregate of a figure over weeks, or `None` if no week has a value or the source is an SQL statement.
+    /// Returns the aggregate of a figure over weeks, or `None` if no week has a value or the source is an SQL
+    /// statement.
     pub fn aggregate<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
         let value = |week: &WeekFigures| match &self.source {
             NumberSource::Cash => Some(week.cash),

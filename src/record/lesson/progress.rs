@@ -140,7 +140,8 @@ impl LessonProgress {
         (0..self.current_part().steps.len()).rev().find(|step| self.has_started(*step)).unwrap_or(0)
     }
 
-    /// Returns the student's guess for a step. For a question with choices, the guess is the number of the choice, from 1.
+    /// Returns the student's guess for a step. For a question with choices, the guess is the number of the choice, from
+    /// 1.
     pub fn guess(&self, step: usize) -> Option<f64> {
         self.last_event(LessonEvent::Guess, step)?.value
     }

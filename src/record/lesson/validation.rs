@@ -8,7 +8,7 @@ use crate::folder::configuration::Configuration;
 
 /// A defect of a lesson file.
 pub(super) struct LessonDefect {
-    /// Text by which the faulty line is found.
+    /// Text that identifies the faulty line.
     pub place: String,
     pub key: &'static str,
     pub problem: String,

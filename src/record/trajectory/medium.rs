@@ -80,7 +80,7 @@ fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// Compares only lengths, because an open file can be neither moved nor removed on systems other than Unix.
+/// Compares only lengths: on systems other than Unix, an open file can be neither moved nor removed.
 #[cfg(not(unix))]
 fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     one.len() == other.len()

@@ -9,14 +9,15 @@ use std::path::Path;
 use super::medium::Medium;
 use super::writer::Durability;
 
-/// A file that consists of `synced` bytes, which survive a power cut, and the bytes of `unsynced`.
+/// A file that consists of `synced` bytes, which survive a power cut, and the bytes in `unsynced`.
 pub(super) struct SyncedFile {
     medium: Box<dyn Medium>,
     /// Length of the prefix that a successful sync covers.
     synced: u64,
     /// Accepted bytes after the synced prefix.
     unsynced: Vec<u8>,
-    /// Whether the content after `synced` is unknown. If true, `unsynced` must be rewritten before more bytes are accepted.
+    /// Whether the content after `synced` is unknown. If true, `unsynced` must be rewritten before more bytes are
+    /// accepted.
     needs_rewrite: bool,
 }
 
@@ -93,8 +94,8 @@ impl SyncedFile {
         }
     }
 
-    /// Uses the same file descriptor, which reports each write-back error since it was opened. A new descriptor would
-    /// not report earlier errors.
+    /// Rewrites and syncs the bytes after the synced prefix. Uses the same file descriptor, because a new descriptor
+    /// would not report earlier write-back errors.
     fn rewrite_unsynced(&mut self) -> io::Result<()> {
         self.restore_unsynced()?;
         self.sync_once()

@@ -189,7 +189,7 @@ impl TrajectoryWriter {
         })
     }
 
-    /// Returns why new lines cannot be saved, after the writer has detected the problem.
+    /// Returns the reason why new lines cannot be saved, or `None` if the writer has not detected a problem.
     pub fn loss_reason(&self) -> Option<&str> {
         self.loss_reason.as_deref()
     }

@@ -28,7 +28,8 @@ use novamind_record::trajectory::{Line, Trajectory};
 
 /// A verified copy of a run, ready to be inspected and archived.
 ///
-/// The copy contains the files of the run at the time of the export. Another program can play the run during the export.
+/// The copy contains the files of the run at the time of the export. Another program can play the run during the
+/// export.
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
@@ -39,12 +40,12 @@ pub struct Export {
 }
 
 impl Export {
-    /// Copies the run in a folder and verifies it by simulation. The copies are in a hidden folder in `parent`, which
-    /// should be on the same disk as the archive. `key` is the seal key of the run's snapshots.
+    /// Copies the run in a folder and verifies the copy by simulation. The copies are in a hidden folder in `parent`,
+    /// which should be on the same disk as the archive. `key` is the seal key of the run's snapshots.
     ///
     /// # Errors
-    /// [`RunError::Damaged`] if the run is damaged; names the file, the line and the data that is safe. Other errors
-    /// if the run was recorded with another version, or if `parent` cannot be written.
+    /// [`RunError::Damaged`] if the run is damaged; the error names the file, the line and the data that is safe. Other
+    /// errors if the run was recorded with another version, or if `parent` cannot be written.
     pub fn prepare(folder: &Path, parent: &Path, key: &SealKey) -> Result<Export, RunError> {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();

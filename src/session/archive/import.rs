@@ -47,9 +47,10 @@ pub type ImportResult = (Seal, Option<LabPublicKey>, ImportOutcome);
 /// run. The lines keep the original run id.
 ///
 /// # Errors
-/// [`RunError::InvalidArchive`] if the archive is damaged or unsafe, or is not an archive of a run; names the file.
-/// [`RunError::AlreadyExists`] if the folder contains the run with an earlier, later or different trajectory or
-/// manifest, or if `name` is in use. [`RunError::InvalidRequest`] if `name` is invalid. After an error, nothing has changed.
+/// [`RunError::InvalidArchive`] if the archive is damaged or unsafe, or is not an archive of a run; the error names the
+/// file. [`RunError::AlreadyExists`] if the folder contains the run with an earlier, later or different trajectory or
+/// manifest, or if `name` is in use. [`RunError::InvalidRequest`] if `name` is invalid. After an error, nothing has
+/// changed.
 pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportResult, RunError> {
     if let Some(name) = name.filter(|name| !is_valid_run_name(name)) {
         let message = format!(

@@ -55,7 +55,8 @@ impl Drop for TemporaryFolder {
 /// Maximum number of attempts to remove a temporary folder to which another thread may still be writing.
 const MAX_REMOVAL_ATTEMPTS: usize = 100;
 
-/// Removes all temporary folders and prevents the creation of new ones. Called when a signal is about to end the program.
+/// Removes all temporary folders and prevents the creation of new ones. Called when a signal is about to end the
+/// program.
 pub fn remove_temporary_folders() {
     let folders = {
         let mut open = lock_open_folders();

@@ -1,4 +1,4 @@
-//! The state hash: a hash of all parts of the world and the facts of the week.
+//! The state hash: a hash of all parts of the world and of the facts of the week.
 
 use std::collections::BTreeMap;
 

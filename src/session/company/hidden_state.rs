@@ -87,8 +87,8 @@ impl<'a> HiddenState<'a> {
         self.world.market.yields[channel][group]
     }
 
-    /// Returns the mean satisfaction and the mean relationship of a group's active subscribers; `None` if there are no active
-    /// subscribers.
+    /// Returns the mean satisfaction and the mean relationship of a group's active subscribers; `None` if there are no
+    /// active subscribers.
     pub fn mean_satisfaction(&self, group: Group) -> Option<(f64, f64)> {
         mean_satisfaction(self.world, group)
     }
@@ -112,7 +112,7 @@ impl<'a> HiddenState<'a> {
     }
 
     /// Returns the judgements of a post of the player, one per group that was known on the day of the post. The result
-    /// is empty if the post is not judged yet. Posts are numbered from 1.
+    /// is empty if the post has not been judged yet. Posts are numbered from 1.
     pub fn judgements(&self, own_post: u32) -> &'a [Judgement] {
         let at = (own_post as usize).checked_sub(1);
         at.and_then(|at| self.judgements.get(at)).map_or(&[], Vec::as_slice)

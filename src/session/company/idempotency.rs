@@ -1,7 +1,8 @@
 //! Stored responses to requests with an id. If a client retries a request, the session returns the stored response.
 //!
 //! Lines of calls and weeks contain the request ids, so retries are recognized after the run is reopened. Responses to
-//! calls are read from the lines. Responses to weeks contain the dashboard of their day, so snapshots store these responses.
+//! calls are read from the lines. Responses to weeks contain the dashboard of their day, so snapshots store these
+//! responses.
 
 use std::collections::BTreeMap;
 
@@ -73,7 +74,7 @@ impl IdempotentResponses {
         }
     }
 
-    /// Returns the stored response to the request with an id, or `None` if no request has the id.
+    /// Returns the stored response to the request with this id, or `None` if no request has the id.
     pub(crate) fn find_by_id(&self, id: &str) -> Option<&IdempotentResponse> {
         self.by_id.get(id).map(|(_, response)| response)
     }

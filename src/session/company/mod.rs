@@ -1,4 +1,5 @@
-//! The company of a run in memory: simulation, history and texts. This module does not use files, records or permissions.
+//! The company of a run in memory: simulation, history and texts. This module does not use files, records or
+//! permissions.
 
 pub(crate) mod facts_chain;
 pub(crate) mod feed;

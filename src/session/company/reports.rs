@@ -30,7 +30,8 @@ pub struct WeekResult {
     pub notices: Vec<(u32, String)>,
     /// Reason for the end of the run, if the run ended with this week.
     pub ended: Option<RunEndReason>,
-    /// Message about a problem with the closing line, the lead limit of the next day, the database or the language model.
+    /// Message about a problem with the closing line, the lead limit of the next day, the database or the language
+    /// model.
     pub remark: Option<String>,
 }
 

@@ -153,7 +153,7 @@ impl Simulation {
         self.watch.on_call_applied(&self.facts);
     }
 
-    /// Returns the parts of the simulation that a change between two days needs, with facts to write to.
+    /// Returns the parts of the simulation that are needed for a change between two days, including facts to write to.
     pub(crate) fn parts_between_days(
         &mut self,
         entries: EntryWriter<'_>,

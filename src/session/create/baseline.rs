@@ -1,5 +1,5 @@
-//! Conditions for baseline runs outside of studies: a participant label, the scenario of a generation of
-//! the simulator, and the default days and cash for comparable results.
+//! Conditions for baseline runs outside of studies: a participant label, one of the baseline scenarios, and the default
+//! days and cash, so that results can be compared.
 
 use super::{NewRun, Storage};
 use novamind_base::formatting::{dollars, grouped_number};
@@ -12,8 +12,8 @@ use novamind_record::mode::Mode;
 const BASELINE_SCENARIOS: [&str; 2] = [DEFAULT_SCENARIO, "release-2"];
 
 impl NewRun {
-    /// Checks that a baseline run has a participant label, the scenario of a generation, and the default days and cash.
-    /// Runs of studies and other modes are not restricted.
+    /// Checks that a baseline run has a participant label, one of the baseline scenarios, and the default days and
+    /// cash. Runs of studies and other modes are not restricted.
     ///
     /// # Errors
     /// [`RunError::InvalidRequest`] with the next step if the run does not meet these conditions; another error if the

@@ -1,4 +1,4 @@
-//! Time of a run by kind: active, idle, away. Tables and time limits use these definitions.
+//! Time spent in a run, by kind: active, idle, away. Tables and time limits use these definitions.
 //!
 //! Time is measured between two lines. `session` and `clock` lines determine the kind of the time. Before the first
 //! `session` line, a gap of more than ten minutes is a break. Time in which the program simulates days or waits for a
@@ -127,7 +127,7 @@ fn to_seconds(nanoseconds: i64) -> f64 {
     ((nanoseconds + NS_PER_MS / 2) / NS_PER_MS) as f64 / 1e3
 }
 
-/// A period of time of one kind. Its ends are in nanoseconds since the first line.
+/// A period of time of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimeSpan {
     /// Start of the period, nanoseconds since the first line.
@@ -384,7 +384,7 @@ fn is_user_action(record: &Record) -> bool {
 /// Active time in seconds below which the decisions of a week were implausibly fast.
 pub const FAST_WEEK_SECONDS: f64 = 10.0;
 
-/// The period in which a week, or single days, were decided and simulated.
+/// The period in which the decisions for a week, or for single days, were made and the days were simulated.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct AttendedWeek {
     /// End of the previous week, nanoseconds since the first line.
@@ -396,7 +396,8 @@ pub struct AttendedWeek {
 }
 
 impl AttendedWeek {
-    /// Returns whether the week was decided in this run in less than [`FAST_WEEK_SECONDS`] of active time.
+    /// Returns whether the decisions for the week were made in this run and took less than [`FAST_WEEK_SECONDS`] of
+    /// active time.
     pub fn is_implausibly_fast(&self, time: &TimeSpent) -> bool {
         !self.is_inherited && time.active_seconds() < FAST_WEEK_SECONDS
     }

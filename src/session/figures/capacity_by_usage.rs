@@ -8,8 +8,8 @@ const TARGET_UTILIZATION: f64 = 0.8;
 /// A rule that sets the capacity tier according to usage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UsageCapacityRule {
-    /// Select the smallest tier that serves the busiest day of the last week without overload, or the largest tier.
-    /// Before the first week, the tier does not change.
+    /// Select the smallest tier that serves the busiest day of the last week without overload, or the largest tier if
+    /// none does. Before the first week, the tier does not change.
     BusiestDay,
     /// Move by one tier per week toward the smallest tier that serves the mean usage of the last week at 80 %
     /// utilization. Lessons and the routine in the paper use this rule.
@@ -33,7 +33,7 @@ impl UsageCapacityRule {
     }
 }
 
-/// Returns the smallest tier that serves `units` per day, or the largest tier.
+/// Returns the smallest tier that serves `units` per day, or the largest tier if none does.
 fn smallest_covering_tier(units: f64, now: u8, params: &Params) -> u8 {
     let tiers = &params.capacity_tier;
     let holds = |tier: &&CapacityTier| f64::from(tier.capacity_units) >= units;

@@ -18,7 +18,7 @@ pub struct PaidLeads {
     pub leads: u32,
     /// Advertising spending, dollars.
     pub spend: f64,
-    /// Individuals among the leads who signed up and were billed on the day of their arrival.
+    /// Number of individual leads that signed up and were billed on the day of their arrival.
     pub billed: u32,
 }
 
@@ -33,8 +33,8 @@ pub struct GroupWeek {
     pub word_of_mouth: u32,
     /// Results of advertising to the group, by channel.
     pub paid: ByChannel<PaidLeads>,
-    /// Enterprises among the leads that opened a thread. The other enterprises found no plan of sufficient quality at
-    /// any price.
+    /// Number of enterprise leads that opened a thread. All other enterprise leads found no plan of sufficient quality
+    /// at any price.
     pub asked: u32,
     /// Number of individuals who signed up, or of enterprises that accepted a first deal.
     pub signed: u32,
@@ -143,14 +143,14 @@ pub(crate) fn finish_week(
     }
 }
 
-/// Subscriptions of a plan that could use the product on the last day, and what they pay.
+/// The subscriptions of a plan that could use the product on the last day, and their revenue.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PlanRevenue {
     /// Number of subscriptions.
     pub subscriptions: u32,
     /// Number of whole seats of the subscriptions.
     pub seats: f64,
-    /// Revenue of the subscriptions, dollars a month.
+    /// Revenue of the subscriptions, dollars per month.
     pub monthly: f64,
 }
 
@@ -169,8 +169,8 @@ pub(crate) fn plan_revenue(world: &World) -> ByPlan<PlanRevenue> {
     revenue
 }
 
-/// Returns the mean satisfaction and the mean relationship of a group's active subscribers, or `None` if the group has no
-/// active subscribers.
+/// Returns the mean satisfaction and the mean relationship of a group's active subscribers, or `None` if the group has
+/// no active subscribers.
 pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();
     let count: usize = blocks().map(Block::len).sum();

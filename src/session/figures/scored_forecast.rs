@@ -19,7 +19,7 @@ pub struct ScoredForecast {
     pub outcome: Option<f64>,
 }
 
-/// Position of an outcome relative to an interval. The interval includes its ends.
+/// Position of an outcome relative to an interval, which includes its endpoints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IntervalPosition {
     /// The outcome is below the lower end of the interval.

@@ -109,7 +109,8 @@ impl SettingId {
         }
     }
 
-    /// Returns the plan of a price, model tier or quota, or `None` for other settings.
+    /// Returns the plan to which the setting belongs if the setting is a price, model tier or quota, and `None`
+    /// otherwise.
     pub fn plan(self) -> Option<Plan> {
         match self {
             SettingId::Price(plan) | SettingId::ModelTier(plan) | SettingId::Quota(plan) => Some(plan),

@@ -199,14 +199,14 @@ pub struct ObservedDays<'a> {
     pub replays_past_days: bool,
     /// Function that returns whether to continue after a day.
     pub should_continue: &'a dyn Fn(u32) -> bool,
-    /// Inspections to record afterward: their kind, and the subject of each inspection.
+    /// Inspections to record after the simulation: their kind, and the subject of each inspection.
     pub inspections: (&'a str, Vec<String>),
 }
 
 impl ObservedDays<'_> {
     /// Simulates at least one day of a debug run and passes the days to the observer. Each inspection is recorded on
-    /// the last day, because even the decision to continue or stop reveals hidden state. Without inspections, the
-    /// observer does not receive any days.
+    /// the last day, because even the decision to continue or stop reveals hidden state. If there are no inspections,
+    /// the observer does not receive any days.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have been simulated.

@@ -27,7 +27,7 @@ impl RunReplay {
     }
 
     /// Applies lines up to the current line of the run, while `goes_on` returns true for the current day. Each line
-    /// must result in the state that it records. Calls `tell` for each simulated day.
+    /// must result in the state that it records. Calls `progress` for each simulated day.
     ///
     /// # Errors
     /// The rejection `not_readable`.

@@ -286,8 +286,8 @@ impl Session {
         if unclosed.is_none() {
             self.reword_posts_after(from);
         }
-        // The run ends even if the line of its last week is not saved: both lines stay in memory until the disk is
-        // writable.
+        // The run ends even if the line of its last week is not saved: this line and the `end` line stay in memory
+        // until the disk is writable.
         let problem = match self.pending_end_reason() {
             Some(ended) => self.close_run(ended),
             None => unclosed,

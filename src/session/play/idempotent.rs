@@ -121,7 +121,7 @@ impl Session {
         }
     }
 
-    /// Returns the stored response to the request with an id, or `None` if no executed request has the id.
+    /// Returns the stored response to the request with this id, or `None` if no executed request has the id.
     pub fn stored_response(&self, id: &str) -> Option<&IdempotentResponse> {
         self.history.idempotent_responses.find_by_id(id)
     }

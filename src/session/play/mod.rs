@@ -245,7 +245,8 @@ impl Session {
         self.params().fidelity.interface == novamind_world::params::Interface::Release2
     }
 
-    /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for abandoned runs.
+    /// Returns the score: cash after the last day, 0 after a bankruptcy. Returns `None` before the end and for
+    /// abandoned runs.
     pub fn score(&self) -> Option<f64> {
         self.company().score()
     }

@@ -182,8 +182,8 @@ mod tests {
         let runs = tempfile::tempdir().expect("a folder");
         let (folder, mut session) = new_run(runs.path());
         session.set_notes("first").expect("kept");
-        std::fs::create_dir(folder.join(DRAFT_FILE)).expect("in the way");
-        assert_eq!(session.set_notes("second").expect_err("no room").code, "not_saved");
+        std::fs::create_dir(folder.join(DRAFT_FILE)).expect("a folder at the path of the file");
+        assert_eq!(session.set_notes("second").expect_err("the notes cannot be saved").code, "not_saved");
         assert_eq!(session.notes().expect("notes"), "first");
     }
 }

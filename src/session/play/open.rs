@@ -27,7 +27,8 @@ pub enum Access {
     Read,
 }
 
-/// Functions that store the results of a simulation, so that the next read-only command need not repeat it.
+/// Functions that store the results of a simulation, so that the next read-only command does not need to repeat the
+/// simulation.
 #[derive(Clone, Copy)]
 pub(crate) struct StoreFunctions {
     /// Returns whether the state at the end of the run may be stored.
@@ -47,7 +48,7 @@ impl Session {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// Opens a run like [`Session::open`], with snapshots that are sealed with `key`.
+    /// Opens a run like [`Session::open`]. The snapshots of the run are sealed with `key`.
     ///
     /// # Errors
     /// The same errors as [`Session::open`].
@@ -60,8 +61,8 @@ impl Session {
         Session::open_with_cache(folder, access, projection, key, None)
     }
 
-    /// Opens a run like [`Session::open_sealed`]. If `keeping` is set, stores the simulated state and the database for
-    /// later read-only commands.
+    /// Opens a run like [`Session::open_sealed`]. If `store_functions` is set, stores the simulated state and the
+    /// database for later read-only commands.
     ///
     /// # Errors
     /// The same errors as [`Session::open`].
@@ -150,7 +151,8 @@ impl Session {
     }
 }
 
-/// Starts the database. Uses the existing contents only if `sound` is true, that is, the file passed its integrity check.
+/// Starts the database. Uses the existing contents only if `is_intact` is true, that is, if the file passed its
+/// integrity check.
 pub(crate) fn open_projector(
     folder: &Path,
     access: Access,

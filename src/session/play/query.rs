@@ -42,7 +42,7 @@ impl Session {
         Ok(self.up_to_date_database()?.interrupt_handle()?.issue_ticket())
     }
 
-    /// Runs an SQL statement with these limits without recording the query.
+    /// Runs an SQL statement with these limits. Does not record the query.
     ///
     /// # Errors
     /// A rejection whose code begins with `sql_`.
@@ -121,7 +121,7 @@ impl Session {
         self.history.query_history.drain(..surplus);
     }
 
-    /// Returns the database after all rows are written. Repairs the database if it could not be written before.
+    /// Returns the database after all rows are written. Repairs the database if an earlier write failed.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -10,7 +10,8 @@ use novamind_record::error::RunError;
 use novamind_record::trajectory::Trajectory;
 
 impl Session {
-    /// Repairs the database from the trajectory if it could not be written. Afterward, earlier connections are stale.
+    /// Repairs the database from the trajectory if an earlier write failed. After a repair, earlier connections are
+    /// stale.
     ///
     /// # Errors
     /// The database still cannot be written. In this case, nothing has changed.
@@ -109,7 +110,7 @@ mod tests {
         );
         assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
         // After disk space is available, a query repairs the database and the run continues.
-        let remark = advance_week(&mut session).remark.expect("the week says so");
+        let remark = advance_week(&mut session).remark.expect("the week has a remark");
         assert!(remark.contains("could not be written") && remark.contains("next query"), "{remark}");
         assert_eq!(database_progress(&mut session), database_progress(&mut straight));
         assert!(session.database().failure().is_none());

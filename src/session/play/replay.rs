@@ -81,7 +81,7 @@ impl Session {
         self.apply_line_with_progress(path, line, &mut |_| {})
     }
 
-    /// Applies a line like [`Session::apply_line`], and calls `tell` for each simulated day.
+    /// Applies a line like [`Session::apply_line`], and calls `progress` for each simulated day.
     pub(crate) fn apply_line_with_progress(
         &mut self,
         path: &Path,

@@ -16,8 +16,8 @@ impl Session {
     }
 
     /// Stores the current state as a snapshot and commits the database. A run in memory has no snapshot. If `closing`
-    /// is true, the snapshot also contains the digest of the database file. Ignores disk errors: without a snapshot,
-    /// opening the run only takes longer.
+    /// is true, the snapshot also contains the digest of the database file. Ignores disk errors: if there is no
+    /// snapshot, opening the run only takes longer.
     pub(super) fn save_snapshot(&self, state_hash: impl FnOnce() -> String, closing: bool) {
         let Some(folder) = self.folder.as_ref().filter(|_| self.log.is_written()) else {
             return self.commit_projection();
@@ -27,7 +27,8 @@ impl Session {
         self.write_snapshot_with_hash(state_hash(), SnapshotTarget::new(folder, &self.seal_key), closing);
     }
 
-    /// Writes a snapshot of the current state. If `closing` is true, the snapshot contains the digest of the database file.
+    /// Writes a snapshot of the current state. If `closing` is true, the snapshot contains the digest of the database
+    /// file.
     pub(crate) fn write_snapshot(&self, place: SnapshotTarget, closing: bool) {
         self.write_snapshot_with_hash(self.state_hash().0, place, closing);
     }

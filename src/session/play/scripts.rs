@@ -74,7 +74,7 @@ impl Session {
         require_player(is_played && !self.context.is_python_disabled)
     }
 
-    /// Executes a Python script. Records its queries if `noted` is true.
+    /// Executes a Python script. Records the queries of the script if `records_queries` is true.
     fn run_python(
         &mut self,
         code: &str,

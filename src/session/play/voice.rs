@@ -56,7 +56,7 @@ impl Session {
             .collect()
     }
 
-    /// Sets the recorded scores for posts of another run that this run publishes again.
+    /// Sets the recorded scores of another run, whose posts this run publishes again.
     pub fn set_inherited_scores(&mut self, judged: Vec<JudgedPost>) {
         self.voice.inherited_scores = judged;
     }

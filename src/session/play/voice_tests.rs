@@ -193,7 +193,7 @@ fn baseline_run_has_a_model_only_if_its_study_names_one() {
     let stub = StubModel::start(StubBehavior::Correct);
     let named = stub.configuration(false, true, 30);
     let new = || new_run(runs.path(), Mode::Baseline);
-    let refused = Session::create(new(), &named).err().expect("it is refused").to_string();
+    let refused = Session::create(new(), &named).err().expect("it is rejected").to_string();
     assert!(refused.contains("study.toml") && refused.contains("Nothing was recorded"), "{refused}");
     assert_eq!(std::fs::read_dir(runs.path()).expect("a folder").count(), 0);
 
@@ -214,7 +214,7 @@ fn baseline_run_has_a_model_only_if_its_study_names_one() {
     let silent = Session::create(of_study(None), &named).expect("a run");
     assert_eq!(silent.manifest().voice, None, "a study without a model has none");
     let session = Session::create(of_study(named.voice.clone()), &Configuration::bundled()).expect("a run");
-    let stamp = session.manifest().voice.clone().expect("the run says so");
+    let stamp = session.manifest().voice.clone().expect("the run records the model");
     assert_eq!((stamp.model.as_str(), stamp.judge, stamp.words), ("stub", false, true));
     let folder = run_folder(&session);
     assert_eq!(Manifest::read(&folder).expect("a manifest").voice, Some(stamp.clone()));
@@ -244,7 +244,7 @@ fn missing_key_is_rejected_and_other_model_is_not_connected() {
     );
     assert_eq!(session.model_settings(), None);
     session.connect_model(stub.configuration(false, true, 5).voice.as_ref());
-    assert!(session.model_settings().is_some(), "time may differ");
+    assert!(session.model_settings().is_some(), "the time limit may differ");
 }
 
 #[test]

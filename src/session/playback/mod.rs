@@ -90,8 +90,7 @@ impl Playback {
         &mut self.session
     }
 
-    /// Moves the playback to a target. Seeking back uses a new session, so that the seek can be stopped without an
-    /// effect.
+    /// Moves the playback to a target. Seeking back uses a new session, so that a stopped seek has no effect.
     ///
     /// # Errors
     /// A line does not reproduce the recorded state. After such an error, the playback ends before this line.

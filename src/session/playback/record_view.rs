@@ -15,7 +15,7 @@ pub struct RecordView {
     pub at: String,
     /// Event that the line records.
     pub record: Record,
-    /// Forecasts in the line, with outcomes from the complete record, including later outcomes.
+    /// Forecasts in the line, with outcomes from the complete record, including outcomes after the current day.
     pub forecasts: Vec<ScoredForecast>,
     /// Current day of the playback. Outcomes after this day were not known to the player.
     pub today: u32,

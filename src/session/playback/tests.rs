@@ -65,7 +65,7 @@ fn read_files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 }
 
 fn seek(playback: &mut Playback, goal: SeekTarget) -> SeekResult {
-    playback.seek(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
+    playback.seek(goal, &mut |_| ControlFlow::Continue(())).expect("the seek succeeds")
 }
 
 fn recorded_hashes(folder: &Path) -> BTreeMap<u32, String> {
@@ -156,7 +156,7 @@ fn position_marks_future_outcomes() {
     let early = &entry.forecasts;
     assert!(early.iter().all(|forecast| entry.is_future(forecast)));
     assert!(early[0].outcome.is_some() && early[1].outcome.is_some(), "days 7 and 28 were recorded");
-    assert_eq!(early[2].outcome, None, "day 84 was not");
+    assert_eq!(early[2].outcome, None, "day 84 was not recorded");
     seek(&mut playback, SeekTarget::Last);
     let entry = foreseen(&playback);
     let late = entry.forecasts[0];
@@ -189,7 +189,11 @@ fn playback_is_read_only_and_seeks_can_be_stopped() {
     assert_eq!(days, [7, 14]);
     seek(&mut playback, SeekTarget::Last);
     let back = playback.seek(SeekTarget::Week(2), &mut |_| ControlFlow::Break(())).expect("no problem");
-    assert_eq!((back, playback.session().day()), (SeekResult::Stopped, 28), "back is all or nothing");
+    assert_eq!(
+        (back, playback.session().day()),
+        (SeekResult::Stopped, 28),
+        "a backward seek is all or nothing"
+    );
 }
 
 #[test]
@@ -241,10 +245,11 @@ fn standalone_trajectory_can_be_played() {
     seek(&mut playback, SeekTarget::Last);
     assert_eq!(playback.session().state_hash().0, recorded_hashes(&run.folder)[&21]);
     let verified = verify(&file).expect("it verifies");
-    assert_eq!(verified, verify(&run.folder).expect("as the run does"));
+    assert_eq!(verified, verify(&run.folder).expect("the run verifies"));
     assert_eq!((verified.day, verified.states), (21, 3));
     assert_eq!(playback.create_branch(Mode::Sandbox).err().expect("refused").code, "not_possible");
-    let problem = Playback::open(&elsewhere.path().join("none.jsonl")).err().expect("there is none");
+    let problem =
+        Playback::open(&elsewhere.path().join("none.jsonl")).err().expect("the file does not exist");
     assert!(problem.to_string().contains("none.jsonl"), "{problem}");
 }
 
@@ -300,7 +305,7 @@ fn playback_stops_before_a_state_that_does_not_reproduce() {
     for line in &lines {
         writer.append(line.day, &line.record, Durability::Written).expect("a line");
     }
-    let mut playback = Playback::open(&copy).expect("the chain is whole");
+    let mut playback = Playback::open(&copy).expect("the hash chain is valid");
     let problem =
         playback.seek(SeekTarget::Last, &mut |_| ControlFlow::Continue(())).expect_err("another state");
     assert!(problem.to_string().contains("line"), "{problem}");
@@ -308,5 +313,5 @@ fn playback_stops_before_a_state_that_does_not_reproduce() {
     assert!(reached == 21, "{reached}");
     assert_eq!(playback.session().state_hash().0, recorded_hashes(&run.folder)[&21]);
     seek(&mut playback, SeekTarget::Last);
-    assert_eq!(playback.session().day(), 21, "the playback does not pass it");
+    assert_eq!(playback.session().day(), 21, "the playback stops before the invalid line");
 }

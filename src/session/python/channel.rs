@@ -1,4 +1,5 @@
-//! The socket between session and script. The script sends requests and the session sends answers, one JSON value per line.
+//! The socket between session and script. The script sends requests and the session sends answers, one JSON value per
+//! line.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::Shutdown;

@@ -71,6 +71,6 @@ fn mixed_files_of_two_runs_are_rejected() {
     let (one, other) = (record_run(Mode::Sandbox, 1), record_run(Mode::Sandbox, 1));
     std::fs::copy(other.folder.join("trajectory.jsonl"), one.folder.join("trajectory.jsonl"))
         .expect("copied");
-    let error = Session::open(&one.folder, Access::Write, true).err().expect("it is refused").to_string();
+    let error = Session::open(&one.folder, Access::Write, true).err().expect("it is rejected").to_string();
     assert!(error.contains("contradicts run.toml"), "{error}");
 }

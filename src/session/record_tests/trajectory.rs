@@ -79,7 +79,7 @@ fn append_fails_if_the_file_was_replaced_or_changed() {
     assert!(matches!(note(&mut second), Err(RunError::FileReplaced { .. })), "a copy is another file");
     std::fs::remove_file(&path).expect("removed");
     std::fs::rename(folder.path().join("aside"), &path).expect("moved back");
-    note(&mut second).expect("it is there again");
+    note(&mut second).expect("the file was moved back");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
         assert!(words.contains("no longer on disk") && words.contains("linked"), "{words}");
         assert_eq!(std::fs::read(kept(error)).expect("a copy"), whole);
         std::fs::remove_file(folder.join("another-name")).expect("removed");
-        writer.append(9, &memo_record(), Durability::Synced).expect("it is as it was");
+        writer.append(9, &memo_record(), Durability::Synced).expect("the file was restored");
     }
     let confirmed = std::fs::read(&path).expect("bytes");
     std::fs::remove_dir_all(&folder).expect("the whole folder is gone");
@@ -123,7 +123,7 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
     );
     // An earlier copy is kept if it cannot be replaced.
     let draft = aside.with_extension("draft");
-    std::fs::create_dir(&draft).expect("in the way");
+    std::fs::create_dir(&draft).expect("a folder at the path of the file");
     let error = writer.append_irrevocable(9, &memo_record()).expect_err("there is no file");
     let RunError::FileReplaced { saved_copy: Err(problem), .. } = error else { panic!("{error}") };
     assert!(problem.contains("contains an earlier copy"), "{problem}");

@@ -26,7 +26,8 @@ pub struct Interface {
     pub window: Option<(u16, u16)>,
 }
 
-/// A log that records user activities other than calls. Disk errors are ignored, because these lines have no effect on the run.
+/// A log that records user activities other than calls. Disk errors are ignored, because these lines have no effect on
+/// the run.
 pub struct ActivityLog<'a> {
     log: &'a mut RunLog,
     day: u32,
@@ -120,12 +121,13 @@ impl<'a> ActivityLog<'a> {
         let event = clock.event;
         let stopped = (event == ClockEvent::Stopped).then(|| parse_seconds(&now()));
         self.record(Activity::Clock(clock));
-        // Update the clock even if the rules exclude clock lines from the record, because the screen is covered in any case.
+        // Update the clock even if the rules exclude clock lines from the record, because the screen is covered in any
+        // case.
         self.log.clock.stopped_at = stopped;
         self.log.clock.is_stopped_by_limit &= event != ClockEvent::Started;
     }
 
-    /// Returns the time limits that are near or reached and not reported yet. Records each limit event once.
+    /// Returns the time limits that are near or reached but have not been reported yet. Records each limit event once.
     pub fn check_limits(&mut self) -> Vec<Limit> {
         if self.is_over || self.log.is_clock_stopped() {
             return Vec::new();

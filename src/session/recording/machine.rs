@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use novamind_record::clock::scripted_monotonic_time;
 
-/// Pseudonyms of the machine. Records from the same machine have the same values, which do not identify the machine.
+/// Pseudonyms of a machine. All records from the machine have the same values, but the values do not reveal which
+/// machine it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     /// Pseudonym of the machine: 16 hexadecimal digits.
@@ -20,7 +21,7 @@ impl Machine {
         let name = read("/etc/machine-id").or_else(|| read("/var/lib/dbus/machine-id"));
         let name = name.or_else(|| std::env::var("COMPUTERNAME").ok()).or_else(|| read("/etc/hostname"));
         let boot = read("/proc/sys/kernel/random/boot_id");
-        // Without a boot id, each start of the program counts as a start of the machine.
+        // If there is no boot id, each start of the program counts as a boot of the machine.
         let boot = boot.unwrap_or_else(|| format!("{} {:?}", std::process::id(), program_start()));
         Machine {
             id: hash_name("novamind machine", name.unwrap_or_default().trim()),

@@ -112,7 +112,7 @@ impl RunLog {
         self.recorder.as_ref().is_some_and(Recorder::is_complete)
     }
 
-    /// Returns why no more lines can be saved, or `None` while lines can be saved.
+    /// Returns the reason why no more lines can be saved, or `None` if lines can be saved.
     pub fn loss_reason(&self) -> Option<&str> {
         self.recorder.as_ref()?.loss_reason()
     }

@@ -12,7 +12,8 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::manifest::to_start_record;
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
 
-/// File in the run folder with lines recorded after the end of the run. The hash chain of these lines continues the trajectory.
+/// File in the run folder with lines recorded after the end of the run. The hash chain of these lines continues the
+/// trajectory.
 ///
 /// The `end` line is the last line of a trajectory, so a finished run never changes. Notes, saved statements,
 /// inspections and answers to questions can follow the end.
@@ -21,8 +22,8 @@ pub(crate) const AFTERWARDS_FILE: &str = "afterwards.jsonl";
 /// The state for writing the record of a run. A read-only run has no recorder.
 pub(crate) struct Recorder {
     trajectory: TrajectoryWriter,
-    /// Durability of the line of an accepted call. The line is synced before the call is confirmed, or in headless
-    /// runs together with the week.
+    /// Durability of the line of an accepted call. The line is synced before the call is confirmed. In headless runs,
+    /// it is synced together with the week.
     call_durability: Durability,
     /// Folder of the run; `None` for a run in memory.
     folder: Option<PathBuf>,
@@ -115,7 +116,8 @@ impl Recorder {
     ) -> Result<String, RunError> {
         let Some(folder) = &self.folder else { return Ok(now()) };
         if self.trajectory.has_unsynced_lines() {
-            // The new line contains the hash of the `end` line, which would differ if the last week had to be simulated again.
+            // The new line contains the hash of the `end` line, which would differ if the last week had to be simulated
+            // again.
             self.trajectory.sync()?;
         }
         if self.afterwards.is_none() {
@@ -149,7 +151,7 @@ impl Recorder {
         self.trajectory.sync_written()
     }
 
-    /// Returns why no more lines can be saved, after the recorder has detected the problem.
+    /// Returns the reason why no more lines can be saved, or `None` if the recorder has not detected a problem.
     pub(crate) fn loss_reason(&self) -> Option<&str> {
         self.trajectory.loss_reason()
     }

@@ -22,7 +22,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run and for a baseline branch. Also `not_in_this_mode` for a
     /// branch in a mode other than debug if the copied lines change parameters or the run has a seeded fault.
-    /// `guess_first` while a question of a lesson is unanswered; `week_unknown`, `not_saved`.
+    /// `guess_first` if a question of a lesson is unanswered; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Rejection> {
         StagedBranch::stage(self, week, mode)?.publish().map_err(branch_not_saved_rejection)
     }
@@ -64,7 +64,7 @@ pub fn branch_not_saved_rejection(error: RunError) -> Rejection {
     Rejection::new("not_saved", error.to_string())
 }
 
-/// Creates a branch in the folder next to its parent with the given lines, and opens the branch.
+/// Creates a branch with the given lines in a folder next to its parent, and opens the branch.
 ///
 /// # Errors
 /// `not_in_this_mode` for a baseline branch, and for a branch in a mode other than debug if the copied lines change
@@ -157,7 +157,7 @@ fn lines_before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     lines.iter().take_while(move |line| line.day == day && !begins(line)).filter(is_of_lesson)
 }
 
-/// Returns the lines up to the start of a decision day: includes the end of the week on that day, but no decisions of that day.
+/// Returns the lines before the decisions of a day, including the line that closes the week on that day.
 fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let is_before = |line: &Line| {
         let said_on_it = line.day == day && is_voice_line(line);
@@ -167,7 +167,8 @@ fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
 }
 
-/// Returns whether a language model produced the line. The lines of a model are written before the decisions of the day.
+/// Returns whether a language model produced the line. The lines of a model are written before the decisions of the
+/// day.
 fn is_voice_line(line: &Line) -> bool {
     matches!(line.record, Record::Voice(_))
 }

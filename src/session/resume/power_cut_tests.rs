@@ -85,7 +85,7 @@ fn power_cut_keeps_confirmed_lines() {
     let mut chance = 5;
     for number in 0..30 {
         for _ in 0..random_below(&mut chance, 5) {
-            act_randomly(&mut session, &mut chance).expect("the disk takes it");
+            act_randomly(&mut session, &mut chance).expect("the disk accepts the change");
         }
         if number % 3 == 2 {
             advance_week(&mut session);
@@ -177,7 +177,7 @@ fn run_ends_even_if_its_last_lines_are_not_saved() {
     assert_eq!((refused.code, session.weeks().len(), session.day()), ("run_over", 4, 28));
     // No line can be recorded after an `end` line that is not on the disk.
     let afterwards = session.folder().expect("a folder").join("afterwards.jsonl");
-    assert_eq!(session.set_notes("after the end").expect_err("no room").code, "not_saved");
+    assert_eq!(session.set_notes("after the end").expect_err("the notes cannot be saved").code, "not_saved");
     assert!(!afterwards.exists());
     let mut chance = 3;
     let (before, after) = (places.path().join("before"), places.path().join("after"));
@@ -204,7 +204,7 @@ fn abandon_fails_if_the_end_cannot_be_saved() {
     assert_eq!(session.abandon().expect_err("the disk fails").code, "not_saved");
     assert_eq!(session.ended(), None);
     advance_week(&mut session);
-    session.abandon().expect("given up");
+    session.abandon().expect("the run is abandoned");
     assert_eq!((session.ended(), session.score()), (Some(RunEndReason::Abandoned), None));
     assert!(Trajectory::parse(&cache.bytes_after_power_cut()).expect("it reads").end_line().is_some());
 }

@@ -54,8 +54,8 @@ pub fn rebuild_database(
     Ok(session.database().wait_until_written()?)
 }
 
-/// Returns whether a read-only command may store a snapshot of the end of a run. The run must have ended and its
-/// hidden state may be shown. An existing snapshot must not be sealed with the secret of a study.
+/// Returns whether a read-only command may store a snapshot of the end of a run. The run must have ended, and showing
+/// its hidden state must be allowed. An existing snapshot must not be sealed with the secret of a study.
 fn may_store_final_snapshot(
     folder: &Path,
     manifest: &Manifest,
@@ -69,8 +69,8 @@ fn may_store_final_snapshot(
     ended.is_some() && can_inspect(manifest, ended, Some(folder)) && SnapshotTarget::may_write(folder, key)
 }
 
-/// Opens a connection to the existing database file of a run. Also returns the position of the trajectory line to
-/// which the database corresponds. `key` is the seal key of the run's snapshots.
+/// Opens a connection to the existing database file of a run. Also returns the position of the last trajectory line
+/// that the database includes. `key` is the seal key of the run's snapshots.
 ///
 /// # Errors
 /// The file is missing, is not the database of a run, or was changed after the run was closed.
@@ -103,8 +103,8 @@ impl Session {
         Session::open_with_cache(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
-    /// Writes the snapshot of an ended run that a read-only command has simulated. Does nothing if the run is in use, or if its
-    /// folder cannot be written.
+    /// Writes the snapshot of an ended run that a read-only command has simulated. Does nothing if the run is in use,
+    /// or if its folder cannot be written.
     fn store_final_snapshot(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
             self.write_snapshot(SnapshotTarget::new(folder, self.seal_key()), false);
@@ -151,7 +151,8 @@ mod tests {
         DERIVED_FILES.into_iter().filter(|file| folder.join(file).exists()).collect()
     }
 
-    /// Returns the number of lines that the next command has to simulate, and whether that command uses the database file.
+    /// Returns the number of lines that the next command has to simulate, and whether that command uses the database
+    /// file.
     fn next_open_cost(folder: &Path) -> (usize, bool) {
         let manifest = ManifestCheck::read(folder).expect("a manifest").manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");

@@ -37,7 +37,7 @@ pub fn recover(folder: &Path, key: &SealKey) -> Result<RecoveredRun, RunError> {
     recover_prefix(folder, key).map_err(without_recovery_hint)
 }
 
-/// Removes the advice to recover the run, which has just failed.
+/// Removes the hint to recover the run, because the recovery has just failed.
 fn without_recovery_hint(error: RunError) -> RunError {
     match error {
         RunError::Damaged { path, line, problem, remedy } => {
@@ -129,14 +129,14 @@ mod tests {
 
     fn line_start(bytes: &[u8], line: usize) -> usize {
         let ends = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
-        std::iter::once(0).chain(ends).nth(line).expect("so many lines")
+        std::iter::once(0).chain(ends).nth(line).expect("the line exists")
     }
 
     #[test]
     fn recover_keeps_only_valid_lines_for_every_flipped_byte() {
         let run = record_run(Mode::Sandbox, 3);
         let bytes = std::fs::read(run.folder.join("trajectory.jsonl")).expect("a trajectory");
-        let whole = Trajectory::parse(&bytes).expect("it is whole");
+        let whole = Trajectory::parse(&bytes).expect("it is intact");
         for line in 1..whole.lines.len() {
             let (from, to) = (line_start(&bytes, line), line_start(&bytes, line + 1));
             // Offset of a byte at the start, in the middle or at the end of the line.
@@ -190,9 +190,11 @@ mod tests {
     #[test]
     fn recover_rejects_intact_runs_and_runs_without_a_first_line() {
         let run = record_run(Mode::Sandbox, 1);
-        let whole = recover(&run.folder, &SealKey::default()).expect_err("it is whole").to_string();
+        let whole = recover(&run.folder, &SealKey::default()).expect_err("it is intact").to_string();
         assert!(whole.contains("not damaged"), "{whole}");
-        let problem = recover_damaged(&run, |bytes| bytes[3] ^= 0x04).expect_err("no beginning").to_string();
+        let problem = recover_damaged(&run, |bytes| bytes[3] ^= 0x04)
+            .expect_err("the first line is damaged")
+            .to_string();
         assert!(problem.contains("start of a run"), "{problem}");
     }
 

@@ -32,7 +32,7 @@ pub fn verify(path: &Path) -> Result<Verification, RunError> {
     verify_sealed(path, &SealKey::default())
 }
 
-/// Verifies a run like [`verify`], with snapshots that are sealed with `key`.
+/// Verifies a run like [`verify`]. The snapshots of the run are sealed with `key`.
 ///
 /// # Errors
 /// The same errors as [`verify`].

@@ -1,4 +1,5 @@
-//! The snapshot file, `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens quickly.
+//! The snapshot file, `snapshot.bin`: the complete state at one line of the trajectory, so that a long run opens
+//! quickly.
 //!
 //! A snapshot is used only if it is intact, if this version wrote it for this run and these parameters, and if its
 //! line is in the trajectory. Otherwise, the run is simulated from its start, which takes longer
@@ -324,7 +325,7 @@ fn unseal_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &
 pub(crate) struct SnapshotTarget {
     path: PathBuf,
     key_mark: u8,
-    /// Keys of the run; `None` if the trajectory is missing. Without keys, no snapshot is written.
+    /// Keys of the run; `None` if the trajectory is missing. If there are no keys, no snapshot is written.
     keys: Option<RunKeys>,
 }
 

@@ -152,7 +152,7 @@ fn find_contradiction(trajectory: &Trajectory, position: &ProjectionPosition) ->
     // These lines may therefore be missing.
     let is_open = matches!(last.record, Record::Advance(_) | Record::Voice(VoiceAnswer::Scores(_)));
     let has_model = matches!(&trajectory.lines[0].record, Record::Start(start) if start.voice.is_some());
-    // With a language model, two more lines may be missing, because the model is not asked again for texts and scores.
+    // If the run has a language model, two more lines may be missing, because texts and scores are not requested again.
     let of_week = if has_model { 4 } else { 2 };
     let healing = if is_open { of_week } else { u64::from(trajectory.unfinished_bytes > 0) };
     match trajectory.lines.get(position.seq as usize) {

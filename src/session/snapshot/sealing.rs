@@ -105,7 +105,8 @@ impl RunKeys {
     }
 
     /// Encrypts or decrypts bytes by XOR with the key stream of a nonce, starting at offset `from`. Uses only this
-    /// thread, because the database writer calls this function while a simulation on all other threads may wait for the writer.
+    /// thread, because the database writer calls this function while a simulation on all other threads may wait for the
+    /// writer.
     fn apply_key_stream(&self, nonce: &[u8; KEY_BYTES], from: usize, bytes: &mut [u8]) {
         let mut stream = blake3::Hasher::new_keyed(&self.stream).update(nonce).finalize_xof();
         stream.set_position(from as u64);

@@ -24,8 +24,8 @@ impl CompanyView<'_> {
         )
     }
 
-    /// Returns the bills that current subscribers receive if they stay. All of its values follow from the tables
-    /// `subscriptions` and `enterprise_turns`.
+    /// Returns the bills that current subscribers receive if they stay. All values of the calendar follow from the
+    /// tables `subscriptions` and `enterprise_turns`.
     fn billing_calendar(&self) -> BillingCalendar {
         let mut calendar = BillingCalendar::new(self.simulation.params.billing.billing_period_days);
         let suspended = self.suspended_enterprises();
@@ -54,7 +54,7 @@ impl CompanyView<'_> {
                 calendar.enterprises[days] +=
                     if pays_nothing { 0.0 } else { price * block.seats[at].trunc() };
             } else {
-                // A price cut applies to existing subscribers, and a price increase does not.
+                // A price cut applies to existing subscribers, but a price increase does not.
                 calendar.individuals[days] += price.min(world.settings.core.prices[block.plan[at]]);
                 let age = world.day.saturating_sub(block.start_day[at]) / week.max(1);
                 if let Some(signed_up) = calendar.signed_up.get_mut(age as usize) {

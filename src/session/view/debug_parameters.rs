@@ -1,4 +1,4 @@
-//! The parameters of a debug run, as its player can read them (docs/debugging.md#parameters).
+//! Read access to the parameters of a debug run for its player (docs/debugging.md#parameters).
 
 use serde::Serialize;
 use serde_json::Value;

@@ -24,7 +24,8 @@ pub struct IdenticalPlans {
 }
 
 impl CompanyView<'_> {
-    /// Returns the pairs of plans on sale that differ only in price, according to the settings in force from the next day.
+    /// Returns the pairs of plans on sale that differ only in price, according to the settings in force from the next
+    /// day.
     pub(crate) fn identical_plans(&self) -> Vec<IdenticalPlans> {
         let (now, before) = (&self.simulation.world.settings, &self.history.week_actions.settings);
         let pairs = [(Plan::A, Plan::B), (Plan::A, Plan::C), (Plan::B, Plan::C)];

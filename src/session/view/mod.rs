@@ -159,7 +159,7 @@ impl<'a> CompanyView<'a> {
         (self.simulation.params.quality.base_product_quality, self.simulation.world.product.shared_bonus)
     }
 
-    /// Returns the estimates of every known group, in fixed order. Does not record a tool call.
+    /// Returns the estimates of every known group, in a fixed order. Does not record a tool call.
     pub fn estimates(&self) -> Vec<Estimates> {
         let limits = self.tool_limits();
         let of = |group: Group| {

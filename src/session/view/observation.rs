@@ -44,7 +44,7 @@ pub struct Observation {
     pub last_day: u32,
     /// Rule that derived the last day.
     pub horizon_rule: HorizonRule,
-    /// Generation of the released simulator whose rules the run has.
+    /// Generation of the released simulator that defines the rules of the run.
     pub generation: Interface,
     /// Week of the last simulated day.
     pub week: u32,
@@ -80,7 +80,7 @@ pub struct Observation {
     pub companies: u32,
     /// Number of seats of active enterprises.
     pub seats: u32,
-    /// Known groups, in fixed order.
+    /// Known groups, in a fixed order.
     pub known_groups: Vec<Group>,
     /// Reason for the end of the run; `None` if the run is unfinished.
     pub ended: Option<RunEndReason>,
@@ -140,8 +140,8 @@ impl Observation {
         self.outlook.expected_flows()
     }
 
-    /// Describes how often ranges of naive forecasts contained the actual cash of companies like this one. Returns `None`
-    /// if that was not measured well enough.
+    /// Describes how often ranges of naive forecasts contained the actual cash of companies like this one. Returns
+    /// `None` if too few companies were measured or the ranges contained too few outcomes.
     pub fn describe_coverage(&self) -> Option<String> {
         ErrorIntervals::bundled().describe_coverage(self.outlook.stage, self.days_left())
     }

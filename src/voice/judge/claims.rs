@@ -75,7 +75,8 @@ fn verdict(
     }
 }
 
-/// Returns the largest number before the words customer, user or subscriber. The suffix `k` means a thousand, `m` a million.
+/// Returns the largest number before the words customer, user or subscriber. The suffix `k` means a thousand, `m` a
+/// million.
 fn claimed_audience(normal: &str) -> Option<f64> {
     let words = ["customer", "user", "subscriber"];
     let ends = words.iter().flat_map(|word| normal.match_indices(word)).map(|(at, _)| at);

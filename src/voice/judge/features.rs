@@ -121,7 +121,8 @@ fn has_unit(normal: &str, units: &[String]) -> bool {
     })
 }
 
-/// Returns the degree of keyword stuffing: topic words above a threshold share, plus a penalty for too few function words.
+/// Returns the degree of keyword stuffing: topic words above a threshold share, plus a penalty for too few function
+/// words.
 fn keyword_stuffing(reading: &TokenizedText, lexicon: &Lexicon) -> f64 {
     let features = &lexicon.features;
     let tokens = reading.tokens().len();

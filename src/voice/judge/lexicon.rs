@@ -15,7 +15,8 @@ pub type PatternList = Vec<WordPattern>;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lexicon {
-    /// Names of the topics in their fixed order. If two topics are equally strong, the topic that is first in this order leads.
+    /// Names of the topics in their fixed order. If two topics are equally strong, the topic that is first in this
+    /// order leads.
     topic_order: Vec<String>,
     /// Word lists of the topics, in topic order.
     #[serde(deserialize_with = "lists")]
@@ -78,7 +79,8 @@ fn list<'de, D: Deserializer<'de>>(from: D) -> Result<PatternList, D::Error> {
 
 fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<PatternList, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
-    // A text with a slash, such as 24/7, is not a token and is searched for in the whole text. Other words match tokens.
+    // A text with a slash, such as 24/7, is not a token and is searched for in the whole text. Other words match
+    // tokens.
     Ok(texts
         .iter()
         .map(|text| if text.contains('/') { WordPattern::phrase(text) } else { WordPattern::parse(text) })
@@ -145,7 +147,7 @@ words! {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClaimPattern {
-    /// Phrases that alone make the claim.
+    /// Phrases that make the claim by themselves.
     #[serde(deserialize_with = "anywhere")]
     pub says: PatternList,
     /// Words that make the claim if they are close to a word of `to`.

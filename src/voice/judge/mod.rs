@@ -28,7 +28,7 @@ use novamind_world::identifiers::Group;
 use std::borrow::Cow;
 use text::{TokenizedText, pair_overlap};
 
-/// A post of the player, with the post that it answers and earlier posts.
+/// A post of the player, with the post that it answers and the player's earlier posts.
 #[derive(Debug, Clone, Default)]
 pub struct SubmittedPost<'a> {
     /// Text of the post.

@@ -225,8 +225,8 @@ impl GroupJudge<'_> {
         }
     }
 
-    /// Returns how far the post takes responsibility for current problems. The value of an apology without a problem
-    /// is negative.
+    /// Returns how far the post takes responsibility for current problems. The value is negative if the post apologizes
+    /// although there is no problem.
     fn accountability(&self) -> f64 {
         let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];

@@ -121,7 +121,8 @@ impl TokenizedText {
         first.iter().any(|a| second.iter().any(|b| a != b && a.abs_diff(*b) <= positions))
     }
 
-    /// Returns for each token whether a list covers it, as a single word or as part of a phrase that occurs in the text.
+    /// Returns for each token whether a list covers it, as a single word or as part of a phrase that occurs in the
+    /// text.
     pub fn covered_tokens(&self, list: &[WordPattern]) -> Vec<bool> {
         let mut covered = vec![false; self.tokens.len()];
         for entry in list {

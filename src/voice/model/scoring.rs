@@ -1,5 +1,6 @@
 //! Scoring of the player's posts by a model. The prompt contains only text that readers of the feed can see: the post,
-//! the post that it answers, earlier posts, and the groups. The prompt contains no prices, quality or figures of the company.
+//! the post that it answers, earlier posts, and the groups. The prompt contains no prices, quality or figures of the
+//! company.
 
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Value, json};

@@ -20,7 +20,8 @@ pub struct ModelSettings {
     pub endpoint: String,
     /// Name of the model at the endpoint.
     pub model: String,
-    /// Environment variable that contains the API key; `None` for an endpoint without a key. The key itself is never stored.
+    /// Environment variable that contains the API key; `None` for an endpoint without a key. The key itself is never
+    /// stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key_variable: Option<String>,
     /// Maximum time that a simulated week waits for the model, in seconds.
@@ -57,7 +58,8 @@ pub struct RecordedModelSettings {
 }
 
 impl RecordedModelSettings {
-    /// Describes the tasks of the model in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
+    /// Describes the tasks of the model in the run, for example `llama3 at 127.0.0.1:11434 rewords posts and judges the
+    /// player's posts`.
     pub fn describe(&self) -> String {
         let deeds = match (self.words, self.judge) {
             (true, true) => "rewords posts and judges the player's posts",

@@ -1,5 +1,5 @@
-//! Rewording of posts by a language model. The prompt contains only the text of the built-in voice and its author, and
-//! therefore nothing that readers cannot see.
+//! Rewording of posts by a language model. The prompt contains only the texts of the built-in voice and the authors of
+//! the posts, and therefore nothing that readers cannot see.
 
 use std::collections::BTreeSet;
 

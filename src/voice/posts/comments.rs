@@ -13,7 +13,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
         .expect("the bundled grammars are valid")
 });
 
-/// Writes a comment by a group. `judgement` supplies the reason, if it is known.
+/// Writes a comment by a group. `judgement` supplies the reason for the reaction, if the reason is known.
 pub(super) fn write_comment(
     group: Group,
     effect: f64,
@@ -39,7 +39,7 @@ fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context 
         .with("my", person("my", "our"))
 }
 
-/// Returns the name of the largest term with the sign of the reaction, and the topic of the post.
+/// Returns the name of the largest term that has the same sign as the reaction, and the topic of the post.
 fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, String) {
     let leading = judgement.map(Judgement::terms_by_size).unwrap_or_default();
     let of_kind = |name: &str| leading.iter().find(|term| term.name == name);

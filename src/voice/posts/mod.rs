@@ -27,7 +27,8 @@ pub struct PostWriter {
 }
 
 impl PostWriter {
-    /// Returns the text of a post. For a comment, `judgement` is the reaction of the commenting group to the player's post.
+    /// Returns the text of a post. For a comment, `judgement` is the reaction of the commenting group to the player's
+    /// post.
     pub fn write(
         &mut self,
         post: &Post,

@@ -10,7 +10,7 @@ const E1: [&str; 2] = ["Harbor Freight Desk", "Millbrook Operations"];
 const E2: [&str; 2] = ["Castell & Byrne", "Northlight Biosciences"];
 const E3: [&str; 2] = ["Meridian Group", "Aurelia Holdings"];
 
-/// Returns the profile name of a customer, or `None` in discoverable groups.
+/// Returns the profile name of a customer, or `None` for customers in discoverable groups.
 pub fn profile_name(author: &PostAuthor, streams: &Streams) -> Option<&'static str> {
     let names: &[&'static str] = match author.group.id() {
         "S1" => &S1,

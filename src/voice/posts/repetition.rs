@@ -17,7 +17,7 @@ const MAX_DRAFTS: usize = 400;
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct RecentPosts(VecDeque<RecentText>);
 
-/// A lowercase text, already split because it is compared with hundreds of drafts.
+/// A lowercase text that is split in advance, because it is compared with hundreds of drafts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct RecentText {
     text: String,
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(recent.pick_freshest(drafts(all)), all[2]);
         assert_eq!(recent.pick_freshest(drafts(all)), all[1]);
         assert_eq!(recent.pick_freshest(drafts(&["Same."])), "Same.");
-        assert_eq!(recent.pick_freshest(drafts(&["Same."])), "Same.", "there is nothing else to say");
+        assert_eq!(recent.pick_freshest(drafts(&["Same."])), "Same.", "the only draft is repeated");
     }
 
     #[test]

@@ -26,7 +26,7 @@ macro_rules! measures {
     ($($measure:ident = $id:literal, $kind:expr, $company:expr, $group:expr;)*) => {
         /// A daily figure of the company or of a group.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        #[allow(missing_docs)] // Each is described by its name.
+        #[allow(missing_docs)] // The name of each figure describes it.
         pub enum Measure { $($measure),* }
 
         impl Measure {
@@ -152,7 +152,7 @@ impl Quantity {
         self.days
     }
 
-    /// Returns the explicit number of days: ` over 7`.
+    /// Returns the explicit number of days as text, for example ` over 7`.
     pub fn describe_days(&self) -> String {
         match (self.measure.kind(), self.days) {
             (MeasureKind::State, _) | (MeasureKind::Flow, 1) => String::new(),

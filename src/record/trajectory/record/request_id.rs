@@ -11,8 +11,8 @@ pub struct RequestId {
     /// Id that the client sent.
     #[serde(rename = "request_id")]
     pub id: String,
-    /// First digits of the BLAKE3 hash of the tool name, a line feed, and the sent arguments as JSON without spaces and with
-    /// sorted keys.
+    /// First digits of the BLAKE3 hash of the tool name, a line feed, and the sent arguments as JSON without spaces and
+    /// with sorted keys.
     #[serde(rename = "request_digest")]
     pub digest: String,
 }

@@ -1,4 +1,5 @@
-//! Recorded responses of the language model that words public texts. A replay uses these responses instead of the model.
+//! Recorded responses of the language model that words public texts. A replay uses these responses instead of the
+//! model.
 
 use serde::{Deserialize, Serialize};
 

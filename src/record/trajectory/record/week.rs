@@ -28,16 +28,16 @@ pub struct Advance {
     pub request: Option<RequestId>,
 }
 
-/// Returns whether at least one submitted forecast that ends within the run is a naive forecast, or `None` if there are no
-/// forecasts. `days_left` is the number of days from the submission to the last day of the run.
+/// Returns whether at least one submitted forecast that ends within the run is a naive forecast, or `None` if there are
+/// no forecasts. `days_left` is the number of days from the submission to the last day of the run.
 pub fn has_naive_forecasts(forecasts: &[SubmittedForecast], days_left: u32) -> Option<bool> {
     let all = forecasts.iter().map(|forecast| (forecast.horizon_days, forecast.filled_naively));
     (!forecasts.is_empty()).then(|| is_naive_week(all, days_left))
 }
 
-/// Returns whether at least one forecast that ends within the run is a naive forecast. Each forecast consists of its
-/// horizon in days and whether it is naive. The program fills in forecasts that end after the last day, so these count
-/// only if no forecast ends within the run.
+/// Returns whether at least one forecast that ends within the run is a naive forecast. The iterator yields the horizon
+/// of each forecast in days, and whether the forecast is naive. The program fills in forecasts that end after the last
+/// day, so these count only if no forecast ends within the run.
 pub fn is_naive_week(forecasts: impl Iterator<Item = (u32, bool)> + Clone, days_left: u32) -> bool {
     let is_asked = |forecast: &(u32, bool)| forecast.0 <= days_left;
     let asks_any = forecasts.clone().any(|forecast| is_asked(&forecast));

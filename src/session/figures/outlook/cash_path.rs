@@ -1,6 +1,6 @@
 //! Expected cash by day. Current subscribers are billed on their billing dates and renew or cancel at recent rates.
-//! Sign-ups continue their trend, which fades. Compute and ad revenue are proportional to recurring revenue. Costs to which
-//! the settings commit the company stay as they are.
+//! Sign-ups continue their trend, which fades. Compute and ad revenue are proportional to recurring revenue. Costs to
+//! which the settings commit the company stay as they are.
 //!
 //! The constants minimize the mean absolute error in `novamind lab forecasts`.
 
@@ -10,23 +10,26 @@ use novamind_world::events::Category;
 
 /// Share of the growth rate of sign-ups that remains after a day: 75 % after a week.
 const GROWTH_KEPT_PER_DAY: f64 = 0.959_74;
-/// Limits of the growth rate of sign-ups per week, as a logarithm.
+/// Lower and upper limit of the weekly growth rate of sign-ups, as logarithms.
 const GROWTH_LIMITS: [f64; 2] = [-0.4, 0.15];
-/// Rate at which sign-ups decrease without a trend, per week. Competitors and saturation reduce the sign-ups of most
-/// companies.
+/// Rate at which sign-ups decrease per week if they have no trend. Competitors and saturation reduce the sign-ups of
+/// most companies.
 const SIGN_UP_DECAY_PER_WEEK: f64 = 0.08;
-/// Number of sign-ups at which half of the observed growth rate counts, because few sign-ups vary by chance.
+/// Number of sign-ups at which half of the observed growth rate counts. The growth of fewer sign-ups is mostly due to
+/// chance.
 const SIGN_UPS_OF_HALF_TREND: f64 = 10.0;
-/// Churn of individuals per billing period that is assumed before any renewal, and its weight in subscribers.
+/// Assumed churn of individuals per billing period before any renewal, and the weight of this assumption, in
+/// subscribers.
 const ASSUMED_CHURN: (f64, f64) = (0.3, 20.0);
-/// Churn of enterprise seats per billing period that is assumed before any renewal, and its weight in seats.
+/// Assumed churn of enterprise seats per billing period before any renewal, and the weight of this assumption, in
+/// seats.
 const ASSUMED_SEAT_CHURN: (f64, f64) = (0.05, 100.0);
 /// Days until an enterprise receives its first bill, on average.
 const FIRST_ENTERPRISE_BILL_DAYS: usize = 15;
 /// Limits of the logarithmic growth of new enterprise revenue and of lead costs.
 const MAX_ENTERPRISE_GROWTH: f64 = 0.7;
 const MAX_LEAD_COST_GROWTH: f64 = 1.5;
-/// Largest share of monthly revenue that compute or ads amount to on a day.
+/// Upper limit of daily compute and of daily ad revenue, each as a share of monthly revenue.
 const MAX_DAILY_SHARE: f64 = 1.0 / 7.0;
 
 /// Cash and cumulative flows by day, beginning with today.
@@ -92,7 +95,7 @@ impl CashPath {
         self.day(days).cash
     }
 
-    /// Returns the cumulative income and variable costs of a number of days.
+    /// Returns the cumulative income and variable costs of a number of days, in dollars.
     pub(super) fn flows(&self, days: u32) -> (f64, f64) {
         let day = self.day(days);
         (day.income, day.variable)
@@ -138,7 +141,7 @@ impl Trend {
         let days = sum(&|week| week.days_run).max(1.0);
         let before = weeks.len().checked_sub(SIGN_UP_WEEKS + 1).map(|at| &weeks[at]);
         let periods = days / calendar.individuals.len().max(1) as f64;
-        // Before the first renewals, cancellations say nothing about renewals.
+        // Before the first renewals, cancellations provide no information about renewals.
         let churn = |left: f64, base: Option<u32>, (assumed, weight): (f64, f64)| {
             let (left, base) = base.map_or((0.0, 0.0), |base| (left / periods, f64::from(base)));
             ((left + assumed * weight) / (base + weight)).clamp(0.0, 1.0)
@@ -146,7 +149,7 @@ impl Trend {
         let (daily_sign_ups, growth_rate) =
             sign_up_trend(&calendar.signed_up[..recent.len()], sum(&|week| week.new_individual_subscribers));
         let seat_price = calendar.enterprises.iter().sum::<f64>() / f64::from(last.enterprise_seats.max(1));
-        // Revenue at the middle of the last two weeks, on which their compute and ad revenue depend.
+        // Revenue in the middle of the last two weeks. Compute and ad revenue of these weeks depend on this revenue.
         let revenue_before = recent.iter().rev().nth(1).map_or(0.0, |week| week.recurring_revenue);
         let revenue = (revenue_before + last.recurring_revenue) / 2.0;
         let share = |category| match revenue > 1.0 {

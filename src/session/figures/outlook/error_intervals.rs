@@ -8,9 +8,9 @@ use super::cash_path::CashPath;
 use super::growth_stage::GrowthStage;
 use novamind_base::statistics::quantile_of_sorted;
 
-/// Number of companies from which the coverage of a stage is shown.
+/// Minimum number of companies for which the coverage of a stage is shown.
 const MIN_COMPANIES: usize = 50;
-/// Coverage of the 95 % ranges from which the coverage of a stage is shown.
+/// Minimum coverage of the 95 % ranges for which the coverage of a stage is shown.
 const MIN_COVERAGE: f64 = 0.9;
 
 /// Share of the outcomes that a range should contain.
@@ -22,7 +22,7 @@ pub enum Level {
     Central95,
 }
 
-/// The error of a forecast for a company of a back-test.
+/// The error of a forecast for a company in a back-test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForecastError {
     /// Number of the company.
@@ -77,8 +77,8 @@ static BUNDLED: LazyLock<ErrorIntervals> = LazyLock::new(|| {
         .expect("the bundled intervals are valid")
 });
 
-/// Returns the amount to which forecast errors are proportional, dollars. Without income, the errors come from decisions
-/// about the remaining cash. With income, they come from income and costs.
+/// Returns the amount to which forecast errors are proportional, in dollars. If the company has no income, the errors
+/// come from decisions about the remaining cash. Otherwise, they come from its income and costs.
 pub(super) fn error_scale(stage: GrowthStage, path: &CashPath, days: u32) -> f64 {
     let (cash, turnover) = (path.cash(0).max(0.0), path.turnover(days));
     let scale = match stage {
@@ -118,8 +118,8 @@ impl ErrorIntervals {
         self.interval.iter().find(|interval| (interval.stage, interval.horizon) == (stage, horizon))
     }
 
-    /// Returns the distances from the expected cash to both ends of the range for each day of a path. They grow linearly
-    /// between measured horizons and never decrease.
+    /// Returns the distances from the expected cash to both endpoints of the range, for each day of a path. The
+    /// distances grow linearly between measured horizons and never decrease.
     pub(super) fn widths(&self, stage: GrowthStage, level: Level, path: &CashPath) -> Vec<[f64; 2]> {
         let mut widths = vec![[0.0; 2]];
         for interval in self.interval.iter().filter(|interval| interval.stage == stage) {

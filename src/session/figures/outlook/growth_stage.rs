@@ -1,15 +1,17 @@
-//! Stages of a company by the trend of its income.
+//! Stages of a company, determined by the trend of its income.
 
 use serde::{Deserialize, Serialize};
 
 use novamind_record::figures::WeekFigures;
 use novamind_world::events::Category;
 
-/// Number of recent weeks whose income determines whether a company has income, and maximum age of a young company.
+/// Number of recent weeks that determine whether a company has income. Also the maximum age of a young company, in
+/// weeks.
 const RECENT_WEEKS: usize = 4;
-/// Factor between the income of two weeks and the income four weeks earlier, from which a company surges.
+/// A company is surging if the ratio of its income in two weeks to its income four weeks earlier is above this value.
 const MIN_SURGE_RATIO: f64 = 2.0;
-/// Factor between these incomes from which a company grows, or shrinks in the opposite direction.
+/// A company is growing if this ratio is above this value, and shrinking if the inverse of the ratio is above this
+/// value.
 const MIN_GROWTH_RATIO: f64 = 1.3;
 
 /// Stage of a company, determined by its age, its income and whether it advertises.
@@ -47,8 +49,8 @@ impl GrowthStage {
         GrowthStage::Shrinking,
     ];
 
-    /// Returns the stage of a company after these weeks. Compares the income of the last two weeks with the income
-    /// four weeks before. `advertises` is whether the current settings have an advertising budget.
+    /// Returns the stage of a company after these weeks. Compares the income of the last two weeks with the income four
+    /// weeks earlier. `advertises` states whether the current settings include an advertising budget.
     pub fn from_weeks(weeks: &[WeekFigures], advertises: bool) -> GrowthStage {
         let end = weeks.len();
         if daily_income(&weeks[end.saturating_sub(RECENT_WEEKS)..]) <= 0.0 {

@@ -1,5 +1,5 @@
 //! The outlook of a company: expected cash by day with its ranges. The runway, the expected income and costs, and naive
-//! forecasts are read from one outlook, so they agree. It uses only figures that the player can see.
+//! forecasts are read from one outlook, so they agree. The outlook uses only figures that the player can see.
 
 mod billing_calendar;
 mod cash_path;
@@ -27,7 +27,7 @@ pub struct Outlook {
     /// Stage of the company, which determines the width of the ranges.
     pub stage: GrowthStage,
     path: CashPath,
-    /// Distances from the expected cash to the ends of each range by day, dollars.
+    /// Distances from the expected cash to the endpoints of each range by day, dollars.
     widths: [Vec<[f64; 2]>; 2],
 }
 
@@ -58,7 +58,7 @@ pub struct Runway {
     pub expected: Option<f64>,
     /// Weeks until the high end of the 80 % range is below zero.
     pub latest: Option<f64>,
-    /// Whether the days after 26 weeks belong to the run.
+    /// Whether the run continues for more than 26 weeks.
     pub is_cut: bool,
 }
 
@@ -91,7 +91,7 @@ impl Outlook {
         ((expected - below).max(0.0), expected + above)
     }
 
-    /// Returns the amount to which errors of a forecast are proportional, dollars.
+    /// Returns the amount to which errors of a forecast are proportional, in dollars.
     pub fn error_scale(&self, days: u32) -> f64 {
         error_intervals::error_scale(self.stage, &self.path, days)
     }
@@ -160,7 +160,8 @@ impl Runway {
     }
 }
 
-/// Returns the number of weeks after which cash is below zero, or `None` if cash is not negative on any day until `last`.
+/// Returns the number of weeks after which cash is below zero, or `None` if cash is not negative on any day until
+/// `last`.
 fn weeks_above_zero(last: u32, cash: impl Fn(u32) -> f64) -> Option<f64> {
     let day = (1..=last).find(|day| cash(*day) < 0.0)?;
     let (before, after) = (cash(day - 1).max(0.0), cash(day));

@@ -1,5 +1,5 @@
-//! Evaluation of a lesson step: measurements of goals, guesses and pitfalls, and the reference play with which goals
-//! are compared.
+//! Evaluation of a lesson step: measurement of goals, guesses and pitfalls, and comparison of goals with the reference
+//! play.
 
 use super::progress::weeks_passed;
 use super::reference::{PartPlay, play_part, uses_rules};

@@ -1,4 +1,4 @@
-//! Restrictions of a lesson before a week, and its progress after a week.
+//! Restrictions of a lesson before a week, and progress of the lesson after a week.
 
 use serde_json::json;
 
@@ -14,7 +14,8 @@ pub fn weeks_passed(session: &Session) -> u32 {
     session.day() / session.params().run.days_per_week
 }
 
-/// Returns the index of the step to which the next week belongs. Returns `None` outside lessons and after the part has ended.
+/// Returns the index of the step to which the next week belongs. Returns `None` outside lessons and after the part has
+/// ended.
 pub fn lesson_step(session: &Session) -> Option<usize> {
     let lesson_progress = session.lesson().filter(|_| session.ended().is_none())?;
     lesson_progress.current_part().step_at_week(weeks_passed(session))

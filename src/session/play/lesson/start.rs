@@ -14,7 +14,8 @@ use novamind_record::trajectory::{Line, Record, Trajectory};
 use novamind_tools::Rejection;
 
 impl Session {
-    /// Executes the calls and weeks of a lesson before the student can decide. Calls `tell` for each simulated day.
+    /// Executes the initial calls and weeks of a lesson, before the student can make decisions. Calls `progress` for
+    /// each simulated day.
     ///
     /// # Errors
     /// One of the initial calls is rejected.

@@ -19,13 +19,13 @@ pub struct AnsweredQuestions {
 impl AnsweredQuestions {
     /// Reads the answers and breaks from the lines of a run, in order.
     pub fn from_lines<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnsweredQuestions {
-        let mut book = AnsweredQuestions::default();
+        let mut answered_questions = AnsweredQuestions::default();
         for line in lines {
             if let Record::Activity(activity) = &line.record {
-                book.record_activity(activity);
+                answered_questions.record_activity(activity);
             }
         }
-        book
+        answered_questions
     }
 
     /// Updates the answers and the break count from one activity.

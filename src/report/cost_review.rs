@@ -39,18 +39,18 @@ pub fn identical_plan_lines(seen: &Observation) -> Vec<String> {
 }
 
 fn describe_identical_plans(plans: &IdenticalPlans) -> String {
-    let IdenticalPlans { cheap, dear, .. } = plans;
+    let IdenticalPlans { cheap, expensive, .. } = plans;
     let since = if plans.before { "still" } else { "now" };
-    let (low, high) = (price_to_cents(plans.cheap_price), price_to_cents(plans.dear_price));
+    let (low, high) = (price_to_cents(plans.cheap_price), price_to_cents(plans.expensive_price));
     if low == high {
-        return format!("{cheap} and {dear} are {since} identical: both cost {low}");
+        return format!("{cheap} and {expensive} are {since} identical: both cost {low}");
     }
     let payers = match plans.subscribers {
-        0 => format!("no one has {dear}"),
-        1 => format!("1 subscriber has {dear}"),
-        more => format!("{} have {dear}", pluralize(more, "subscriber")),
+        0 => format!("no one has {expensive}"),
+        1 => format!("1 subscriber has {expensive}"),
+        more => format!("{} have {expensive}", pluralize(more, "subscriber")),
     };
-    format!("{cheap} and {dear} {since} differ only in price ({low} and {high}); {payers}")
+    format!("{cheap} and {expensive} {since} differ only in price ({low} and {high}); {payers}")
 }
 
 /// Describes the cost of a tool call and the day on which the call takes effect. Returns `None` if the call has no

@@ -140,13 +140,13 @@ impl Session {
         let configuration = if new.lesson.is_some() { &bundled } else { configuration };
         // Runs of handouts must not depend on the configuration of the machine.
         let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
-        let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
-        let model = select_model(new.mode, laid_down, named)?;
-        let speaker = model.as_ref().map(ModelClient::new).transpose().map_err(model_voice_error)?;
+        let study_voice = new.study.as_ref().map(|study| study.voice.as_ref());
+        let model = select_model(new.mode, study_voice, named)?;
+        let model_client = model.as_ref().map(ModelClient::new).transpose().map_err(model_voice_error)?;
         let (manifest, params) = build_manifest(&new, configuration)?;
         let manifest = Manifest { voice: model.map(|model| model.recorded_settings()), ..manifest };
         let mut started = Session::create_stored(manifest, params, &new, progress)?;
-        started.set_model_client(speaker);
+        started.set_model_client(model_client);
         Ok(started)
     }
 
@@ -265,12 +265,12 @@ fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manife
         Mode::Baseline => resolve_consent(new, participant.as_deref(), configuration)?,
         Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
     };
-    let handed_out = new.handout.clone().map_or((None, None), |entry| (entry.run, Some(entry.stamp)));
+    let handout = new.handout.clone().map_or((None, None), |entry| (entry.run, Some(entry.stamp)));
     let manifest = Manifest {
         format: FORMAT,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         mechanics: MECHANICS,
-        id: handed_out.0.unwrap_or_else(new_run_id),
+        id: handout.0.unwrap_or_else(new_run_id),
         created: now(),
         seed,
         days: last_day,
@@ -285,7 +285,7 @@ fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manife
         parent: None,
         study,
         lesson: new.lesson.as_ref().map(LessonOptions::stamp),
-        handout: handed_out.1,
+        handout: handout.1,
         voice: None,
         rules: Some(rules.unwrap_or_else(|| SessionRules::for_mode(new.mode))),
         earlier,

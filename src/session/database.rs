@@ -68,8 +68,8 @@ impl RunDatabase {
         self.projector.as_ref()?.failure()
     }
 
-    pub(crate) fn replace(&mut self, made_anew: RunDatabase) {
-        *self = RunDatabase { replacement_count: self.replacement_count + 1, ..made_anew };
+    pub(crate) fn replace(&mut self, replacement: RunDatabase) {
+        *self = RunDatabase { replacement_count: self.replacement_count + 1, ..replacement };
     }
 
     /// Returns the number of times that the database was replaced since the run was opened. Connections to an earlier

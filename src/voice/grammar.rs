@@ -46,9 +46,9 @@ impl Context {
         }
     }
 
-    /// Adds a tag if `holds` is true.
-    pub fn with_tag(mut self, name: &'static str, holds: bool) -> Context {
-        if holds {
+    /// Adds a tag if `is_set` is true.
+    pub fn with_tag(mut self, name: &'static str, is_set: bool) -> Context {
+        if is_set {
             self.tags.insert(name);
         }
         self

@@ -10,14 +10,14 @@ use novamind_tools::Rejection;
 /// Runs `work` on a new thread and reports its result. Reports a panic as a rejection, so that no pane waits forever.
 /// Reports nothing if `work` returns `None` because the user has cancelled the work.
 pub fn answer_on_thread<T>(
-    news: Sender<Message>,
+    messages: Sender<Message>,
     work: impl FnOnce() -> Result<Option<T>, Rejection> + Send + 'static,
     report: impl FnOnce(Result<T, Rejection>) -> Response + Send + 'static,
 ) {
     std::thread::spawn(move || {
         let result = catch_panic(work).unwrap_or_else(Err);
         if let Some(result) = result.transpose() {
-            let _ = news.send(Message::Response(report(result)));
+            let _ = messages.send(Message::Response(report(result)));
         }
     });
 }
@@ -64,10 +64,11 @@ mod tests {
     #[test]
     fn answer_on_thread_reports_a_result_a_rejection_and_a_panic() {
         let answered = |work: fn() -> Result<Option<u32>, Rejection>| {
-            let (sender, news) = channel();
+            let (sender, messages) = channel();
             answer_on_thread(sender, work, report);
             // The channel closes after the thread has ended.
-            news.into_iter()
+            messages
+                .into_iter()
                 .map(|message| match message {
                     Message::Response(Response::FilesWritten(written)) => written,
                     _ => panic!("an unexpected message"),

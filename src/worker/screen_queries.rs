@@ -41,7 +41,7 @@ readings! {
     Knowledge "readings/knowledge" "Study state of all groups: group, study level, day of discovery, day of the last study."
     Attempts "readings/attempts" "Market research attempts, newest first: day, cost, success, group."
     WeekNotices "readings/week_notices" "Notifications of the last week, newest first: day, type, message."
-    Cohorts "readings/cohorts" "Subscribers by group, sign-up week and cancellation week: group, sign-up week, \
+    Cohorts "readings/cohorts" "Subscribers by group, signup week and cancellation week: group, signup week, \
          cancellation week (0 if active), customers."
     Economy "readings/economy" "Published PMI: measurement day, value, trend, change, phase, description."
     FirstOffers "queries/first-offers" "Outcomes by first offer and week, also in the query library: group, plan, \

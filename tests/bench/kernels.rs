@@ -118,7 +118,7 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     company.on_day(|day| {
         bench_on_customers(bencher, company.subscribers(), |customers| {
-            let (mut issue_desk_copy, mut facts) = (company.world.issue_desk.clone(), Facts::default());
+            let (mut issue_desk_copy, mut facts) = (company.world.issue_counter.clone(), Facts::default());
             let mut calls =
                 customers.sweep(|group, number, block| issues::find_issues(group, number, block, day));
             issues::allocate_resolutions(&mut calls, day.settings, customers, &mut issue_desk_copy, day);

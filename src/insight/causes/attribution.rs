@@ -143,19 +143,24 @@ impl WeekResimulation {
             return Some(());
         }
         let all_calls = all_members(calls);
-        let of_call = |group: &CauseGroup| ExcludedCauses { calls: group.members, inputs: 0 };
-        let of_input = |group: &CauseGroup| ExcludedCauses { calls: all_calls, inputs: group.members };
+        let exclusion_for_call = |group: &CauseGroup| ExcludedCauses { calls: group.members, inputs: 0 };
+        let exclusion_for_input =
+            |group: &CauseGroup| ExcludedCauses { calls: all_calls, inputs: group.members };
         let undone = ExcludedCauses { calls: all_calls, inputs: 0 };
-        let wanted: Vec<ExcludedCauses> =
-            calls.iter().map(of_call).chain(inputs.iter().map(of_input)).chain([undone]).collect();
+        let wanted: Vec<ExcludedCauses> = calls
+            .iter()
+            .map(exclusion_for_call)
+            .chain(inputs.iter().map(exclusion_for_input))
+            .chain([undone])
+            .collect();
         self.simulate_missing(&wanted, progress)?;
         let value = |without| value_or_zero(quantity, self.week_without(without));
         let actual = value(ExcludedCauses { calls: 0, inputs: 0 });
         let by_size = |groups: &mut Vec<CauseGroup>, size: &dyn Fn(&CauseGroup) -> f64| {
             groups.sort_by(|left, right| size(right).abs().total_cmp(&size(left).abs()));
         };
-        by_size(calls, &|group| actual - value(of_call(group)));
-        by_size(inputs, &|group| value(undone) - value(of_input(group)));
+        by_size(calls, &|group| actual - value(exclusion_for_call(group)));
+        by_size(inputs, &|group| value(undone) - value(exclusion_for_input(group)));
         while calls.len() + inputs.len() > MAX_VALUED_CAUSES {
             if calls.len() >= inputs.len() {
                 merge_last_two(calls, Cause::OtherCalls);
@@ -175,17 +180,20 @@ impl WeekResimulation {
     ) -> Option<Vec<CauseContribution>> {
         let all_calls = all_members(calls);
         // A bit is set for each active cause. The causes without a bit are removed.
-        let of_calls = |acting: u32| ExcludedCauses { calls: excluded_members(calls, acting), inputs: 0 };
-        let of_inputs =
+        let exclusions_for_calls =
+            |acting: u32| ExcludedCauses { calls: excluded_members(calls, acting), inputs: 0 };
+        let exclusions_for_inputs =
             |acting: u32| ExcludedCauses { calls: all_calls, inputs: excluded_members(inputs, acting) };
         let sets = |groups: &[CauseGroup]| 0..1u32 << groups.len();
         let wanted: Vec<ExcludedCauses> =
-            sets(calls).map(of_calls).chain(sets(inputs).map(of_inputs)).collect();
+            sets(calls).map(exclusions_for_calls).chain(sets(inputs).map(exclusions_for_inputs)).collect();
         self.simulate_missing(&wanted, progress)?;
-        let values_of_calls =
-            shapley_values(calls.len(), |set| value_or_zero(quantity, self.week_without(of_calls(set))));
-        let values_of_inputs =
-            shapley_values(inputs.len(), |set| value_or_zero(quantity, self.week_without(of_inputs(set))));
+        let values_of_calls = shapley_values(calls.len(), |set| {
+            value_or_zero(quantity, self.week_without(exclusions_for_calls(set)))
+        });
+        let values_of_inputs = shapley_values(inputs.len(), |set| {
+            value_or_zero(quantity, self.week_without(exclusions_for_inputs(set)))
+        });
         let groups = calls.iter().zip(values_of_calls).chain(inputs.iter().zip(values_of_inputs));
         let part = |(group, amount): (&CauseGroup, f64)| CauseContribution {
             cause: group.cause,

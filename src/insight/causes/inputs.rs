@@ -49,8 +49,8 @@ impl WeekPair<'_> {
         let share = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: true });
         let moves = end.competitors.len() - eve.competitors.len();
         note(Cause::Competitors, moves > 0, vec![CauseDetail::Occurrences(moves, "move")]);
-        let law = &self.start.params.drift;
-        let drift = self.days().any(|day| novamind_world::customers::drift::is_drift_day(day, law));
+        let drift_params = &self.start.params.drift;
+        let drift = self.days().any(|day| novamind_world::customers::drift::is_drift_day(day, drift_params));
         note(Cause::Drift, drift, vec![CauseDetail::Occurrences(1, "step")]);
         note(Cause::Yields, end.yields != eve.yields, Vec::new());
         let index = input("index", eve.economy.pmi, end.economy.pmi);

@@ -91,12 +91,12 @@ impl CauseAnalysis {
             let made = WeekResimulation::new(&mut self.run, self.visibility, week, progress);
             self.last_week = made.map_err(|error| unreadable_record_rejection(&error))?;
         }
-        let Some(laboratory) = &mut self.last_week else { return Ok(None) };
+        let Some(resimulation) = &mut self.last_week else { return Ok(None) };
         match quantity.group().filter(|group| {
-            self.visibility == InputVisibility::MarketAsOne && !laboratory.is_group_known(*group)
+            self.visibility == InputVisibility::MarketAsOne && !resimulation.is_group_known(*group)
         }) {
             Some(group) => Err(visibility::unknown_group_rejection(group, week)),
-            None => laboratory.explain(quantity, progress),
+            None => resimulation.explain(quantity, progress),
         }
     }
 

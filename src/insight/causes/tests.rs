@@ -229,10 +229,10 @@ fn unchanged_settings_are_not_causes_and_contributions_add_up() {
             assert_contributions_add_up(&why);
             let at = week as usize - 1;
             // For a group, satisfaction, reputation, issues and enterprises have values only in consecutive weeks.
-            let is_told = quantity
+            let has_value = quantity
                 .group()
                 .is_none_or(|group| !group.is_enterprise() && quantity.figure() != WeekFigure::OpenIssues);
-            if is_told && !quantity.is_hidden() {
+            if has_value && !quantity.is_hidden() {
                 assert_eq!(
                     why.before,
                     quantity.value_in(&recorded_week(&session, at - 1)),
@@ -282,7 +282,7 @@ fn hidden_figures_need_a_recorded_inspection() {
         group_quantity(WeekFigure::Satisfaction, "S1"),
         group_quantity(WeekFigure::Reputation, "S1"),
     ];
-    let looks = |session: &Session| {
+    let inspection_count = |session: &Session| {
         let folder = session.folder().expect("a folder").to_owned();
         let lines =
             ["trajectory.jsonl", "afterwards.jsonl"].map(|name| std::fs::read_to_string(folder.join(name)));
@@ -314,11 +314,11 @@ fn hidden_figures_need_a_recorded_inspection() {
             .explain(WeekQuestion { quantity, week: None }, &continue_progress)
             .expect_err("unknown");
         assert_eq!(refused.code, "unknown_group");
-        assert_eq!(looks(&session), 0);
+        assert_eq!(inspection_count(&session), 0);
         session.abandon().expect("it ends");
         for (seen, quantity) in hidden.into_iter().enumerate() {
             begin_cause_analysis(&mut session, &WeekQuestion { quantity, week: None }).expect("a folder");
-            assert_eq!(looks(&session), seen + 1);
+            assert_eq!(inspection_count(&session), seen + 1);
             assert_contributions_add_up(&explain(&session, quantity));
         }
         begin_cause_analysis(
@@ -326,7 +326,7 @@ fn hidden_figures_need_a_recorded_inspection() {
             &WeekQuestion { quantity: company_quantity(WeekFigure::Churn), week: None },
         )
         .expect("a folder");
-        assert_eq!(looks(&session), hidden.len(), "visible figures need no inspection");
+        assert_eq!(inspection_count(&session), hidden.len(), "visible figures need no inspection");
     }
 }
 

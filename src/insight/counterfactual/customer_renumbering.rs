@@ -18,14 +18,14 @@ impl RenumberedCall {
     pub fn new(
         tool: ToolId,
         args: &Value,
-        meant: &CustomerNumbers,
-        here: &CustomerNumbers,
+        run_numbers: &CustomerNumbers,
+        branch_numbers: &CustomerNumbers,
     ) -> RenumberedCall {
         let mut absent = Vec::new();
         let args = remap_customers(tool, args, &mut |customer| {
             // A customer number that does not exist in the run is kept.
-            let Some((group, n)) = meant.find(customer) else { return Some(customer) };
-            let number = here.customer_number(group, n);
+            let Some((group, n)) = run_numbers.find(customer) else { return Some(customer) };
+            let number = branch_numbers.customer_number(group, n);
             if number.is_none() {
                 let message = format!(
                     "customer {customer} of the run, number {n} of {group}, does not exist in this branch, which has fewer leads"

@@ -47,7 +47,7 @@ fn named_figures(world: &World, facts: &Facts) -> Vec<(String, f64)> {
     let closing = closing_figures(world);
     let issues: u32 = world.customers.blocks().map(|(_, block)| block.open_issues()).sum();
     let market = &world.market;
-    let companies = |wanted: bool| {
+    let lead_count = |wanted: bool| {
         facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise() == wanted).count() as f64
     };
     let mut figures: Vec<(String, f64)> = [
@@ -55,8 +55,8 @@ fn named_figures(world: &World, facts: &Facts) -> Vec<(String, f64)> {
         ("recurring revenue", closing.mrr),
         ("individual subscribers", f64::from(closing.individual_subscribers)),
         ("enterprise seats", f64::from(closing.enterprise_seats)),
-        ("individual leads of the day", companies(false)),
-        ("enterprise leads of the day", companies(true)),
+        ("individual leads of the day", lead_count(false)),
+        ("enterprise leads of the day", lead_count(true)),
         ("cancellations of the day", facts.endings.len() as f64),
         ("customers so far", f64::from(world.customers.next_customer)),
         ("open issues", f64::from(issues)),

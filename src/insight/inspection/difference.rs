@@ -116,10 +116,10 @@ fn differing_customers(one: &DayEnd, other: &DayEnd) -> Vec<CustomerDifference> 
         })
         .collect();
     for (number, (group, row)) in &one.customers {
-        let twin = other.customers.get(number);
-        let columns = twin.map(|(_, twin)| row.differing(twin)).unwrap_or_default();
-        if twin.is_none() || !columns.is_empty() {
-            let subscribes = (true, twin.is_some());
+        let other_row = other.customers.get(number);
+        let columns = other_row.map(|(_, other_row)| row.differing(other_row)).unwrap_or_default();
+        if other_row.is_none() || !columns.is_empty() {
+            let subscribes = (true, other_row.is_some());
             found.push(CustomerDifference { customer: *number, group: *group, subscribes, columns });
         }
     }
@@ -140,13 +140,13 @@ impl Inspector<'_> {
         );
         let permit =
             InspectionPermit::start(self.run, "difference", &format!("{one} {other}"), Some(one.max(other)))?;
-        let album = Arc::new(DayEndRecorder::for_days(&[one, other]));
-        permit.replay_until(self.run, one.max(other), album.clone())?;
-        let first = album.take(one).ok_or_else(day_not_reached_error)?;
+        let end_recorder = Arc::new(DayEndRecorder::for_days(&[one, other]));
+        permit.replay_until(self.run, one.max(other), end_recorder.clone())?;
+        let first = end_recorder.take(one).ok_or_else(day_not_reached_error)?;
         if one == other {
             return Ok(DayDifference::between((one, other), &first, &first));
         }
-        let second = album.take(other).ok_or_else(day_not_reached_error)?;
+        let second = end_recorder.take(other).ok_or_else(day_not_reached_error)?;
         Ok(DayDifference::between((one, other), &first, &second))
     }
 
@@ -169,13 +169,14 @@ impl Inspector<'_> {
         }
         let (which, shown) = (|run: &Session| run.manifest().id.clone(), day.unwrap_or(last_day));
         let names = (which(run), which(other));
-        let own_look = InspectionPermit::start_at_current_state(run, "difference", &names.1, shown)?;
-        let other_look = InspectionPermit::start_at_current_state(other, "difference", &names.0, shown)?;
-        let fingerprints = |run: &Session, permit: &InspectionPermit| {
+        let own_permit = InspectionPermit::start_at_current_state(run, "difference", &names.1, shown)?;
+        let other_permit = InspectionPermit::start_at_current_state(other, "difference", &names.0, shown)?;
+        let record_hashes = |run: &Session, permit: &InspectionPermit| {
             let seen = Arc::new(StateHashRecorder::with_ends(day.as_slice()));
             permit.replay_until(run, last_day, seen.clone()).map(|()| seen)
         };
-        let (hash_recorder, others) = (fingerprints(run, &own_look)?, fingerprints(other, &other_look)?);
+        let (hash_recorder, others) =
+            (record_hashes(run, &own_permit)?, record_hashes(other, &other_permit)?);
         let (days, other_days) = (hash_recorder.part_hashes_by_day(), others.part_hashes_by_day());
         let differs = days
             .iter()
@@ -191,14 +192,14 @@ impl Inspector<'_> {
             if let Some(end) = seen.take(day) {
                 return Ok(end);
             }
-            let album = Arc::new(DayEndRecorder::for_days(&[day]));
-            inspection_permit.replay_until(run, day, album.clone())?;
-            album.take(day).ok_or_else(day_not_reached_error)
+            let end_recorder = Arc::new(DayEndRecorder::for_days(&[day]));
+            inspection_permit.replay_until(run, day, end_recorder.clone())?;
+            end_recorder.take(day).ok_or_else(day_not_reached_error)
         };
         let difference = DayDifference::between(
             (day, day),
-            &moment(run, &own_look, &hash_recorder)?,
-            &moment(other, &other_look, &others)?,
+            &moment(run, &own_permit, &hash_recorder)?,
+            &moment(other, &other_permit, &others)?,
         );
         Ok(RunDifference { last_day, first_day, difference: Some(difference) })
     }

@@ -67,18 +67,18 @@ pub(crate) fn evaluate_enterprise_thread(
     thread: &Thread,
     enterprise: &Enterprise,
     customers: &Customers,
-    talks: &NegotiationContext<'_>,
+    negotiation: &NegotiationContext<'_>,
 ) -> Option<EnterpriseThreadDay> {
-    let (day, params) = (talks.day.day(), talks.day.params);
+    let (day, params) = (negotiation.day.day(), negotiation.day.params);
     let turn = thread.active_turn(params.fidelity.reappearing_threads)?;
     let row = enterprise.enterprise_customer(thread.customer)?.row(customers)?;
-    let judge = enterprise.offer_evaluator(thread, customers, talks)?;
+    let judge = enterprise.offer_evaluator(thread, customers, negotiation)?;
     let late_penalty = late_days(thread, day).map_or(0.0, |days| late_penalty(days, &params.enterprise));
     let offended = match late_penalty {
         0.0 => judge,
         change => {
             let relationship = adjust_relationship(row.relationship, change, &params.enterprise);
-            enterprise.offer_evaluator_for_row(thread, &Subscriber { relationship, ..row }, talks)?
+            enterprise.offer_evaluator_for_row(thread, &Subscriber { relationship, ..row }, negotiation)?
         }
     };
     // The enterprise answers the player's newest turn. On the player's turn, the enterprise will answer the turn that

@@ -82,33 +82,33 @@ impl HiddenTables {
         day: u32,
         ticket: QueryTicket,
         table: &'static Table,
-        diary: &HiddenDayRecorder,
+        recorder: &HiddenDayRecorder,
     ) -> Result<(), QueryError> {
         let lacking = self.last_filled_day(table) + 1..=day;
         let query_connection = &self.connection;
         match table.name.as_str() {
             "hidden.groups" => {
-                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| group_rows(day, seen)));
+                let rows = lacking.filter_map(|day| recorder.with_day(day, |seen| group_rows(day, seen)));
                 query_connection.fill_hidden_table(ticket, table, false, rows.flatten())
             }
             "hidden.drift" => {
-                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| drift_rows(day, seen)));
+                let rows = lacking.filter_map(|day| recorder.with_day(day, |seen| drift_rows(day, seen)));
                 query_connection.fill_hidden_table(ticket, table, false, rows.flatten())
             }
             "hidden.factors" => {
-                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| factor_rows(day, seen)));
+                let rows = lacking.filter_map(|day| recorder.with_day(day, |seen| factor_rows(day, seen)));
                 query_connection.fill_hidden_table(ticket, table, false, rows.flatten())
             }
             "hidden.competitors" => {
-                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| competitor_row(day, seen)));
+                let rows = lacking.filter_map(|day| recorder.with_day(day, |seen| competitor_row(day, seen)));
                 query_connection.fill_hidden_table(ticket, table, false, rows)
             }
             "hidden.pmi" => {
-                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| pmi_row(day, seen)));
+                let rows = lacking.filter_map(|day| recorder.with_day(day, |seen| pmi_row(day, seen)));
                 query_connection.fill_hidden_table(ticket, table, false, rows)
             }
             _ => {
-                let threads = lacking.flat_map(|day| diary.take_threads(day));
+                let threads = lacking.flat_map(|day| recorder.take_threads(day));
                 query_connection.fill_hidden_table(
                     ticket,
                     table,

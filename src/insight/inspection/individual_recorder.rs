@@ -1,4 +1,4 @@
-//! A recorder of one individual's sign-up decision and of the individual's state on each later day.
+//! A recorder of one individual's signup decision and of the individual's state on each later day.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

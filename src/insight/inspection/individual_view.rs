@@ -18,7 +18,7 @@ pub struct IndividualView {
     pub day: u32,
     /// The individual's decision as a lead.
     pub signup: SignupDecision,
-    /// State on each day as a subscriber, from the day after sign-up.
+    /// State on each day as a subscriber, from the day after signup.
     pub days: Vec<IndividualDay>,
 }
 

@@ -67,9 +67,9 @@ pub fn create_branch_with_decisions(
     };
     let opening = BranchStart { day: from, settings, params, mode, check_setting: &check_setting };
     let mut edits = build_edits(decided, &opening, &known, until.max(from + 1))?;
-    let is_moved =
+    let has_automatic_capacity =
         run.lesson().is_some_and(|lesson_progress| lesson_progress.current_part().has_automatic_capacity());
-    if is_moved && !decided.is_empty() && edits.capacity_rule.is_none() {
+    if has_automatic_capacity && !decided.is_empty() && edits.capacity_rule.is_none() {
         // The branch is not a lesson, so this rule replaces the automatic capacity changes of the lesson.
         let followed = UsageBasedCapacity { rule: UsageCapacityRule::StepByStep, from_day: from };
         add_usage_based_capacity(followed, &mut edits, &known);

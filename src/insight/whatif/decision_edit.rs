@@ -305,10 +305,10 @@ fn scale_settings(
         in_force.retain(|_, price| price.as_f64() != Some(0.0));
     }
     // If a call of the run on the first day sets all values, only this call is scaled.
-    let is_set_anew = recorded_calls(moves)
+    let is_set_completely = recorded_calls(moves)
         .filter(|call| call.tool == tool && call.day == opening.day)
         .any(|call| call.accepted && in_force.keys().all(|name| call.args.get(name).is_some()));
-    if !in_force.is_empty() && !is_set_anew {
+    if !in_force.is_empty() && !is_set_completely {
         edits.initial_calls.push((tool, scale_numbers(&Value::Object(in_force), factor)));
     }
     for call in recorded_calls(moves).filter(|call| call.tool == tool) {

@@ -44,7 +44,7 @@ impl DecisionHistory {
     }
 
     /// Returns the week, counted from 1, at the start of which or during which a decision was made.
-    pub fn week_of(&self, decision: &RecordedDecision) -> u32 {
+    pub fn decision_week(&self, decision: &RecordedDecision) -> u32 {
         decision.day() / self.days_per_week() + 1
     }
 
@@ -57,7 +57,7 @@ impl DecisionHistory {
     pub fn decisions_of_week(&self, week: u32) -> impl Iterator<Item = &RecordedDecision> {
         self.decisions
             .iter()
-            .filter(move |decision| self.week_of(decision) == week && !self.is_undone(decision.seq()))
+            .filter(move |decision| self.decision_week(decision) == week && !self.is_undone(decision.seq()))
     }
 
     /// Returns whether the call in a line was undone, or undid another call.

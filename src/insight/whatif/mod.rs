@@ -130,23 +130,25 @@ impl WhatIf {
     fn edits_for_branches(
         &mut self,
         alternatives: &[Vec<DecisionEdit>],
-        parting: &BranchPoint,
+        branch_point: &BranchPoint,
         progress: WhatIfProgressFn<'_>,
     ) -> Result<Option<BranchEdits>, Rejection> {
         if let Some(lesson) = &self.lesson {
             alternatives.iter().try_for_each(|decision_edits| {
-                check_tools_unlocked(lesson, decision_edits, &parting.steps)
+                check_tools_unlocked(lesson, decision_edits, &branch_point.steps)
             })?;
         }
-        let (all, mut edits) = build_branch_edits(alternatives, parting, self.run.manifest.mode)?;
-        let week_before = parting.week_before(self.run.days_per_week());
+        let (all, mut edits) = build_branch_edits(alternatives, branch_point, self.run.manifest.mode)?;
+        let week_before = branch_point.week_before(self.run.days_per_week());
         for (branch_edits, decided) in edits.iter_mut().zip(&all) {
             branch_edits.week_before = week_before;
             if self.automates_capacity {
-                self.apply_lesson_capacity(branch_edits, decided, parting);
+                self.apply_lesson_capacity(branch_edits, decided, branch_point);
             }
         }
-        let Some(day) = parting.last_day_naming_new_customers(&edits) else { return Ok(Some((all, edits))) };
+        let Some(day) = branch_point.last_day_naming_new_customers(&edits) else {
+            return Ok(Some((all, edits)));
+        };
         let day = self.run.last_recorded_day_up_to(day);
         let snapshot = self.run.snapshot_at(day, &mut |simulated| progress(simulated as usize, day as usize));
         let Some(memory_snapshot) = snapshot.map_err(|error| unreadable_record_rejection(&error))? else {
@@ -159,15 +161,15 @@ impl WhatIf {
 
     /// Applies the capacity rule of the lesson. The unchanged run uses the rule after the last recorded day. An edited
     /// branch uses the lesson's rule unless its edits define another rule.
-    fn apply_lesson_capacity(&self, edits: &mut Edits, decided: &[DecisionEdit], parting: &BranchPoint) {
+    fn apply_lesson_capacity(&self, edits: &mut Edits, decided: &[DecisionEdit], branch_point: &BranchPoint) {
         let rule = UsageCapacityRule::StepByStep;
         match (decided.is_empty(), edits.capacity_rule) {
             (true, _) => {
                 edits.capacity_rule = Some(UsageBasedCapacity { rule, from_day: self.run.last_day() })
             }
             (false, None) => {
-                let followed = UsageBasedCapacity { rule, from_day: parting.start.world.day };
-                decision_edit::add_usage_based_capacity(followed, edits, &parting.steps);
+                let followed = UsageBasedCapacity { rule, from_day: branch_point.start.world.day };
+                decision_edit::add_usage_based_capacity(followed, edits, &branch_point.steps);
             }
             (false, Some(_)) => {}
         }
@@ -245,11 +247,13 @@ impl WhatIf {
         futures: Option<u32>,
         progress: WhatIfProgressFn<'_>,
     ) -> Result<Option<(BranchComparison, Option<Futures>)>, Rejection> {
-        let Some(parting) = self.branch_point(week, until_week, progress)? else { return Ok(None) };
-        let Some(all) = self.edits_for_branches(alternatives, &parting, progress)? else { return Ok(None) };
-        let Some(compared) = self.compare_branches(&parting, &all, progress)? else { return Ok(None) };
+        let Some(branch_point) = self.branch_point(week, until_week, progress)? else { return Ok(None) };
+        let Some(all) = self.edits_for_branches(alternatives, &branch_point, progress)? else {
+            return Ok(None);
+        };
+        let Some(compared) = self.compare_branches(&branch_point, &all, progress)? else { return Ok(None) };
         let Some(count) = futures else { return Ok(Some((compared, None))) };
-        let drawn = self.simulate_futures(&parting, &all.1, count, progress)?;
+        let drawn = self.simulate_futures(&branch_point, &all.1, count, progress)?;
         Ok(drawn.map(|drawn| (compared, Some(drawn))))
     }
 
@@ -275,12 +279,12 @@ impl WhatIf {
 
     fn compare_branches(
         &self,
-        parting: &BranchPoint,
+        branch_point: &BranchPoint,
         (all, edits): &BranchEdits,
         progress: WhatIfProgressFn<'_>,
     ) -> Result<Option<BranchComparison>, Rejection> {
-        let Some(outcomes) = parting.simulate(edits, progress)? else { return Ok(None) };
-        let BranchPoint { start, earlier, steps: moves, until } = parting;
+        let Some(outcomes) = branch_point.simulate(edits, progress)? else { return Ok(None) };
+        let BranchPoint { start, earlier, steps: moves, until } = branch_point;
         let from = start.world.day;
         let mut branches = Vec::new();
         for ((decided, made), outcome) in all.iter().zip(edits).zip(&outcomes) {
@@ -321,23 +325,26 @@ impl WhatIf {
         count: u32,
         progress: WhatIfProgressFn<'_>,
     ) -> Result<Option<Futures>, Rejection> {
-        let Some(parting) = self.branch_point(week, until_week, progress)? else { return Ok(None) };
-        let Some((_, edits)) = self.edits_for_branches(alternatives, &parting, progress)? else {
+        let Some(branch_point) = self.branch_point(week, until_week, progress)? else { return Ok(None) };
+        let Some((_, edits)) = self.edits_for_branches(alternatives, &branch_point, progress)? else {
             return Ok(None);
         };
-        self.simulate_futures(&parting, &edits, count, progress)
+        self.simulate_futures(&branch_point, &edits, count, progress)
     }
 
     fn simulate_futures(
         &self,
-        parting: &BranchPoint,
+        branch_point: &BranchPoint,
         edits: &[Edits],
         count: u32,
         progress: WhatIfProgressFn<'_>,
     ) -> Result<Option<Futures>, Rejection> {
         let last = self.run.last_day();
-        let after =
-            if last < parting.until { last.max(parting.start.world.day) } else { parting.start.world.day };
+        let after = if last < branch_point.until {
+            last.max(branch_point.start.world.day)
+        } else {
+            branch_point.start.world.day
+        };
         let redrawn = |edits: &Edits, salt| {
             let redrawn = Some(Redraw { after_day: after, salt });
             Edits { redraw: redrawn, ..edits.clone() }
@@ -347,10 +354,10 @@ impl WhatIf {
             .iter()
             .flat_map(|branch_edits| salts().map(move |salt| redrawn(branch_edits, salt)))
             .collect();
-        let Some(outcomes) = parting.simulate(&drawn, progress)? else { return Ok(None) };
-        let days = parting.week_ends(self.run.days_per_week());
+        let Some(outcomes) = branch_point.simulate(&drawn, progress)? else { return Ok(None) };
+        let days = branch_point.week_ends(self.run.days_per_week());
         let valued: Vec<_> =
-            outcomes.iter().map(|outcome| figure::weekly_values(&parting.earlier, outcome)).collect();
+            outcomes.iter().map(|outcome| figure::weekly_values(&branch_point.earlier, outcome)).collect();
         let branches = valued.chunks(count.max(1) as usize).map(<[_]>::to_vec).collect();
         Ok(Some(Futures::new(after, days, branches)))
     }
@@ -528,14 +535,14 @@ type BranchEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
 
 fn build_branch_edits(
     alternatives: &[Vec<DecisionEdit>],
-    parting: &BranchPoint,
+    branch_point: &BranchPoint,
     mode: Mode,
 ) -> Result<BranchEdits, Rejection> {
     if alternatives.len() > MAX_ALTERNATIVES {
         let message = format!("a what-if compares at most {MAX_ALTERNATIVES} alternatives");
         return Err(Rejection::new("too_many_alternatives", message));
     }
-    let BranchPoint { start, steps: moves, until, .. } = parting;
+    let BranchPoint { start, steps: moves, until, .. } = branch_point;
     let all: Vec<Vec<DecisionEdit>> =
         std::iter::once(Vec::new()).chain(alternatives.iter().cloned()).collect();
     let edits: Result<_, Rejection> = with_branch_start(start, mode, |opening| {

@@ -156,7 +156,7 @@ next_week {\"rationale\": \"WHY\", \"predictions\": {\"cash_1wk\": {\"point\": 9
 next                                     asks at a terminal; simulates the week in a lesson that needs neither rationale nor
                                          forecasts
 Only forecasts that end within the run are required: 9 numbers instead of 12 if the run ends in 12 to 25 weeks.
-Naive forecasts: current subscribers pay on their billing dates and renew or cancel at recent rates, sign-ups continue
+Naive forecasts: current subscribers pay on their billing dates and renew or cancel at recent rates, signups continue
 their trend, and costs stay as they are set now.";
 
 fn callable_names() -> impl Iterator<Item = &'static str> {

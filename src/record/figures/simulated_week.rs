@@ -19,7 +19,7 @@ pub struct WeekGroupFigures {
 }
 
 impl WeekGroupFigures {
-    /// Returns sign-ups as a share of leads, or NaN if there were no leads.
+    /// Returns signups as a share of leads, or NaN if there were no leads.
     pub fn conversion(&self) -> f64 {
         f64::from(self.figures.signed) / f64::from(self.figures.leads)
     }

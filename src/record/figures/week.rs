@@ -82,7 +82,7 @@ pub struct WeekFigures {
 }
 
 impl WeekFigures {
-    /// Returns individual sign-ups as a share of individual leads, 0 to 1, or NaN if there were no leads.
+    /// Returns individual signups as a share of individual leads, 0 to 1, or NaN if there were no leads.
     pub fn conversion(&self) -> f64 {
         match self.new_individual_leads {
             0 => f64::NAN,

@@ -244,13 +244,13 @@ impl Manifest {
     /// The horizon rule does not count, because it only determines the length.
     pub fn has_changed_parameters(&self) -> bool {
         let bundled = Configuration::bundled();
-        let as_shipped =
+        let load_bundled =
             || bundled.load_parameters(&bundled.load_scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
             // Fast path for run lists: most runs use the default scenario, which has no overrides.
             "default" => self.fault.is_some() || self.parameters.iter().any(|entry| !is_horizon_rule(entry)),
             // The digests are compared because a scenario can have keys that the recording version did not have.
-            _ => as_shipped().is_none_or(|mut params| {
+            _ => load_bundled().is_none_or(|mut params| {
                 params.run.horizon_rule = self.horizon_rule();
                 ![params.digest(), params.earlier_digest()].contains(&self.parameters_digest)
             }),

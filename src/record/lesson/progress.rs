@@ -195,8 +195,8 @@ impl LessonProgress {
         step: usize,
     ) -> impl DoubleEndedIterator<Item = &RecordedLessonEvent> {
         let number = step as u32 + 1;
-        let is_it = move |note: &&RecordedLessonEvent| note.event == event && note.step == number;
-        self.events.iter().map(|(_, note)| note).filter(is_it)
+        let matches_event = move |note: &&RecordedLessonEvent| note.event == event && note.step == number;
+        self.events.iter().map(|(_, note)| note).filter(matches_event)
     }
 
     fn last_event(&self, event: LessonEvent, step: usize) -> Option<&RecordedLessonEvent> {

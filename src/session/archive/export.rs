@@ -50,8 +50,8 @@ impl Export {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();
         let (bytes, mut trajectory) = read_stable_trajectory(folder, &manifest, key)?;
-        let workshop = TemporaryFolder::create_in(parent)?;
-        let copied_folder = &workshop.path().join(&manifest.id);
+        let temporary_folder = TemporaryFolder::create_in(parent)?;
+        let copied_folder = &temporary_folder.path().join(&manifest.id);
         std::fs::create_dir(copied_folder).map_err(RunError::io(copied_folder))?;
         let put = |name: &str, bytes: &[u8]| {
             let path = copied_folder.join(name);
@@ -90,7 +90,7 @@ impl Export {
             trajectory,
             afterwards_lines: after.lines,
             copied_folder: copied_folder.clone(),
-            _temporary_folder: workshop,
+            _temporary_folder: temporary_folder,
         })
     }
 
@@ -125,8 +125,8 @@ impl Export {
         self.session.database().copy_to(&database)?;
         let seal = self.build_seal()?;
         let folder = parent_folder(archive);
-        let workshop = TemporaryFolder::create_in(folder)?;
-        let draft = workshop.path().join("archive");
+        let temporary_folder = TemporaryFolder::create_in(folder)?;
+        let draft = temporary_folder.path().join("archive");
         let written = self.write_archive(&draft, is_compressed(archive), (&seal, key));
         let placed = written.and_then(|()| std::fs::rename(&draft, archive));
         placed.map_err(RunError::io(archive))?;

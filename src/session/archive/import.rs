@@ -58,8 +58,8 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
         );
         return Err(RunError::InvalidRequest(message));
     }
-    let workshop = TemporaryFolder::create_in(runs)?;
-    let unpacked = unpack(archive, workshop.path())?;
+    let temporary_folder = TemporaryFolder::create_in(runs)?;
+    let unpacked = unpack(archive, temporary_folder.path())?;
     let seal = check_seal(archive, &unpacked)?;
     let signer = unpacked
         .signature_text
@@ -67,7 +67,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
         .map(|signature| verify_signature(&unpacked.seal_text, signature))
         .transpose();
     let signer = signer.map_err(|problem| archive_error(archive, problem))?;
-    let draft = workshop.path().join(&seal.run);
+    let draft = temporary_folder.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
     let folder = destination_folder(runs, &draft, &seal)?;
     // A run name must be unique on a machine, across all participants.
@@ -115,7 +115,7 @@ struct UnpackedArchive {
 }
 
 /// Unpacks the files of an archive to `workshop/<run>/`. The database is hashed but not copied.
-fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> {
+fn unpack(archive: &Path, temporary_folder: &Path) -> Result<UnpackedArchive, RunError> {
     let broken = |error: io::Error| {
         archive_error(archive, format!("this is not an archive of a run, or it is truncated ({error})"))
     };
@@ -160,14 +160,14 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> 
             ));
         }
         found.run = run.to_owned();
-        let path = workshop.join(run).join(file);
+        let path = temporary_folder.join(run).join(file);
         let measured = store_entry(&mut entry, &path, file).map_err(|error| match error {
             CopyError::Read(error) => unreadable_entry(archive, &name, &error),
             // The archive is intact, but the copy cannot be written to the disk.
             CopyError::Write(error) => RunError::Io { path, error },
         })?;
         if file == SEAL_FILE || file == SIGNATURE_FILE {
-            let path = workshop.join(run).join(file);
+            let path = temporary_folder.join(run).join(file);
             let text =
                 std::fs::read_to_string(&path).map_err(|error| unreadable_entry(archive, &name, &error))?;
             std::fs::remove_file(&path).map_err(RunError::io(&path))?;
@@ -250,7 +250,9 @@ fn check_seal(archive: &Path, found: &UnpackedArchive) -> Result<Seal, RunError>
         .iter()
         .find(|file| ![SEAL_FILE, SIGNATURE_FILE].contains(&file.name.as_str()) && !sealed(&file.name))
     {
-        Some(stranger) => Err(archive_error(archive, format!("{} was added after sealing", stranger.name))),
+        Some(unlisted_file) => {
+            Err(archive_error(archive, format!("{} was added after sealing", unlisted_file.name)))
+        }
         None => Ok(seal),
     }
 }

@@ -124,9 +124,10 @@ pub(super) fn verify_signature(seal: &str, signature: &str) -> Result<LabPublicK
     if file.algorithm != "ed25519" {
         return Err(format!("seal.sig uses an unknown algorithm: {}", file.algorithm));
     }
-    let odd = || "seal.sig is not a valid signature".to_owned();
-    let key = VerifyingKey::from_bytes(&parse_hex(&file.key).ok_or_else(odd)?).map_err(|_| odd())?;
-    let signature = Signature::from_bytes(&parse_hex(&file.signature).ok_or_else(odd)?);
+    let invalid_signature = || "seal.sig is not a valid signature".to_owned();
+    let key = VerifyingKey::from_bytes(&parse_hex(&file.key).ok_or_else(invalid_signature)?)
+        .map_err(|_| invalid_signature())?;
+    let signature = Signature::from_bytes(&parse_hex(&file.signature).ok_or_else(invalid_signature)?);
     key.verify_strict(&signed_message(seal), &signature)
         .map(|()| LabPublicKey(key))
         .map_err(|_| "seal.sig does not belong to seal.toml: one of them was changed".to_owned())

@@ -239,18 +239,18 @@ mod tests {
 
     #[test]
     fn similar_actions_of_several_calls_are_merged() {
-        let s1 = Group::parse("E2").expect("a group");
+        let e2 = Group::parse("E2").expect("a group");
         let offered = |plan: Plan, price: f64, companies: u32| IrrevocableAction::Offered {
-            group: Some(s1),
+            group: Some(e2),
             offerings: vec![(plan, price, price)],
             companies,
         };
         let mut done = vec![IrrevocableAction::Single("post published".to_owned())];
         for more in [
-            vec![offered(Plan::B, 35.0, 900), IrrevocableAction::Ended { group: s1, companies: 40 }],
+            vec![offered(Plan::B, 35.0, 900), IrrevocableAction::Ended { group: e2, companies: 40 }],
             vec![offered(Plan::C, 60.0, 10), offered(Plan::B, 30.0, 99)],
             vec![
-                IrrevocableAction::Ended { group: s1, companies: 2 },
+                IrrevocableAction::Ended { group: e2, companies: 2 },
                 IrrevocableAction::Single("post published".to_owned()),
             ],
         ] {

@@ -20,7 +20,7 @@ impl Simulation {
             return;
         }
         let lexicon = Lexicon::bundled();
-        let circumstances = JudgeContext::from_world(&self.world, &self.params, lexicon);
+        let judge_context = JudgeContext::from_world(&self.world, &self.params, lexicon);
         let known: Vec<Group> = Group::all().filter(|group| self.world.market.is_known(*group)).collect();
         let mut verdicts = Vec::new();
         self.feed.judgements.resize(own_posts.len(), Vec::new());
@@ -31,7 +31,7 @@ impl Simulation {
                 original: post.reply_to.and_then(|post| self.feed.original_post(post)),
                 earlier: own_posts[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
             };
-            let judgements = judge::judge_post(&submission, known.iter().copied(), &circumstances, lexicon);
+            let judgements = judge::judge_post(&submission, known.iter().copied(), &judge_context, lexicon);
             let judgements = self.recorded_scores.apply_to(post, judgements);
             let effects = judgements.iter().map(|judgement| (judgement.group, judgement.effect)).collect();
             verdicts.push(PostReactions { post: at as u32 + 1, effects });

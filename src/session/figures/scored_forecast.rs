@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn interval_includes_its_ends() {
+    fn interval_includes_its_endpoints() {
         use IntervalPosition::{Above, Below, Inside};
         let verdicts =
             [0.9, 1.0, 5.0, 9.0, 9.1].map(|outcome| forecast_with_outcome(outcome).interval_position());

@@ -37,7 +37,7 @@ pub struct StubModel {
 
 impl StubModel {
     /// Starts a stub on a free port.
-    pub fn start(manner: StubBehavior) -> StubModel {
+    pub fn start(behavior: StubBehavior) -> StubModel {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
         let (asked, stopped) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
@@ -48,7 +48,7 @@ impl StubModel {
                     return;
                 }
                 // The client may have closed the connection.
-                let _ = stream.and_then(|stream| serve_request(stream, manner, &values));
+                let _ = stream.and_then(|stream| serve_request(stream, behavior, &values));
             }
         });
         StubModel { port, requests: asked, is_stopped: stopped, thread: Some(thread) }
@@ -81,7 +81,11 @@ impl Drop for StubModel {
     }
 }
 
-fn serve_request(stream: TcpStream, manner: StubBehavior, values: &Mutex<Vec<Value>>) -> std::io::Result<()> {
+fn serve_request(
+    stream: TcpStream,
+    behavior: StubBehavior,
+    values: &Mutex<Vec<Value>>,
+) -> std::io::Result<()> {
     let mut reader = BufReader::new(stream);
     let mut length = 0;
     loop {
@@ -100,16 +104,16 @@ fn serve_request(stream: TcpStream, manner: StubBehavior, values: &Mutex<Vec<Val
     let material: Value = serde_json::from_str(material)?;
     values.lock().expect("not poisoned").push(asked);
     let mut texts = correct_answer(&material);
-    match manner {
+    match behavior {
         StubBehavior::Late => std::thread::sleep(Duration::from_secs(3)),
         StubBehavior::TooFew => drop(texts.pop()),
         StubBehavior::Correct | StubBehavior::NotJson | StubBehavior::ServerError => {}
     }
-    let content = match manner {
+    let content = match behavior {
         StubBehavior::NotJson => "Certainly! Here are the posts.".to_owned(),
         _ => Value::from(texts).to_string(),
     };
-    let status = if manner == StubBehavior::ServerError { "500 Internal Server Error" } else { "200 OK" };
+    let status = if behavior == StubBehavior::ServerError { "500 Internal Server Error" } else { "200 OK" };
     let body = json!({ "choices": [{ "message": { "role": "assistant", "content": content } }] }).to_string();
     let head = format!(
         "HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\nconnection: close\r\n\r\n",

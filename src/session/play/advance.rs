@@ -63,23 +63,23 @@ impl Session {
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<WeekResult, Rejection> {
-        let filing = WeekSubmission {
+        let submission = WeekSubmission {
             rationale,
             predictions,
             filled_naively,
             expected_day: &Value::Null,
             request: None,
         };
-        self.submit_week(filing, via, progress)
+        self.submit_week(submission, via, progress)
     }
 
     pub(crate) fn submit_week(
         &mut self,
-        filing: WeekSubmission<'_>,
+        submission: WeekSubmission<'_>,
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<WeekResult, Rejection> {
-        let WeekSubmission { rationale, predictions, filled_naively, expected_day, request } = filing;
+        let WeekSubmission { rationale, predictions, filled_naively, expected_day, request } = submission;
         let allowed = self.check_lesson_week(via).and_then(|()| self.check_can_act(ToolKind::Time));
         let allowed = allowed.and_then(|()| self.check_expected_day(expected_day));
         let unasked = Value::from(NO_RATIONALE_TEXT);

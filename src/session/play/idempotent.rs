@@ -109,14 +109,14 @@ impl Session {
                 Err(payload_mismatch_rejection().into())
             }
             Ok(RequestState::New(request)) => {
-                let filing = WeekSubmission {
+                let submission = WeekSubmission {
                     rationale,
                     predictions,
                     filled_naively: [false; 4],
                     expected_day,
                     request,
                 };
-                Ok(self.submit_week(filing, via, &mut |_| {})?)
+                Ok(self.submit_week(submission, via, &mut |_| {})?)
             }
         }
     }

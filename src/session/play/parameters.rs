@@ -94,8 +94,9 @@ impl Session {
         if line.from_day.is_some_and(|day| day <= today) {
             return Err(format!("the line sets a parameter from a day that is not after day {today}"));
         }
-        let held = self.simulation.params.value(&line.key).map_err(|error| describe_error(&error))?;
-        if value_to_json(&held) != line.old {
+        let current_value =
+            self.simulation.params.value(&line.key).map_err(|error| describe_error(&error))?;
+        if value_to_json(&current_value) != line.old {
             return Err(format!("{} was not {} before this change", line.key, line.old));
         }
         self.add_to_journal(seq, line);

@@ -389,11 +389,11 @@ impl Session {
         let resolved = self.simulation.resolve(command);
         // Results of SQL statements are not compared, because the database can be ahead of this line. Documentation
         // texts are not compared, because they can differ between versions.
-        let is_told_again = tool.spec().kind != ToolKind::Engine || change.is_some();
+        let is_answer_compared = tool.spec().kind != ToolKind::Engine || change.is_some();
         let differs = |now: Answer| {
             comparable_answer(tool.spec(), answer) != comparable_answer(tool.spec(), &now.to_json())
         };
-        if is_told_again && reply.into_answer_without_script(&resolved).is_some_and(differs) {
+        if is_answer_compared && reply.into_answer_without_script(&resolved).is_some_and(differs) {
             return Err("the call now has a different result".to_owned());
         }
         self.apply_call(tool.spec(), &arguments, call.reversal, AcceptedCall { resolved, change, row });

@@ -101,16 +101,16 @@ impl Playback {
     ) -> Result<SeekResult, RunError> {
         let line = self.target_line(goal).clamp(1, self.valid_lines);
         let before = self.valid_lines;
-        let went = if line < self.applied {
+        let seek_result = if line < self.applied {
             self.seek_back(line, progress)
         } else {
             self.seek_forward(line, progress)
         };
-        if went.is_err() && self.valid_lines < before {
+        if seek_result.is_err() && self.valid_lines < before {
             // The session has applied the invalid line: restore the previous state with a new session.
             self.seek_back(self.boundary_before(self.valid_lines), &mut |_| ControlFlow::Continue(()))?;
         }
-        went
+        seek_result
     }
 
     fn target_line(&self, goal: SeekTarget) -> usize {
@@ -158,9 +158,9 @@ impl Playback {
         let (mut session, from) = self.initial_session()?;
         let lines = &self.trajectory.lines[..line];
         let (applied, end) = apply_lines(&mut session, &self.origin.path, lines, from, progress);
-        let went = self.finish_seek(end)?;
-        if went == SeekResult::Stopped {
-            return Ok(went);
+        let seek_result = self.finish_seek(end)?;
+        if seek_result == SeekResult::Stopped {
+            return Ok(seek_result);
         }
         (self.session, self.applied) = (session, applied);
         Ok(SeekResult::ReachedInNewSession)

@@ -42,12 +42,12 @@ impl CapturedPipe {
     /// The system cannot create a thread.
     pub fn start(pipe: impl Read + Send + 'static) -> std::io::Result<CapturedPipe> {
         let kept = Arc::<Mutex<CaptureBuffer>>::default();
-        let (tell, end) = channel();
+        let (end_sender, end) = channel();
         let capture_buffer = Arc::clone(&kept);
         thread::Builder::new().name("script output".to_owned()).spawn(move || {
             read_to_end(pipe, &capture_buffer);
             // The send fails if the script was terminated and no thread waits for its output.
-            let _ = tell.send(());
+            let _ = end_sender.send(());
         })?;
         Ok(CapturedPipe { buffer: kept, end })
     }

@@ -105,7 +105,7 @@ impl ScriptProcess {
         // Ignore the error: if the process does not read its code, the error of the process is reported.
         let given = self.setup_message.take();
         let _ = self.send_line(&given, is_stopped);
-        let mut is_heard = true;
+        let mut is_channel_open = true;
         loop {
             if is_stopped() {
                 return self.terminate(ScriptEnd::Stopped);
@@ -113,7 +113,7 @@ impl ScriptProcess {
             if self.time_left().is_zero() {
                 return self.terminate(ScriptEnd::TimedOut);
             }
-            let channel_event = match is_heard {
+            let channel_event = match is_channel_open {
                 true => self.channel.receive(POLL_INTERVAL.min(self.time_left())),
                 false => {
                     self.channel.close();
@@ -124,9 +124,9 @@ impl ScriptProcess {
             match channel_event {
                 ChannelEvent::Request(request) => {
                     let value = answer(request, self.time_left());
-                    is_heard = self.send_line(&value, is_stopped).is_ok();
+                    is_channel_open = self.send_line(&value, is_stopped).is_ok();
                 }
-                ChannelEvent::Closed => is_heard = false,
+                ChannelEvent::Closed => is_channel_open = false,
                 ChannelEvent::Idle => {
                     if let Ok(Some(status)) = self.process.try_wait() {
                         return self.finish(status);

@@ -56,9 +56,9 @@ impl SessionClock {
 
     /// Returns the event of a time limit that must be reported now, if any.
     pub(super) fn due_event(&self, left: TimeLeft, limits: &TimeLimits) -> Option<LimitEvent> {
-        let is_told = |reached| self.reported_limits.contains(&(left.scope, reached));
+        let is_reported = |reached| self.reported_limits.contains(&(left.scope, reached));
         if left.seconds <= 0.0 {
-            return (!is_told(true)).then_some(match (limits.at_limit, left.scope) {
+            return (!is_reported(true)).then_some(match (limits.at_limit, left.scope) {
                 (LimitAction::Remind, _) => LimitEvent::Reminded,
                 (LimitAction::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
                 // Only a week can be submitted automatically. For other limits, stop the clock.
@@ -66,7 +66,7 @@ impl SessionClock {
             });
         }
         let warning = limits.warning_minutes.map(|minutes| f64::from(minutes) * 60.0)?;
-        (left.seconds <= warning && !is_told(false) && !is_told(true)).then_some(LimitEvent::Warned)
+        (left.seconds <= warning && !is_reported(false) && !is_reported(true)).then_some(LimitEvent::Warned)
     }
 }
 

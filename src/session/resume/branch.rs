@@ -160,8 +160,8 @@ fn lines_before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
 /// Returns the lines before the decisions of a day, including the line that closes the week on that day.
 fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let is_before = |line: &Line| {
-        let said_on_it = line.day == day && is_voice_line(line);
-        line.day < day || (line.day == day && line.closes_days()) || said_on_it || line.seq == 0
+        let is_voice_line_of_day = line.day == day && is_voice_line(line);
+        line.day < day || (line.day == day && line.closes_days()) || is_voice_line_of_day || line.seq == 0
     };
     let after = trajectory.lines.iter().position(|line| !is_before(line));
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]

@@ -101,10 +101,10 @@ fn count_valid_lines(
             reached = at + 1;
         }
     }
-    let summed = lines.first().is_some_and(Line::declares_checksums);
+    let has_checksums = lines.first().is_some_and(Line::declares_checksums);
     // A checksum validates a line, unless the hash in the next line differs. Lines without checksums are validated
     // only by a reproduced state.
-    let doubtful = problem.as_ref().is_some_and(|(_, words)| !summed || words == CHAIN_BROKEN_MESSAGE);
+    let doubtful = problem.as_ref().is_some_and(|(_, words)| !has_checksums || words == CHAIN_BROKEN_MESSAGE);
     Ok(if doubtful { reached.max(lines.len() - 1) } else { lines.len() })
 }
 
@@ -121,10 +121,10 @@ mod tests {
         let mut bytes = whole.clone();
         damage(&mut bytes);
         std::fs::write(&path, &bytes).expect("written");
-        let rescued = recover(&run.folder, &SealKey::default());
+        let recovered = recover(&run.folder, &SealKey::default());
         assert_eq!(std::fs::read(&path).expect("a trajectory"), bytes, "the damaged run was changed");
         std::fs::write(&path, whole).expect("written");
-        rescued
+        recovered
     }
 
     fn line_start(bytes: &[u8], line: usize) -> usize {

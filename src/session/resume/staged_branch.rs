@@ -33,9 +33,9 @@ impl StagedBranch {
         shared: &[&Line],
     ) -> Result<StagedBranch, RunError> {
         parent.parent().into_iter().for_each(remove_stale_staging_folders);
-        let named = parent.with_file_name(&manifest.id);
+        let published_folder = parent.with_file_name(&manifest.id);
         let folder = parent.with_file_name(format!("{STAGING_PREFIX}{}", manifest.id));
-        let branch = StagedBranch { folder, final_folder: named };
+        let branch = StagedBranch { folder, final_folder: published_folder };
         branch.write_files(manifest, shared)?;
         if let Some(stamp) = &manifest.lesson {
             Lesson::from_run(parent, &stamp.name)?.write_to_run(&branch.folder)?;
@@ -63,14 +63,14 @@ impl StagedBranch {
     /// # Errors
     /// The folder cannot be renamed, or the branch cannot be opened. After an error, no branch remains.
     pub fn publish(self) -> Result<Session, RunError> {
-        let StagedBranch { folder, final_folder: named } = &self;
-        std::fs::rename(folder, named).map_err(RunError::io(named))?;
-        let opened = named
+        let StagedBranch { folder, final_folder: published_folder } = &self;
+        std::fs::rename(folder, published_folder).map_err(RunError::io(published_folder))?;
+        let opened = published_folder
             .parent()
             .map_or(Ok(()), sync_folder)
-            .and_then(|()| Session::open(named, Access::Write, true));
+            .and_then(|()| Session::open(published_folder, Access::Write, true));
         if opened.is_err() {
-            drop(std::fs::remove_dir_all(named));
+            drop(std::fs::remove_dir_all(published_folder));
         }
         opened
     }

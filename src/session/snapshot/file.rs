@@ -173,20 +173,20 @@ impl Snapshot {
         lines: &[Line],
     ) -> Option<RestoredSession> {
         let mut reader = CanonicalReader::new(&self.file[self.history_offset..]);
-        let notes = StoredHistory::decompress(&reader.read::<Vec<u8>>()?)?;
+        let stored_history = StoredHistory::decompress(&reader.read::<Vec<u8>>()?)?;
         // Snapshots of earlier builds do not contain the dashboard, which cannot be rebuilt from a later state.
-        if notes.last_dashboard.is_none() && !notes.is_before_first_day() {
+        if stored_history.last_dashboard.is_none() && !stored_history.is_before_first_day() {
             return None;
         }
-        let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
+        let chain = blake3::Hash::from_hex(&stored_history.facts_chain.0).ok()?;
         let past = (reader.read()?, reader.read()?);
         let mut simulation = Simulation::from_state(manifest, params.clone(), past);
         let seen = lines.get(..=self.header.seq as usize)?;
         (simulation.params, simulation.overrides) = Overrides::replay(params, seen, simulation.world.day)?;
         simulation.trace = reader.read()?;
-        simulation.facts_chain = FactsChain::from_hash(chain, notes.facts_chain.1);
-        simulation.feed = notes.feed.into_owned();
-        let mut first_answers = IdempotentResponses::from_weeks(notes.answered_weeks);
+        simulation.facts_chain = FactsChain::from_hash(chain, stored_history.facts_chain.1);
+        simulation.feed = stored_history.feed.into_owned();
+        let mut first_answers = IdempotentResponses::from_weeks(stored_history.answered_weeks);
         for line in seen {
             if let Record::Call(call) = &line.record {
                 first_answers.record_call(call);
@@ -201,21 +201,21 @@ impl Snapshot {
                 settings: reader.read()?,
                 undo: reader.read()?,
                 redo: reader.read()?,
-                irrevocable_actions: notes.done.into_owned(),
+                irrevocable_actions: stored_history.done.into_owned(),
             },
-            weeks: notes.weeks.into_owned(),
-            current_week: notes.running_week.into_owned(),
-            decisions: notes.decisions.into_owned(),
-            notices: notes.notices.into_owned(),
-            journal: notes.journal.into_owned(),
-            query_history: notes.asked.into_owned(),
-            calculation_outputs: notes.calculated.into_owned(),
-            last_dashboard: notes.last_dashboard.map(Cow::into_owned),
-            ended: notes.ended,
+            weeks: stored_history.weeks.into_owned(),
+            current_week: stored_history.running_week.into_owned(),
+            decisions: stored_history.decisions.into_owned(),
+            notices: stored_history.notices.into_owned(),
+            journal: stored_history.journal.into_owned(),
+            query_history: stored_history.asked.into_owned(),
+            calculation_outputs: stored_history.calculated.into_owned(),
+            last_dashboard: stored_history.last_dashboard.map(Cow::into_owned),
+            ended: stored_history.ended,
             idempotent_responses: first_answers,
         };
         let same = reader.remaining() == 0 && simulation.state_hash().0 == self.header.state_hash;
-        same.then(|| RestoredSession { simulation, history, notebook: notes.notebook.into_owned() })
+        same.then(|| RestoredSession { simulation, history, notebook: stored_history.notebook.into_owned() })
     }
 }
 
@@ -269,7 +269,7 @@ impl SnapshotSource<'_> {
     fn state_bytes(&self) -> Vec<u8> {
         let SnapshotSource { simulation, history, notebook, .. } = self;
         let chain = &simulation.facts_chain;
-        let notes = StoredHistory {
+        let stored_history = StoredHistory {
             weeks: Cow::Borrowed(&history.weeks),
             running_week: Cow::Borrowed(&history.current_week),
             decisions: Cow::Borrowed(&history.decisions),
@@ -287,7 +287,7 @@ impl SnapshotSource<'_> {
         };
         let rows: u32 = simulation.world.customers.active_by_group().iter().sum();
         let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_PER_SUBSCRIBER);
-        notes.compress().feed(&mut bytes);
+        stored_history.compress().feed(&mut bytes);
         simulation.world.feed(&mut bytes);
         simulation.facts.feed(&mut bytes);
         simulation.trace.feed(&mut bytes);

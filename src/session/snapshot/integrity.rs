@@ -154,9 +154,9 @@ fn find_contradiction(trajectory: &Trajectory, position: &ProjectionPosition) ->
     let has_model = matches!(&trajectory.lines[0].record, Record::Start(start) if start.voice.is_some());
     // If the run has a language model, two more lines may be missing, because texts and scores are not requested again.
     let of_week = if has_model { 4 } else { 2 };
-    let healing = if is_open { of_week } else { u64::from(trajectory.unfinished_bytes > 0) };
+    let recoverable_lines = if is_open { of_week } else { u64::from(trajectory.unfinished_bytes > 0) };
     match trajectory.lines.get(position.seq as usize) {
-        None if position.seq > last.seq + healing => Some((last.seq + 2, "the line is missing")),
+        None if position.seq > last.seq + recoverable_lines => Some((last.seq + 2, "the line is missing")),
         Some(line) if line.hash != position.line_hash => {
             Some((position.seq + 1, "the line differs from the recorded line: it was changed"))
         }

@@ -81,7 +81,7 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::trajectory::record::Via;
 
-    /// Plays eight weeks with sign-ups.
+    /// Plays eight weeks with signups.
     fn played_session() -> Session {
         let new = NewRun { seed: Some(7), storage: Storage::Memory, ..NewRun::default() };
         let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
@@ -121,7 +121,7 @@ mod tests {
             "SELECT total(effective_price) FROM subscriptions JOIN customers USING (customer_id) \
              WHERE status = 'subscribed' AND customer_type = 'small' AND start_day > {day} - 7"
         );
-        let new = novamind_database::number_at(&session.query(&sql).expect("sign-ups").rows[0], 0);
+        let new = novamind_database::number_at(&session.query(&sql).expect("signups").rows[0], 0);
         assert!(new > 0.0 && (calendar.signed_up[0] - new).abs() < 1e-6, "{:?} {new}", calendar.signed_up);
     }
 

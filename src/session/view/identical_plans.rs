@@ -12,11 +12,11 @@ pub struct IdenticalPlans {
     /// The less expensive plan, or the first plan if the prices are equal.
     pub cheap: Plan,
     /// The more expensive plan, or the second plan if the prices are equal.
-    pub dear: Plan,
+    pub expensive: Plan,
     /// List price of the less expensive plan, dollars per month.
     pub cheap_price: f64,
     /// List price of the more expensive plan, dollars per month.
-    pub dear_price: f64,
+    pub expensive_price: f64,
     /// Active subscriptions to the more expensive plan.
     pub subscribers: u32,
     /// Whether the plans already differed only in price at the end of the last week.
@@ -32,13 +32,13 @@ impl CompanyView<'_> {
         let alike = pairs.into_iter().filter(|(left, right)| are_identical(now, *left, *right));
         let of = |(left, right): (Plan, Plan)| {
             let prices = now.core.prices;
-            let (cheap, dear) = if prices[right] < prices[left] { (right, left) } else { (left, right) };
+            let (cheap, expensive) = if prices[right] < prices[left] { (right, left) } else { (left, right) };
             IdenticalPlans {
                 cheap,
-                dear,
+                expensive,
                 cheap_price: prices[cheap],
-                dear_price: prices[dear],
-                subscribers: self.subscriptions_by_plan()[dear],
+                expensive_price: prices[expensive],
+                subscribers: self.subscriptions_by_plan()[expensive],
                 before: are_identical(before, left, right),
             }
         };
@@ -94,7 +94,7 @@ mod tests {
                 .company()
                 .identical_plans()
                 .iter()
-                .map(|identical_plans| (identical_plans.cheap, identical_plans.dear))
+                .map(|identical_plans| (identical_plans.cheap, identical_plans.expensive))
                 .collect::<Vec<(Plan, Plan)>>()
         };
         let all = [(Plan::A, Plan::B), (Plan::A, Plan::C), (Plan::B, Plan::C)];

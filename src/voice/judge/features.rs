@@ -1,6 +1,6 @@
 //! Features of a post that do not depend on the reader (docs/mechanics/market/social/judge.md#features).
 
-use super::lexicon::{Features as Law, Lexicon};
+use super::lexicon::{Features as FeatureWeights, Lexicon};
 use super::text::{TokenizedText, WordPattern, is_emoji};
 
 /// Features of a post that do not depend on the reader.
@@ -49,40 +49,40 @@ pub struct Features {
 impl Features {
     /// Extracts the features of a post.
     pub fn from_post(content: &str, lexicon: &Lexicon) -> Features {
-        let (law, words) = (&lexicon.features, &lexicon.words);
+        let (weights, words) = (&lexicon.features, &lexicon.words);
         let reading = TokenizedText::new(content);
         let strength = |list: &Vec<WordPattern>| match reading.count_matches(list) {
             0 => 0.0,
-            count => (law.topic_first + law.topic_more * f64::from(count - 1)).min(1.0),
+            count => (weights.topic_first + weights.topic_more * f64::from(count - 1)).min(1.0),
         };
         let topics: Vec<f64> = lexicon.topics.values().map(strength).collect();
         let hit = topics.iter().filter(|strength| **strength > 0.0).count() as u32;
         let numbers = reading.count_numbers();
         let (action, time) = (reading.contains_any(&words.actions), reading.contains_any(&words.times));
-        let specific = law.number * f64::from(numbers.min(law.numbers_counted))
-            + law.action * indicator(action)
-            + law.time * indicator(time)
-            + law.topic_hit * f64::from(hit.min(law.topics_counted));
+        let specific = weights.number * f64::from(numbers.min(weights.numbers_counted))
+            + weights.action * indicator(action)
+            + weights.time * indicator(time)
+            + weights.topic_hit * f64::from(hit.min(weights.topics_counted));
         let share = |each: f64, list| (each * f64::from(reading.count_matches(list))).min(1.0);
         Features {
             specificity: specific.min(1.0),
-            absolutes: share(law.absolute, &words.absolutes),
-            buzzwords: share(law.buzzword, &words.buzzwords),
-            casual: casualness(content, reading.count_matches(&words.slang), law),
-            technical: (law.tech_term * f64::from(reading.count_matches(&words.tech))
-                + law.tech_unit * indicator(has_unit(reading.normalized(), &law.units)))
+            absolutes: share(weights.absolute, &words.absolutes),
+            buzzwords: share(weights.buzzword, &words.buzzwords),
+            casual: casualness(content, reading.count_matches(&words.slang), weights),
+            technical: (weights.tech_term * f64::from(reading.count_matches(&words.tech))
+                + weights.tech_unit * indicator(has_unit(reading.normalized(), &weights.units)))
             .min(1.0),
             has_apology: reading.contains_any(&words.apology),
             names_cause: reading.contains_any(&words.cause),
             names_remedy: reading.contains_any(&words.remedy),
             names_time: time || numbers > 0,
-            sales_pressure: f64::from(reading.count_matches(&words.hard_sell).min(law.sell_counted)),
+            sales_pressure: f64::from(reading.count_matches(&words.hard_sell).min(weights.sell_counted)),
             defensive: reading.contains_any(&words.defensive),
             has_misconduct: reading.contains_any(&words.conduct),
             attacks_competitors: reading.contains_any(&words.rivals) && reading.contains_any(&words.negative),
             addresses_reader: reading.contains_any(&words.you),
             keyword_stuffing: keyword_stuffing(&reading, lexicon),
-            is_empty: hit == 0 && numbers == 0 && reading.tokens().len() < law.least_tokens,
+            is_empty: hit == 0 && numbers == 0 && reading.tokens().len() < weights.least_tokens,
             numbers,
             topics,
             text: reading,
@@ -99,7 +99,7 @@ pub(super) fn indicator(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
 
-fn casualness(content: &str, slang: u32, features: &Law) -> f64 {
+fn casualness(content: &str, slang: u32, features: &FeatureWeights) -> f64 {
     let count = |of: &dyn Fn(char) -> bool| content.chars().filter(|c| of(*c)).count() as u32;
     let signs = |each: f64, count: u32| each * f64::from(count.min(features.signs_counted));
     let shouted = content.split(|c: char| !c.is_alphanumeric()).filter(|word| {

@@ -22,9 +22,9 @@ pub(super) fn judge_group(group: Group, case: &SharedPostData<'_>) -> Judgement 
     }
     let readers = &case.context.groups[group];
     let claims = evaluate_claims(&case.features, readers, case.context, lexicon);
-    let eyes = GroupJudge { group, case, profile: lexicon.profile(group), claims };
-    let terms = eyes.terms();
-    let mut raw = eyes.profile.k * terms.iter().map(|term| term.value).sum::<f64>();
+    let group_judge = GroupJudge { group, case, profile: lexicon.profile(group), claims };
+    let terms = group_judge.terms();
+    let mut raw = group_judge.profile.k * terms.iter().map(|term| term.value).sum::<f64>();
     if let Some((_, original)) = &case.original
         && original.group != Some(group)
     {

@@ -160,12 +160,12 @@ impl ModelSettings {
 mod tests {
     use super::*;
 
-    const COMPLETE_SETTINGS: &str = "endpoint = \"http://127.0.0.1:11434/v1/\"\nmodel = \"llama3\"\n";
+    const REQUIRED_SETTINGS: &str = "endpoint = \"http://127.0.0.1:11434/v1/\"\nmodel = \"llama3\"\n";
 
     #[test]
     fn recorded_settings_exclude_the_key() {
         let settings =
-            ModelSettings::parse("voice.toml", &format!("{COMPLETE_SETTINGS}key_variable = \"MODEL_KEY\"\n"));
+            ModelSettings::parse("voice.toml", &format!("{REQUIRED_SETTINGS}key_variable = \"MODEL_KEY\"\n"));
         let settings = settings.expect("settings");
         assert_eq!((settings.seconds_a_week, settings.judge, settings.words), (30, false, true));
         assert_eq!(settings.completions_url(), "http://127.0.0.1:11434/v1/chat/completions");
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(stamp.describe(), "llama3 at 127.0.0.1:11434 rewords posts");
         assert!(!toml::to_string(&stamp).expect("a table").contains("KEY"));
         for endpoint in ["http://[::1]:8080", "http://box/v1", "http://box.example:80/a-b/v1"] {
-            let text = COMPLETE_SETTINGS.replace("http://127.0.0.1:11434/v1/", endpoint);
+            let text = REQUIRED_SETTINGS.replace("http://127.0.0.1:11434/v1/", endpoint);
             ModelSettings::parse("voice.toml", &text).expect(endpoint);
         }
     }
@@ -182,18 +182,18 @@ mod tests {
     fn errors_name_line_and_key() {
         let local = "http://127.0.0.1:11434/v1/";
         for (text, line, part) in [
-            (format!("{COMPLETE_SETTINGS}modell = 1\n"), 3, "modell"),
-            (format!("{COMPLETE_SETTINGS}judge = \"yes\"\n"), 3, "boolean"),
-            (COMPLETE_SETTINGS.replace("http:", "https:"), 1, "gateway on this machine"),
-            (COMPLETE_SETTINGS.replace(local, "127.0.0.1:11434"), 1, "endpoint"),
-            (COMPLETE_SETTINGS.replace(local, "http://me:secret@box/v1"), 1, "without user name, password"),
-            (COMPLETE_SETTINGS.replace(local, "http://box:99999/v1"), 1, "http://127.0.0.1:11434/v1"),
-            (COMPLETE_SETTINGS.replace(local, "http://box/v1?key=1"), 1, "or query"),
-            (COMPLETE_SETTINGS.replace(local, "http:///v1"), 1, "endpoint"),
-            (COMPLETE_SETTINGS.replace("llama3", " "), 2, "model"),
-            (format!("{COMPLETE_SETTINGS}key_variable = \"sk-1234\"\n"), 3, "environment variable"),
-            (format!("{COMPLETE_SETTINGS}seconds_a_week = 0\n"), 3, "1 to 600 seconds"),
-            (format!("{COMPLETE_SETTINGS}words = false\n"), 3, "no task"),
+            (format!("{REQUIRED_SETTINGS}modell = 1\n"), 3, "modell"),
+            (format!("{REQUIRED_SETTINGS}judge = \"yes\"\n"), 3, "boolean"),
+            (REQUIRED_SETTINGS.replace("http:", "https:"), 1, "gateway on this machine"),
+            (REQUIRED_SETTINGS.replace(local, "127.0.0.1:11434"), 1, "endpoint"),
+            (REQUIRED_SETTINGS.replace(local, "http://me:secret@box/v1"), 1, "without user name, password"),
+            (REQUIRED_SETTINGS.replace(local, "http://box:99999/v1"), 1, "http://127.0.0.1:11434/v1"),
+            (REQUIRED_SETTINGS.replace(local, "http://box/v1?key=1"), 1, "or query"),
+            (REQUIRED_SETTINGS.replace(local, "http:///v1"), 1, "endpoint"),
+            (REQUIRED_SETTINGS.replace("llama3", " "), 2, "model"),
+            (format!("{REQUIRED_SETTINGS}key_variable = \"sk-1234\"\n"), 3, "environment variable"),
+            (format!("{REQUIRED_SETTINGS}seconds_a_week = 0\n"), 3, "1 to 600 seconds"),
+            (format!("{REQUIRED_SETTINGS}words = false\n"), 3, "no task"),
         ] {
             let error = ModelSettings::parse("voice.toml", &text).expect_err(&text).to_string();
             assert!(error.contains(&format!("voice.toml, line {line}")) && error.contains(part), "{error}");

@@ -71,7 +71,7 @@ impl Change {
     pub(super) fn week(&self, history: &DecisionHistory) -> u32 {
         match self {
             Change::Recorded { line, .. } => {
-                history.decision(*line).map_or(1, |decision| history.week_of(decision))
+                history.decision(*line).map_or(1, |decision| history.decision_week(decision))
             }
             Change::Added { week, .. } | Change::Parameter { week, .. } | Change::AllWeeks { week, .. } => {
                 *week

@@ -67,7 +67,7 @@ impl NextWeekDialog {
             _ => "marked as naive forecasts".to_owned(),
         };
         let text =
-            format!("{fills}: billing dates, recent renewals and the trend of sign-ups, at current costs");
+            format!("{fills}: billing dates, recent renewals and the trend of signups, at current costs");
         let mut lines: Vec<(String, Role)> =
             wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !context.company.is_baseline() {

@@ -1,4 +1,4 @@
-//! Retention by sign-up week: a triangular table of cohorts and weeks since sign-up.
+//! Retention by signup week: a triangular table of cohorts and weeks since signup.
 
 use std::collections::BTreeMap;
 
@@ -76,7 +76,7 @@ impl Cohort {
     }
 }
 
-/// Cohorts by group and sign-up week.
+/// Cohorts by group and signup week.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cohorts(BTreeMap<Group, BTreeMap<u32, Cohort>>);
 
@@ -89,14 +89,14 @@ impl Cohorts {
             let cohort = all.0.entry(group).or_default().entry(week).or_default();
             cohort.size += count;
             if left > 0 {
-                // The week of a cancellation is at least the week of the sign-up.
+                // The week of a cancellation is at least the week of the signup.
                 *cohort.cancelled_by_week.entry(left.max(week)).or_default() += count;
             }
         }
         all
     }
 
-    /// Returns the sign-up weeks of a group with their cohorts, the newest first.
+    /// Returns the signup weeks of a group with their cohorts, the newest first.
     fn weeks(&self, group: Group) -> Vec<(u32, &Cohort)> {
         let cohorts = self.0.get(&group).into_iter().flatten();
         let mut weeks: Vec<(u32, &Cohort)> = cohorts.map(|(week, cohort)| (*week, cohort)).collect();
@@ -197,7 +197,7 @@ fn draw(
 ) {
     let weeks = cohorts.weeks(group);
     if weeks.is_empty() {
-        canvas.draw_text(area, "No sign-ups in the last 16 weeks", Role::Dim);
+        canvas.draw_text(area, "No signups in the last 16 weeks", Role::Dim);
         return;
     }
     if area.width < NAME_WIDTH + CELL_WIDTH || area.height < 3 {

@@ -225,7 +225,7 @@ fn customers_statement(group: Group, condition: &str) -> String {
     )
 }
 
-/// Returns a query for the sign-ups in a range of days. Individuals sign up on the day of arrival, enterprises on the
+/// Returns a query for the signups in a range of days. Individuals sign up on the day of arrival, enterprises on the
 /// day of their deal.
 fn signups_statement(group: Group, (from, to): (u32, u32)) -> String {
     let day = if group.is_enterprise() { "s.start_day" } else { "c.created_day" };

@@ -39,7 +39,7 @@ pub struct WeekFlow {
 pub struct GroupFacts {
     pub plans: [PlanSubscribers; 3],
     pub weeks: BTreeMap<u32, WeekFlow>,
-    /// Leads and sign-ups of the last weeks by acquisition source.
+    /// Leads and signups of the last weeks by acquisition source.
     pub sources: BTreeMap<String, (f64, f64)>,
     /// Number of subscriptions that were active 30 days ago and have ended since.
     pub lost_in_30_days: f64,

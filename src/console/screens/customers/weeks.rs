@@ -1,4 +1,4 @@
-//! Charts of a group by week: customers, leads, sign-ups and cancellations.
+//! Charts of a group by week: customers, leads, signups and cancellations.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 

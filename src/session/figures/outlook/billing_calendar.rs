@@ -1,9 +1,9 @@
 //! Bills that the current subscribers receive on the coming days.
 
-/// Number of past weeks whose sign-ups are counted.
+/// Number of past weeks whose signups are counted.
 pub const SIGN_UP_WEEKS: usize = 4;
 
-/// Bills that the current subscribers receive in the next billing period if they stay, and recent sign-ups.
+/// Bills that the current subscribers receive in the next billing period if they stay, and recent signups.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BillingCalendar {
     /// Bills of individuals by day, beginning with tomorrow, dollars.

@@ -1,5 +1,5 @@
 //! Expected cash by day. Current subscribers are billed on their billing dates and renew or cancel at recent rates.
-//! Sign-ups continue their trend, which fades. Compute and ad revenue are proportional to recurring revenue. Costs to
+//! Signups continue their trend, which fades. Compute and ad revenue are proportional to recurring revenue. Costs to
 //! which the settings commit the company stay as they are.
 //!
 //! The constants minimize the mean absolute error in `novamind lab forecasts`.
@@ -8,14 +8,14 @@ use super::billing_calendar::{BillingCalendar, SIGN_UP_WEEKS};
 use novamind_record::figures::WeekFigures;
 use novamind_world::events::Category;
 
-/// Share of the growth rate of sign-ups that remains after a day: 75 % after a week.
+/// Share of the growth rate of signups that remains after a day: 75 % after a week.
 const GROWTH_KEPT_PER_DAY: f64 = 0.959_74;
-/// Lower and upper limit of the weekly growth rate of sign-ups, as logarithms.
+/// Lower and upper limit of the weekly growth rate of signups, as logarithms.
 const GROWTH_LIMITS: [f64; 2] = [-0.4, 0.15];
-/// Rate at which sign-ups decrease per week if they have no trend. Competitors and saturation reduce the sign-ups of
+/// Rate at which signups decrease per week if they have no trend. Competitors and saturation reduce the signups of
 /// most companies.
 const SIGN_UP_DECAY_PER_WEEK: f64 = 0.08;
-/// Number of sign-ups at which half of the observed growth rate counts. The growth of fewer sign-ups is mostly due to
+/// Number of signups at which half of the observed growth rate counts. The growth of fewer signups is mostly due to
 /// chance.
 const SIGN_UPS_OF_HALF_TREND: f64 = 10.0;
 /// Assumed churn of individuals per billing period before any renewal, and the weight of this assumption, in
@@ -117,7 +117,7 @@ impl CashPath {
 struct Trend {
     /// Monthly revenue of the individuals who sign up on a day, dollars.
     daily_sign_ups: f64,
-    /// Growth rate of sign-ups per week, as a logarithm.
+    /// Growth rate of signups per week, as a logarithm.
     growth_rate: f64,
     /// Monthly revenue of new enterprise seats per day, dollars.
     daily_new_enterprise_revenue: f64,
@@ -186,8 +186,8 @@ fn daily_amount(weeks: &[WeekFigures], category: Category) -> f64 {
     weeks.iter().map(|week| week.booked.category_total(category)).sum::<f64>().abs() / f64::from(days.max(1))
 }
 
-/// Returns the level of sign-ups in dollars per day, and their growth rate per week as a logarithm. `signed_up` are the
-/// amounts of past weeks, the last week first, and `count` is the number of these sign-ups.
+/// Returns the level of signups in dollars per day, and their growth rate per week as a logarithm. `signed_up` are the
+/// amounts of past weeks, the last week first, and `count` is the number of these signups.
 fn sign_up_trend(signed_up: &[f64], count: f64) -> (f64, f64) {
     let half = signed_up.len() / 2;
     if half == 0 {

@@ -12,7 +12,7 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::{Session, request_id};
 use novamind_tools::{ToolId, find};
 
-/// Maximum length of a line, in bytes. Requests of the released simulator are shorter.
+/// Maximum length of a line, in bytes. Requests to the released simulator are shorter.
 const MAX_LINE_BYTES: usize = 4 << 20;
 const WEEK_OPERATION: &str = "next-week";
 const CALL_PREFIX: &str = "call:";
@@ -67,7 +67,7 @@ pub struct PlayedHistory {
     pub rejected_here: Vec<LineRemark>,
     /// Entries that were rejected in the released simulator and successful here.
     pub accepted_here: Vec<LineRemark>,
-    /// Entries after which the day differs.
+    /// Entries after which the day of this run differs from the day in the history.
     pub different_days: Vec<LineRemark>,
 }
 

@@ -109,8 +109,8 @@ impl Assignment {
         format!("{}\n{lines}", COLUMNS.join(","))
     }
 
-    /// Assigns the cells of a design to labels. Each block of participants contains every cell once, in a random order
-    /// with `draw` as the seed.
+    /// Assigns the cells of a design to labels. Each block of participants contains every cell once, in a
+    /// random order that depends on the seed `draw`.
     pub fn randomize_in_blocks(
         labels: &[String],
         seeds: &[u64],
@@ -143,8 +143,8 @@ impl Assignment {
     }
 }
 
-/// Returns the numbers below `count` in a random order for a block. The order follows from a keyed hash, so the order
-/// is the same on every machine.
+/// Returns the numbers below `count` in a random order for a block. The order is derived from a keyed hash,
+/// so it is the same on every machine.
 fn shuffled_indexes(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();

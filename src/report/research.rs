@@ -1,4 +1,5 @@
-//! Text for R&D projects: expected duration and gain before purchase, and projects that finish too late.
+//! Text for R&D projects: the expected duration and gain of a project before its purchase, and projects that
+//! finish too late.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! `assignment.csv`: the assignment of a condition, a seed and a position to each participant.
+//! `assignment.csv`: assigns a condition, a seed and a position to each participant.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The questions of a study that are due in a run, and the record of their answers.
+//! Returns the questions of a study that are due in a run, and records their answers.
 
 use serde_json::{Value, json};
 

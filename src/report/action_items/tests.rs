@@ -1,4 +1,5 @@
-//! Tests companies with one problem each, which must be the first action item. A healthy company has no action items.
+//! Tests companies that have one problem each. The problem must be the first action item. A healthy company
+//! has no action items.
 
 use serde_json::{Value, json};
 

@@ -69,7 +69,7 @@ pub struct Protocol {
     /// Time limits of weeks, sessions and runs.
     #[serde(default)]
     pub limits: TimeLimits,
-    /// Settings for the record of the sessions.
+    /// What is recorded of the sessions, and in which form.
     #[serde(default)]
     pub record: RecordOptions,
     /// Language model that words the messages of the runs; `None` for the built-in voice.
@@ -212,7 +212,7 @@ impl Default for SessionOptions {
     }
 }
 
-/// Settings for the record of the sessions.
+/// Settings that determine what is recorded of the sessions, and in which form.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {

@@ -274,18 +274,19 @@ fn measure_week(bench: &BenchContext) -> Result<Samples, BenchError> {
     Ok(vec![dashboard, query])
 }
 
-/// Subscriber counts at which the cost per subscriber is compared, in the default market.
+/// Numbers of subscribers for which the cost per subscriber is compared, in the default market.
 const SUBSCRIBER_COUNTS: [u32; 3] = [10_000, 40_000, 165_000];
 /// Maximum number of weeks measured per company. After more weeks, the company has grown too far beyond its nominal size.
 const MAX_WEEKS_PER_SIZE: usize = 5;
 
-/// Uses one thread, because the gain of a second thread depends on wake-up latency. This latency is the same for a
+/// Uses one thread. The gain from a second thread depends on its wake-up latency, which is the same for a
 /// company of any size.
 fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| measure_costs_by_size(bench))
 }
 
-/// Measures the companies in turn, so that a slow period of the machine affects all companies equally.
+/// Measures one week of each company in turn, so that a slow period of the machine affects all companies
+/// equally.
 fn measure_costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
     // The companies start slightly smaller, because they grow during the measurement.
     let sized_companies = SUBSCRIBER_COUNTS

@@ -57,7 +57,7 @@ pub fn create_company_for_queries(bench: &BenchContext) -> Result<Session, Bench
     Ok(company.session)
 }
 
-/// Measures every library query several times. The slowest query is the query with the largest median.
+/// Measures every library query several times. The slowest query is the one with the largest median time.
 pub fn measure_queries(bench: &BenchContext) -> Result<Samples, BenchError> {
     let mut session = MeasuredCompany::with_subscribers(SUBSCRIBER_COUNT, RunStorage::Disk, bench)?.session;
     session.wait_for_database()?;

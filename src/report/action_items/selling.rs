@@ -89,7 +89,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         problem: Problem::NoPrice,
         text: "No plan has a price. No one can subscribe.".to_owned(),
         proposal: Some(format!(
-            "Mean budgets a month: {}. The form proposes half of each estimate.",
+            "Mean monthly budgets: {}. The form proposes half of each estimate.",
             texts.join(", ")
         )),
         target: ActionTarget::Call(ToolId::SetPrices, Value::Object(prices)),

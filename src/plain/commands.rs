@@ -178,7 +178,7 @@ pub struct Interpreter {
     pub session: Session,
     library: QueryLibrary,
     watch: SignalWatch,
-    /// Whether a person types the lines and can answer questions.
+    /// Whether a user types the lines and can answer questions.
     pub(super) is_interactive: bool,
     /// Function that checks the experimenter's code; `None` if no code is defined.
     pub(super) code_check: Option<CodeCheck>,
@@ -191,7 +191,8 @@ pub struct Interpreter {
 }
 
 impl Interpreter {
-    /// Creates an interpreter for a session. `prompts` states whether a person types the lines and can answer questions.
+    /// Creates an interpreter for a session. `prompts` states whether a user types the lines and can answer
+    /// questions.
     pub fn new(
         mut session: Session,
         library: QueryLibrary,
@@ -399,7 +400,7 @@ impl Interpreter {
         }
     }
 
-    /// Returns warnings for R&D projects that end after the last day.
+    /// Returns a warning if a started R&D project ends after the last day.
     fn late_project_warnings(&self, started: &novamind_tools::Answer) -> Vec<String> {
         let novamind_tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
         let last_day = self.session.manifest().days;
@@ -443,7 +444,7 @@ impl Interpreter {
 /// Parses a line that calls a tool. `next_week` and `query` are separate commands and not accepted.
 ///
 /// # Errors
-/// The line is not a tool call. The message says what is wrong.
+/// The line is not a tool call. The message describes the problem.
 pub fn parse_tool_call(line: &str) -> Result<(ToolId, Value), String> {
     let parsed = grammar::parse_line(line).map_err(|problem| problem.text)?;
     let ParsedLine::Call { word, column, arguments } = parsed else {

@@ -16,12 +16,12 @@ pub const CASES: &[BenchCase] = &[
         name: "day",
         figures: &[
             BenchFigure::with_target(
-                "a day at 165,000, database in the background",
+                "a day at 165,000 subscribers, database in the background",
                 BenchUnit::Milliseconds,
                 10.0,
                 Some(4.0),
             ),
-            BenchFigure::without_target("a day at 165,000, in memory", BenchUnit::Milliseconds),
+            BenchFigure::without_target("a day at 165,000 subscribers, in memory", BenchUnit::Milliseconds),
         ],
         needs_new_process: false,
         is_slow: false,
@@ -31,14 +31,14 @@ pub const CASES: &[BenchCase] = &[
         name: "million",
         figures: &[
             BenchFigure::with_target(
-                "a day at 1,000,000, database in the background",
+                "a day at 1,000,000 subscribers, database in the background",
                 BenchUnit::Milliseconds,
                 60.0,
                 Some(25.0),
             ),
-            BenchFigure::without_target("a day at 1,000,000, in memory", BenchUnit::Milliseconds),
+            BenchFigure::without_target("a day at 1,000,000 subscribers, in memory", BenchUnit::Milliseconds),
             BenchFigure::with_target(
-                "peak memory at 1,000,000",
+                "peak memory at 1,000,000 subscribers",
                 BenchUnit::Megabytes,
                 1.2 * 1_073.741_824,
                 None,
@@ -87,13 +87,13 @@ pub const CASES: &[BenchCase] = &[
         name: "week",
         figures: &[
             BenchFigure::with_target(
-                "a week at 165,000: key press to dashboard",
+                "a week at 165,000 subscribers: key press to dashboard",
                 BenchUnit::Milliseconds,
                 150.0,
                 None,
             ),
             BenchFigure::with_target(
-                "a week at 165,000: key press to first query result",
+                "a week at 165,000 subscribers: key press to first query result",
                 BenchUnit::Milliseconds,
                 800.0,
                 None,
@@ -121,25 +121,25 @@ pub const CASES: &[BenchCase] = &[
         name: "scaling",
         figures: &[
             BenchFigure::with_target(
-                "cost per subscriber, 10,000 to 1,000,000: spread",
+                "cost per subscriber, 10,000 to 1,000,000 subscribers: spread",
                 BenchUnit::Percent,
                 30.0,
                 None,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 10,000",
+                "one thread, per subscriber per day at 10,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 40,000",
+                "one thread, per subscriber per day at 40,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 165,000",
+                "one thread, per subscriber per day at 165,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
             BenchFigure::without_target(
-                "one thread, per subscriber per day at 1,000,000",
+                "one thread, per subscriber per day at 1,000,000 subscribers",
                 BenchUnit::NanosecondsPerSubscriberDay,
             ),
         ],

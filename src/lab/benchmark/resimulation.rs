@@ -21,17 +21,27 @@ const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_da
 /// record and simulates the run from day 0. Later answers reuse this simulation.
 pub const FIGURES: &[BenchFigure] = &[
     BenchFigure::with_target(
-        "what if, 4 branches of 12 weeks of 20,000: next answer",
+        "what if, 4 branches of 12 weeks, 20,000 subscribers: next answer",
         BenchUnit::Seconds,
         0.5,
         None,
     ),
     BenchFigure::without_target(
-        "what if, 4 branches of 12 weeks of 20,000: first answer",
+        "what if, 4 branches of 12 weeks, 20,000 subscribers: first answer",
         BenchUnit::Seconds,
     ),
-    BenchFigure::with_target("why of a week at 20,000: first answer", BenchUnit::Seconds, 1.0, None),
-    BenchFigure::with_target("why of a week at 165,000: first answer", BenchUnit::Seconds, 8.0, None),
+    BenchFigure::with_target(
+        "why of a week at 20,000 subscribers: first answer",
+        BenchUnit::Seconds,
+        1.0,
+        None,
+    ),
+    BenchFigure::with_target(
+        "why of a week at 165,000 subscribers: first answer",
+        BenchUnit::Seconds,
+        8.0,
+        None,
+    ),
 ];
 
 /// Measures companies with the numbers of subscribers in the names of the figures.

@@ -374,7 +374,7 @@ impl Interpreter {
         outcome.unwrap_or_else(syntax_error)
     }
 
-    /// Calls a tool by its name, with or without its module.
+    /// Calls a tool by its name, which may be preceded by the name of its module.
     fn call_tool(
         &mut self,
         word: &str,
@@ -441,7 +441,7 @@ impl Interpreter {
     }
 }
 
-/// Parses a line that calls a tool. `next_week` and `query` are separate commands and not accepted.
+/// Parses a line that calls a tool. Does not accept `next_week` and `query`, which are separate commands.
 ///
 /// # Errors
 /// The line is not a tool call. The message describes the problem.
@@ -460,7 +460,8 @@ pub fn parse_tool_call(line: &str) -> Result<(ToolId, Value), String> {
     Ok((tool.spec().id, arguments))
 }
 
-/// Finds a tool by its name, with or without its module. `next_week` and `query` are separate commands.
+/// Finds a tool by its name, which may be preceded by the name of its module. Does not find `next_week` and
+/// `query`, which are separate commands.
 fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),

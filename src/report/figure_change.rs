@@ -7,7 +7,7 @@ pub struct FigureChange {
     pub old: f64,
     /// Value at the end of the last week.
     pub new: f64,
-    /// Rating of the change: 0 is usual, above 3 is rare.
+    /// Rating of the change: 0 for a usual change, above 3 for a rare one.
     pub unusualness: f64,
     /// Size of the figure's random variation.
     pub noise: f64,

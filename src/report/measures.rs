@@ -170,7 +170,8 @@ fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
 /// at the start of the run, which is hidden from players.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrueBestChannelSpend {
-    /// Share of all advertising spending on the truly best channel of the advertised group. Random spending reaches one fifth.
+    /// Share of all advertising spending that went to the truly best channel of the advertised group; about
+    /// one fifth if spending is random.
     pub share: f64,
     /// Share of spending on the truly best channel, by group.
     pub groups: BTreeMap<String, f64>,

@@ -179,7 +179,8 @@ impl ReleaseHistory {
     }
 }
 
-/// Checks the fields of an entry that begins on `day`. Returns `None` for a request without a known outcome.
+/// Checks the fields of an entry that begins on `day`. Returns `None` if the outcome of the request is
+/// unknown.
 fn check_entry(entry: &Map<String, Value>, day: u32) -> Result<Option<Checked>, String> {
     let Some(operation) = entry.get("operation").and_then(Value::as_str) else {
         return Err("the entry has no operation. Logs of older clients do not contain the input of requests, so they \

@@ -22,7 +22,7 @@ pub struct Assignment {
 pub struct AssignmentRow {
     /// Label of the participant.
     pub label: String,
-    /// Condition of the participant; `None` in a study without conditions.
+    /// Condition of the participant; `None` if the study has no conditions.
     pub condition: Option<String>,
     /// Seed of the session; `None` if all participants play the same seed.
     pub seed: Option<u64>,

@@ -56,7 +56,7 @@ pub struct PublishedRange {
 pub struct Comparison {
     /// Names of the compared runs.
     pub runs: Vec<String>,
-    /// Participant of each run; `None` for runs without a label.
+    /// Participant of each run; `None` if the run has no label.
     pub participants: Vec<Option<String>>,
     /// Scenario of each run.
     pub scenarios: Vec<String>,

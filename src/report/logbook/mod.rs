@@ -53,7 +53,7 @@ pub struct Logbook {
     pub start_cash: f64,
     /// Format version of the trajectory.
     pub format: u32,
-    /// Stamp of the study to which the run belongs; `None` without a study.
+    /// Stamp of the study to which the run belongs; `None` if the run belongs to no study.
     pub study: Option<StudyStamp>,
     /// Version of the program that recorded the run.
     pub version: String,
